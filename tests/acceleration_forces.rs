@@ -133,7 +133,7 @@ struct Case<const NQ: usize, const NV: usize, const NU: usize> {
     u: SVector<f64, NU>,
 }
 
-fn in_flight() -> Vec<Case<7, 7, 2>> {
+fn flight_cases() -> Vec<Case<7, 7, 2>> {
     let mut random = Random::new(3);
     let random_case = |k: usize| {
         let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
@@ -160,10 +160,10 @@ fn coupled_cases() -> Vec<Case<3, 3, 1>> {
 }
 
 #[test]
-fn forward_undoes_inverse_dynamics() {
+fn forward_dynamics_inverts_inverse_dynamics() {
     let craft = unsteady_aircraft();
     let whole = craft.extended();
-    for Case { t, q, v, a, .. } in in_flight() {
+    for Case { t, q, v, a, .. } in flight_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         assert_similar("v̇", whole.forward_dynamics(t, &q, &v, &tau).as_slice(), a.as_slice(), 1e-11);
     }
@@ -174,7 +174,7 @@ fn forward_undoes_inverse_dynamics() {
 }
 
 #[test]
-fn what_multiplies_accelerations_is_not_symmetric() {
+fn effective_mass_matrix_is_not_symmetric() {
     for Case { t, q, v, .. } in coupled_cases() {
         let at_rest = COUPLED.inverse_dynamics(t, &q, &v, &SVector::zeros());
         assert_similar("h", at_rest.as_slice(), COUPLED.bias_forces(t, &q, &v).as_slice(), 1e-14);
@@ -207,12 +207,12 @@ fn what_multiplies_accelerations_is_not_symmetric() {
 }
 
 #[test]
-fn derivatives_agree_with_differences() {
+fn derivatives_agree_with_finite_differences() {
     let craft = unsteady_aircraft();
     let whole = craft.extended();
     let (mut still, step) = ([1e-2; 7], [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0]);
     still[6] = 1.0;
-    for Case { t, q, v, a, u } in in_flight() {
+    for Case { t, q, v, a, u } in flight_cases() {
         let tau = whole.generalized_forces(t, &q, &v, &u);
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
         let accelerations_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
@@ -234,7 +234,7 @@ fn derivatives_agree_with_differences() {
 }
 
 #[test]
-fn linear_motions_agree_with_differences() {
+fn linearisation_agrees_with_finite_differences() {
     for Case { t, q, v, u, .. } in coupled_cases() {
         let now = at(&COUPLED, t);
         let motion = Derivatives::linear_motion(&now, &q, &v, &u);
@@ -257,7 +257,7 @@ fn linear_motions_agree_with_differences() {
 }
 
 #[test]
-fn derivatives_by_parameters_agree_with_differences() {
+fn parameter_derivatives_agree_with_finite_differences() {
     for Case { t, q, v, a, .. } in coupled_cases() {
         let perturbed_mechanism = |by: SVector<f64, 4>| {
             let Coupled { gain, share, reach, added } = COUPLED;
@@ -276,7 +276,7 @@ fn derivatives_by_parameters_agree_with_differences() {
 }
 
 #[test]
-fn prepared_mechanisms_and_batches_have_them() {
+fn prepared_and_batched_functions_have_acceleration_forces() {
     let prepared = COUPLED.prepare();
     for Case { t, q, v, a, .. } in coupled_cases() {
         let tau = COUPLED.inverse_dynamics(t, &q, &v, &a);
@@ -337,7 +337,7 @@ struct Hull {
 /// Kirchhoff's equations of a body in an ideal fluid: impulse and moment of impulse are constant in the
 /// ground frame (Lamb, *Hydrodynamics*, 1932, §§ 124–126).
 #[test]
-fn a_hull_moves_by_kirchhoffs_equations() {
+fn hull_in_ideal_fluid_obeys_kirchhoffs_equations() {
     let hull = Hull { mass: 3.0, along: 0.4, across: 2.5, turning: 1.5 };
     let mut random = Random::new(5);
     for _ in 0..6 {
@@ -386,7 +386,7 @@ carts!(Written, {
 });
 
 #[test]
-fn every_method_integrates_them_as_it_does_an_inerter() {
+fn integrators_treat_acceleration_forces_like_an_inerter() {
     let (q, v) = ([0.0, 1.0], [0.3, 0.0]);
     let (other, own) = (Inertial { b: 0.4 }, Written { b: 0.4 });
     macro_rules! compare {

@@ -43,21 +43,22 @@ fn random_mechanism(k: u64) -> Spec {
     }
 }
 
-/// Returns the text that the generator writes to `mechanisms.rs`.
+/// Returns the text of the generated file `mechanisms.rs`.
 fn generated_mechanisms_text() -> String {
-    let mut out = String::from(
-        "//! Written by the test `the_file_is_what_the_generator_writes`.\n\nuse linkwork::mechanism;\n",
-    );
+    let mut out =
+        String::from("//! Written by the test `generated_file_is_up_to_date`.\n\nuse linkwork::mechanism;\n");
     for k in 0..COUNT {
         let (arguments, item) =
             words::mechanism_source(&random_mechanism(k), &format!("Random{k}"), ", derivatives");
-        let _ = write!(out, "\n/// Random.\n#[mechanism({arguments})]\n{item}\n");
+        let about =
+            format!("/// Random test mechanism {k}: bodies and joints with random masses and placements.");
+        let _ = write!(out, "\n{about}\n#[mechanism({arguments})]\n{item}\n");
     }
     out
 }
 
 #[test]
-fn the_file_is_what_the_generator_writes() {
+fn generated_file_is_up_to_date() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/accelerations/mechanisms.rs");
     if std::env::var_os("LINKWORK_WRITE").is_some() {
         std::fs::write(path, generated_mechanisms_text()).unwrap();
@@ -141,7 +142,7 @@ macro_rules! check {
 }
 
 #[test]
-fn accelerations_and_their_derivatives_obey_kanes_equations() {
+fn accelerations_and_derivatives_satisfy_kanes_equations() {
     check! {
         0 Random0 1 Random1 2 Random2 3 Random3 4 Random4 5 Random5
         6 Random6 7 Random7 8 Random8 9 Random9 10 Random10 11 Random11

@@ -178,7 +178,7 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
         Self::new(core::array::from_fn(|_| random.random_vector::<N>(bound).map(linkwork::nalgebra::convert)))
     }
 
-    /// Returns random displacements with magnitudes from 0 to 3.
+    /// Returns random displacements of a configuration with magnitudes from 0 to 3.
     fn random_displacements(random: &mut Random) -> Self {
         let sizes = [2.0, 1e-9, 0.1, 1e-3, 0.5, 3.0, 0.0, 1e-6];
         Self::new(core::array::from_fn(|k| {
@@ -255,7 +255,7 @@ const COLUMNS: [f64; 2] = [1e-13, 0.0];
 const LIMBS: [f64; 2] = [1e-10; 2];
 
 #[test]
-fn robots_in_lanes() {
+fn batched_robots_equal_single_states() {
     check_all_functions::<_, 6, 6, 6, 1>(&Ur5, COLUMNS);
     check_all_functions::<_, 6, 6, 6, 3>(&Ur5, COLUMNS);
     check_all_functions::<_, 6, 6, 6, 4>(&Ur5, COLUMNS);
@@ -271,13 +271,13 @@ fn robots_in_lanes() {
 }
 
 #[test]
-fn single_precision_in_lanes() {
+fn batched_single_precision_equals_single_states() {
     check_all_functions::<_, _, _, _, 8>(&SinglePanda, [1e-6, 0.0]);
     check_all_functions::<_, _, _, _, 16>(&SinglePanda, [1e-6, 0.0]);
 }
 
 #[test]
-fn every_kind_of_configuration_in_lanes() {
+fn batched_configurations_of_every_kind_equal_single_states() {
     check_all_functions::<_, _, _, _, 4>(&sample_machine(), SAME);
     check_all_functions::<_, _, _, _, 8>(&sample_machine(), SAME);
     let single: Machine<f32> = Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 };
@@ -285,13 +285,13 @@ fn every_kind_of_configuration_in_lanes() {
 }
 
 #[test]
-fn driven_mechanisms_in_lanes() {
+fn batched_driven_mechanisms_equal_single_states() {
     check_all_functions::<_, _, _, _, 4>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
     check_all_functions::<_, _, _, _, 8>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
 }
 
 #[test]
-fn loops_in_lanes() {
+fn batched_loops_equal_single_states() {
     let linkage = FourBar { g: 9.7, l: 0.4 };
     check_all_functions::<_, _, _, _, 4>(&linkage, SAME);
     check_all_functions::<_, _, _, _, 8>(&linkage, SAME);
@@ -305,7 +305,7 @@ fn loops_in_lanes() {
 }
 
 #[test]
-fn large_angles_do_not_disturb_their_neighbours() {
+fn large_angles_do_not_affect_neighbouring_lanes() {
     let q: States<f64, 6, 8> =
         States::new(core::array::from_fn(|k| SVector::from_fn(|i, _| [0.3, 1e6, -2.0][(k + i) % 3])));
     let found = Ur5.mass_matrix_lanes(&q.wide);
@@ -313,7 +313,7 @@ fn large_angles_do_not_disturb_their_neighbours() {
 }
 
 #[test]
-fn functions_on_request_in_lanes() {
+fn batched_optional_functions_equal_single_states() {
     let mut random = Random::new(23);
     let q: States<f64, 8, 4> = States::random_states(&mut random, 2.0);
     let [v, a]: [States<f64, 8, 4>; 2] = [(); 2].map(|()| States::random_states(&mut random, 2.0));
@@ -339,7 +339,7 @@ fn functions_on_request_in_lanes() {
 }
 
 #[test]
-fn large_mechanisms_call_each_other_in_lanes() {
+fn batched_functions_of_large_mechanisms_call_each_other() {
     let (m, mut random) = (sample_machine(), Random::new(29));
     let dv: States<f64, 12, 4> = States::random_states(&mut random, 2.0);
     let q: States<f64, 14, 4> = States::new(core::array::from_fn(|k| m.integrate(&m.neutral(), &dv.each[k])));
@@ -357,7 +357,7 @@ fn large_mechanisms_call_each_other_in_lanes() {
 }
 
 #[test]
-fn composed_derivatives_go_into_matrices_in_lanes() {
+fn batched_composed_derivatives_are_written_to_matrices() {
     let mut random = Random::new(37);
     let dv: States<f64, 12, 4> = States::random_states(&mut random, 2.0);
     let q: States<f64, 15, 4> = States::new(dv.each.map(|dv| Tail.integrate(&Tail.neutral(), &dv)));
@@ -374,7 +374,7 @@ fn composed_derivatives_go_into_matrices_in_lanes() {
 }
 
 #[test]
-fn a_lanewise_mechanism_is_a_mechanism() {
+fn lanewise_adapter_implements_the_mechanism_trait() {
     fn total_energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
         m: &M,
         v: M::Scalar,

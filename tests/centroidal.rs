@@ -11,11 +11,11 @@ const EXACT: f64 = 1e-11;
 /// Tolerance of derivatives against finite differences.
 const DIFFERENCE: f64 = 1e-7;
 
-/// Quadruped Solo12 with a free base.
+/// Solo12 quadruped robot with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, centroidal)]
 struct Quadruped;
 
-/// Humanoid with a free base.
+/// Humanoid robot with a free base.
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, centroidal)]
 struct Humanoid;
 
@@ -69,7 +69,7 @@ macro_rules! check {
 }
 
 #[test]
-fn momentum_of_robots() {
+fn centroidal_momentum_of_robots_equals_body_momenta() {
     check!(Quadruped);
     check!(Humanoid);
     check!(Panda);
@@ -97,7 +97,7 @@ fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
 }
 
 #[test]
-fn weight_alone_changes_the_momentum_of_what_flies() {
+fn only_weight_changes_the_momentum_of_flying_robots() {
     let robot = Quadruped;
     let momentum_bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
     check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), momentum_bias);

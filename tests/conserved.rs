@@ -5,7 +5,7 @@ use linkwork::prelude::*;
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Lagrange's top: a symmetric top with one fixed point.
+/// Lagrange's top: a symmetric rigid body with one fixed point under gravity.
 #[mechanism(gravity = -9.81 * z, conserved, hamilton)]
 struct Top {
     height: f64,
@@ -15,7 +15,7 @@ struct Top {
     tip: Ball,
 }
 
-/// Rigid body that moves freely, without forces.
+/// Rigid body that moves freely in space, without forces.
 #[mechanism(conserved, hamilton)]
 struct Stone {
     #[body(mass = 2, com = 0.1 * x + 0.2 * y, inertia = diagonal(0.3, 0.4, 0.5))]
@@ -150,7 +150,7 @@ struct Afloat {
     small_end: Pin,
 }
 
-/// Disk that rolls without slipping.
+/// Disk that rolls on a plane without slipping.
 #[mechanism(gravity = -9.81 * z, conserved)]
 struct Disk {
     #[body(mass = 0.5, inertia = disk(0.5, 0.2, y))]
@@ -173,7 +173,7 @@ struct Sliding {
 }
 
 #[test]
-fn what_is_conserved_is_listed() {
+fn conserved_quantities_are_listed() {
     let [axis, about] = ["angular momentum along", ", about the ground's origin"];
     assert_eq!(Top::CONSERVED, ["energy", "momentum of tip.wz", &format!("{axis} z{about}")]);
     let center = ", about the centre of mass";
@@ -217,7 +217,7 @@ macro_rules! stays {
 }
 
 #[test]
-fn it_stays_along_motions() {
+fn conserved_quantities_are_constant_along_motions() {
     let mut random = Random::new(7);
     let top = Top { height: 0.2 };
     stays!(&top, random.random_configuration(&top), random.random_vector(4.0), |m, t, q, v| m
@@ -261,7 +261,7 @@ macro_rules! canonical {
 }
 
 #[test]
-fn hamiltons_form_agrees() {
+fn hamiltons_equations_agree_with_the_dynamics() {
     let mut random = Random::new(3);
     for _ in 0..5 {
         let top = Top { height: 0.3 };
@@ -286,19 +286,19 @@ fn hamiltons_form_agrees() {
         let (hoop, t) = (Hoop { spin: 4.0 }, random.uniform_number(2.0));
         let (q, v): (SVector<f64, 1>, SVector<f64, 1>) =
             (random.random_vector(2.0), random.random_vector(2.0));
-        let energy =
+        let hamiltonian =
             |p: &SVector<f64, 1>| p.dot(&v) - hoop.kinetic_energy(t, &q, &v) + hoop.potential_energy(t, &q);
-        canonical!(&hoop, q, v, random.random_vector(3.0), energy, t);
+        canonical!(&hoop, q, v, random.random_vector(3.0), hamiltonian, t);
         let swung = Swung {};
-        let energy =
+        let hamiltonian =
             |p: &SVector<f64, 1>| p.dot(&v) - swung.kinetic_energy(t, &q, &v) + swung.potential_energy(t, &q);
-        canonical!(&swung, q, v, random.random_vector(3.0), energy, t);
+        canonical!(&swung, q, v, random.random_vector(3.0), hamiltonian, t);
     }
 }
 
 /// `ṗ = −∂H/∂q` for coordinates that are their own rates, without dissipation.
 #[test]
-fn momenta_change_by_the_slope_of_the_hamiltonian() {
+fn momentum_rate_is_negative_gradient_of_the_hamiltonian() {
     let mut random = Random::new(5);
     let carts = Carts { mass: 0.8 };
     for _ in 0..5 {

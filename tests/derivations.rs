@@ -62,7 +62,7 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     let zero = vec![model.graph.zero(); model.nv()];
     assert_close("momentum", model, seed, &p, &apply_mass_and_bias(&reference.mass_matrix, &v, &zero));
     check_momentum_rate(model, &joints, &p, &bias, seed);
-    check_forward(model, &joints, &mass, &tau, &bias, &a, seed);
+    check_forward_dynamics(model, &joints, &mass, &tau, &bias, &a, seed);
     check_lowering(model, &tau, seed);
 }
 
@@ -87,7 +87,7 @@ fn check_momentum_rate<'g>(
     assert_close("momentum rate", model, seed, &rate, &expected);
 }
 
-fn check_forward<'g>(
+fn check_forward_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
@@ -126,10 +126,10 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
 /// Checks that the generalized forces are the derivatives of the inputs' power with respect to the
 /// velocities. The power of a force is its product with the velocity of its point, which is found here by
 /// differentiating the point's position in the ground frame.
-fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
+fn check_input_forces<'g>(model: &Model<'g>, seed: u64) {
     let g = model.graph;
     let joints = kinematics::joints_of_model(model);
-    let world = world_frames(&joints, g);
+    let world = frames_in_ground(&joints, g);
     let mut power = g.zero();
     for (k, (_, input)) in model.inputs.iter().enumerate() {
         let u = Quantity::Input(k).expr(g);
@@ -141,10 +141,10 @@ fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
             }
             Input::Force { link, point, along } => {
                 let (r, p) = &world[link.0];
-                ground_vector(along, &world, g).dot(velocity_of_point(model, *p + *r * *point))
+                vector_in_ground(along, &world, g).dot(velocity_of_point(model, *p + *r * *point))
             }
             Input::Torque { link, about } => {
-                ground_vector(about, &world, g).dot(angular_velocity(model, &world[link.0].0))
+                vector_in_ground(about, &world, g).dot(angular_velocity(model, &world[link.0].0))
             }
         };
     }
@@ -154,7 +154,7 @@ fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
     assert_close("inputs", model, seed, &forces::generalized_forces(model, &joints), &expected);
 }
 
-fn world_frames<'g>(joints: &[Joint<'g>], g: &'g Graph) -> Vec<(Mat3<'g>, Vec3<'g>)> {
+fn frames_in_ground<'g>(joints: &[Joint<'g>], g: &'g Graph) -> Vec<(Mat3<'g>, Vec3<'g>)> {
     let mut world: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
     for joint in joints {
         let (r, p) = joint.parent.map_or((Mat3::identity(g), Vec3::zero(g)), |LinkId(p)| world[p]);
@@ -163,7 +163,7 @@ fn world_frames<'g>(joints: &[Joint<'g>], g: &'g Graph) -> Vec<(Mat3<'g>, Vec3<'
     world
 }
 
-fn ground_vector<'g>(d: &Direction<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g Graph) -> Vec3<'g> {
+fn vector_in_ground<'g>(d: &Direction<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g Graph) -> Vec3<'g> {
     d.iter().fold(Vec3::zero(g), |sum, (link, v)| sum + link.map_or(*v, |l| world[l.0].0 * *v))
 }
 
@@ -190,12 +190,12 @@ proptest! {
     #![proptest_config(property_test_config(60))]
 
     #[test]
-    fn lagrange_and_the_recursions_agree(tree in random_trees(3), seed in 0_u64..1000) {
+    fn lagrange_and_recursive_algorithms_agree(tree in random_trees(3), seed in 0_u64..1000) {
         with_model(&tree.tree_source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
-    fn inputs_do_the_work_of_their_forces(tree in random_trees(4), seed in 0_u64..1000) {
-        with_model(&tree.tree_source(), |_, model| check_inputs(model, seed));
+    fn input_power_is_generalized_force_times_velocity(tree in random_trees(4), seed in 0_u64..1000) {
+        with_model(&tree.tree_source(), |_, model| check_input_forces(model, seed));
     }
 }

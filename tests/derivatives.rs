@@ -102,7 +102,7 @@ fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Ex
     assert_similar(what, &eval(a, &at), &eval(b, &at), DERIVATION);
 }
 
-fn check_recursion(model: &Model<'_>, seed: u64) {
+fn check_recursive_derivatives(model: &Model<'_>, seed: u64) {
     let joints = kinematics::joints_of_model(model);
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
@@ -144,7 +144,7 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
     assert_same("Ṁ", model, seed, &sum, &rate);
 }
 
-fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
+fn check_inverse_derivatives<'g>(model: &Model<'g>, seed: u64) {
     let joints = kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let factor = derivatives::Factor::new(&mass, &joints);
@@ -266,7 +266,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
 }
 
 #[test]
-fn forces_from_the_ground_are_not_forgotten() {
+fn derivatives_include_forces_from_the_ground() {
     let invariant_columns = |element: &str| {
         let mut found = None;
         let fields = format!(
@@ -315,13 +315,13 @@ proptest! {
     #![proptest_config(property_test_config(80))]
 
     #[test]
-    fn recursion_and_differentiation_agree(tree in random_trees(4), seed in 0_u64..1000) {
+    fn recursive_and_symbolic_derivatives_agree(tree in random_trees(4), seed in 0_u64..1000) {
         with_model(&tree.tree_source(), |_, model| {
-            check_recursion(model, seed);
+            check_recursive_derivatives(model, seed);
             for lanes in [1, 4, 8] {
                 check_coriolis_matrix(model, seed, lanes);
             }
-            check_inverse(model, seed);
+            check_inverse_derivatives(model, seed);
             check_what_is_known(model, seed);
         });
     }
@@ -333,7 +333,7 @@ proptest! {
     /// Checks derivatives against finite differences on random mechanisms, in which elements of every kind
     /// act on free and on jointed bodies, and on the ground.
     #[test]
-    fn derivatives_are_limits_of_differences(
+    fn derivatives_agree_with_finite_differences(
         (tree, world, creature) in (tied_trees(4), random_worlds(), random_creatures(2)),
         which in 0..6_usize,
         seed in 0_u64..1000,
@@ -382,7 +382,7 @@ fn derivative_programs(arguments: &str) -> [Program; 2] {
 /// and divisions, each of which acts on all lanes at once. The second counts the instructions that remain
 /// after products are fused into sums.
 #[test]
-fn operation_counts_in_lanes() {
+fn operation_counts_of_limb_lanes_are_exact() {
     let counts_of_robot = |robot: &str| {
         let all =
             derivative_programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
@@ -401,7 +401,7 @@ fn operation_counts_in_lanes() {
 }
 
 #[test]
-fn operation_counts() {
+fn operation_counts_of_derivatives_are_exact() {
     let fingers = "lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     let free = "base = free";
     for (robot, options, most) in [

@@ -61,9 +61,12 @@ impl State {
     /// Returns the rates of expressions along the motion, by differences.
     fn rates_of_expressions(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
         let rates = self.values_of_expressions(&lagrange::configuration_rates(model));
-        let values_at = |s: f64| self.values_after(s, &rates, e);
+        let values_after_step = |s: f64| self.values_after(s, &rates, e);
         let h = 1e-3;
-        let (near, far) = ((values_at(h), values_at(-h)), (values_at(2.0 * h), values_at(-2.0 * h)));
+        let (near, far) = (
+            (values_after_step(h), values_after_step(-h)),
+            (values_after_step(2.0 * h), values_after_step(-2.0 * h)),
+        );
         (0..e.len()).map(|k| (8.0 * (near.0[k] - near.1[k]) - (far.0[k] - far.1[k])) / (12.0 * h)).collect()
     }
 }
@@ -185,7 +188,7 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
     );
 }
 
-/// Returns the values of the output with this name.
+/// Returns the expressions of the output with this name.
 fn output_expressions<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
     model.outputs.iter().find(|o| o.name == name).expect("every output is there").values.clone()
 }
@@ -242,17 +245,17 @@ proptest! {
     #![proptest_config(property_test_config(32))]
 
     #[test]
-    fn lagrange_and_the_recursions_agree(world in random_worlds(), seed in 0_u64..1000) {
+    fn lagrange_and_recursive_algorithms_agree(world in random_worlds(), seed in 0_u64..1000) {
         with_model(&world.world_source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
-    fn places_move_as_their_velocities_say(world in random_worlds(), seed in 0_u64..1000) {
+    fn place_derivatives_agree_with_their_velocities(world in random_worlds(), seed in 0_u64..1000) {
         with_model(&world.world_source(), |_, model| check_outputs(model, seed));
     }
 
     #[test]
-    fn a_mistake_leaves_the_signatures(world in random_worlds()) {
+    fn outline_after_an_error_has_the_correct_signatures(world in random_worlds()) {
         with_model(&world.world_source(), check_outline);
     }
 }

@@ -130,7 +130,7 @@ where
 /// Checks that with a compass the filter finds the whole state, from errors with standard deviations of 0.3
 /// rad and 0.3 rad/s.
 #[test]
-fn a_load_on_a_ball_joint_is_found() {
+fn filter_estimates_a_load_on_a_ball_joint() {
     for seed in 0..5 {
         let (left, ..) = run_filter::<_, 9>(&Guided {}, &mut Random::new(seed), 0.3, 2.0, 0.0);
         assert!(left.amax() < 1e-3, "{seed}: {left}");
@@ -140,7 +140,7 @@ fn a_load_on_a_ball_joint_is_found() {
 /// Gyroscope and accelerometer do not observe the heading of the load about the vertical. All other
 /// components converge; the heading keeps its error, and the filter's covariance shows that.
 #[test]
-fn heading_is_not_seen_without_a_compass() {
+fn heading_is_unobservable_without_a_compass() {
     for seed in 0..5 {
         let off = 0.3;
         let (left, belief, q) = run_filter::<_, 6>(&Load {}, &mut Random::new(seed), off, 2.0, 0.0);
@@ -158,7 +158,7 @@ fn heading_is_not_seen_without_a_compass() {
 /// The errors agree with the filter's covariance: the mean of `eᵀ P⁻¹ e` is the number of unknowns
 /// (Bar-Shalom, Li and Kirubarajan, *Estimation with applications to tracking and navigation*, 2001, § 5.4).
 #[test]
-fn errors_are_as_large_as_they_are_said_to_be() {
+fn filter_errors_agree_with_the_covariance() {
     const RUNS: u64 = 30;
     let mut sum = 0.0;
     for seed in 0..RUNS {

@@ -116,7 +116,7 @@ fn derivatives_at_zero<const N: usize, const K: usize>(
 const STEP: [f64; 8] = [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0, 1e-2];
 
 #[test]
-fn states_are_named_after_the_velocities() {
+fn first_order_states_are_named_after_the_velocities() {
     fn velocity_names<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
         _: &M,
     ) -> [&'static str; NV] {
@@ -131,7 +131,7 @@ fn states_are_named_after_the_velocities() {
 }
 
 #[test]
-fn forward_undoes_inverse_dynamics() {
+fn forward_dynamics_inverts_inverse_dynamics() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
     for Case { t, q, v, a, .. } in random_cases() {
@@ -144,7 +144,7 @@ fn forward_undoes_inverse_dynamics() {
 }
 
 #[test]
-fn the_rates_are_what_was_written() {
+fn first_order_rates_equal_their_declared_expressions() {
     let fighter = tabulated_fighter();
     for Case { t, q, v, u, .. } in random_cases() {
         let now = fighter.with_states(&[v[6], v[7]].into());
@@ -164,7 +164,7 @@ fn the_rates_are_what_was_written() {
 }
 
 #[test]
-fn derivatives_agree_with_differences() {
+fn first_order_derivatives_agree_with_differences() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
     for Case { t, q, v, a, u } in random_cases() {
@@ -219,7 +219,7 @@ fn derivatives_agree_with_differences() {
 }
 
 #[test]
-fn outputs_change_with_them() {
+fn output_derivatives_include_first_order_states() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
     for Case { t, q, v, a, u } in random_cases() {
@@ -273,7 +273,7 @@ fn sled_runs_by(method: impl Method<f64>, lag: f64, tolerance: f64) {
 }
 
 #[test]
-fn every_method_integrates_them() {
+fn every_integrator_integrates_first_order_states() {
     sled_runs_by(Rk4::step(1e-3), 0.4, 1e-11);
     sled_runs_by(DormandPrince::new().tolerance(1e-11, 1e-12), 0.4, 1e-9);
     sled_runs_by(DormandPrince8::new().tolerance(1e-12, 1e-13), 0.4, 1e-10);
@@ -323,7 +323,7 @@ engine!(Prompt, {
 });
 
 #[test]
-fn constrained_mechanisms_have_them() {
+fn constrained_mechanisms_may_have_first_order_states() {
     let (lag, q) = (0.3, [0.0, 0.0, 0.8]);
     let late = Late { lag, torque: 0.0 };
     let constant_command = |_, _: &_, _: &_| [12.0].into();

@@ -144,7 +144,7 @@ fn largest_gradient(start: &State, inputs: &[Inputs]) -> f64 {
 /// The iterative linear-quadratic regulator finds a motion whose cost is stationary with respect to every
 /// input. Differences of the whole motion, which use no derivatives, confirm that.
 #[test]
-fn a_hop_is_optimal() {
+fn optimised_hop_is_stationary_in_every_input() {
     let start: State = ([0.0, 0.38, 0.1, 0.02].into(), SVector::zeros());
     // All inputs of the initial guess are zero.
     let mut inputs = vec![SVector::from([0.0, 0.0]); NODES];

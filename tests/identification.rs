@@ -11,15 +11,15 @@ const EXACT: f64 = 1e-10;
 /// Singular values below this fraction of the largest count as zero.
 const RANK: f64 = 1e-9;
 
-/// UR5 arm with six axes.
+/// UR5 robot arm with six axes.
 #[mechanism(urdf = "../models/urdf/ur5.urdf", passive = ignore, regressor)]
 struct Ur5;
 
-/// Arm with seven axes and two independent fingers.
+/// Panda robot arm with seven axes and two independent fingers.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, passive = ignore, regressor)]
 struct Panda;
 
-/// Quadruped Solo12 with a free base.
+/// Solo12 quadruped robot with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, passive = ignore, regressor)]
 struct Quadruped;
 
@@ -154,7 +154,7 @@ macro_rules! check {
 }
 
 #[test]
-fn robots() {
+fn regressors_of_robots_reproduce_inverse_dynamics() {
     // 7 for each pin except the first, whose axis is vertical: only the inertia about this axis has an
     // effect.
     assert_eq!(check!(Ur5, Ur5), 36);
@@ -164,13 +164,13 @@ fn robots() {
     assert_eq!(check!(Quadruped, Quadruped), 10 + 12 * 7);
 }
 
-fn puma_arm() -> Puma {
+fn sample_puma_arm() -> Puma {
     Puma { a2: 0.4318, a3: 0.0203, d3: 0.15005, d4: 0.4318, m: 4.0 }
 }
 
 #[test]
-fn mechanisms_with_parameters() {
-    assert_eq!(check!(Puma, puma_arm()), 36);
+fn regressors_of_parametric_mechanisms_reproduce_dynamics() {
+    assert_eq!(check!(Puma, sample_puma_arm()), 36);
     assert_eq!(Puma::BODIES, ["trunk", "upper", "fore", "first", "second", "hand"]);
     assert_eq!(Puma::BASE_PARAMETERS[0], "trunk.zz");
     check!(Workshop, Workshop { mass: 0.7, length: 0.4 });
@@ -178,8 +178,8 @@ fn mechanisms_with_parameters() {
 }
 
 #[test]
-fn prepared() {
-    let (robot, mut random) = (puma_arm(), Random::new(22));
+fn prepared_regressors_equal_unprepared_ones() {
+    let (robot, mut random) = (sample_puma_arm(), Random::new(22));
     let prepared = robot.prepare();
     let (q, v, a) = (random.random_vector(2.0), random.random_vector(2.0), random.random_vector(2.0));
     let (one, other) = (prepared.base_regressor(&q, &v, &a), robot.base_regressor(&q, &v, &a));
@@ -214,7 +214,7 @@ struct DoublePendulum {
 /// Checks the base parameters of a planar chain by hand: each link has two first moments and one inertia,
 /// through which the masses act. Forces of elements are not part of the regressor.
 #[test]
-fn by_hand() {
+fn base_parameters_of_a_planar_chain_by_hand() {
     let (m, l, k, c) = (1.5, 0.8, 7.0, 0.3);
     let pendulum = DoublePendulum { m, l, k, c };
     let rod_parameters =

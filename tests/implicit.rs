@@ -10,12 +10,12 @@ use linkwork_models::{CarAxle, RollingDisk};
 use std::cell::Cell;
 
 /// Mechanism that counts evaluations of forward dynamics and hides its derivatives unless `KNOWN`.
-struct Counted<'m, M, const KNOWN: bool> {
+struct CountingMechanism<'m, M, const KNOWN: bool> {
     mechanism: &'m M,
     count: Cell<usize>,
 }
 
-impl<'m, M, const KNOWN: bool> Counted<'m, M, KNOWN> {
+impl<'m, M, const KNOWN: bool> CountingMechanism<'m, M, KNOWN> {
     fn new(mechanism: &'m M) -> Self {
         Self { mechanism, count: Cell::new(0) }
     }
@@ -30,7 +30,7 @@ macro_rules! pass {
 }
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Mechanism<NQ, NV, NU>
-    for Counted<'_, M, KNOWN>
+    for CountingMechanism<'_, M, KNOWN>
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
@@ -74,7 +74,7 @@ where
 }
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Hooks<f64, NQ, NV, NU>
-    for Counted<'_, M, KNOWN>
+    for CountingMechanism<'_, M, KNOWN>
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
@@ -210,7 +210,7 @@ where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
     fn count_evaluations<M, const NQ: usize, const NV: usize, const KNOWN: bool>(
-        m: &Counted<'_, M, KNOWN>,
+        m: &CountingMechanism<'_, M, KNOWN>,
         q: SVector<f64, NQ>,
         v: SVector<f64, NV>,
     ) -> usize
@@ -222,8 +222,8 @@ where
         m.count.get()
     }
     [
-        count_evaluations(&Counted::<_, true>::new(m), q, v),
-        count_evaluations(&Counted::<_, false>::new(m), q, v),
+        count_evaluations(&CountingMechanism::<_, true>::new(m), q, v),
+        count_evaluations(&CountingMechanism::<_, false>::new(m), q, v),
     ]
 }
 
@@ -238,7 +238,7 @@ where
     S: Method<f64> + Clone,
 {
     fn end_under_feedback<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
-        m: &Counted<'_, M, KNOWN>,
+        m: &CountingMechanism<'_, M, KNOWN>,
         (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
         method: S,
     ) -> (SVector<f64, NQ>, SVector<f64, NV>)
@@ -252,8 +252,8 @@ where
         let end = run.finish().unwrap();
         (end.q, end.v)
     }
-    let known = end_under_feedback(&Counted::<_, true>::new(m), (q, v), method.clone());
-    [known, end_under_feedback(&Counted::<_, false>::new(m), (q, v), method)]
+    let known = end_under_feedback(&CountingMechanism::<_, true>::new(m), (q, v), method.clone());
+    [known, end_under_feedback(&CountingMechanism::<_, false>::new(m), (q, v), method)]
 }
 
 #[track_caller]
@@ -279,7 +279,7 @@ fn closed_linkage_state(m: &FourBar) -> (SVector<f64, 3>, SVector<f64, 3>) {
 }
 
 #[test]
-fn the_motion_is_that_by_differences() {
+fn generated_derivatives_yield_the_same_implicit_motion() {
     check_agreement(&Cart {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
     check_agreement(&Late { lag: 1e-3, torque: 0.0 }.extended(), ([0.4].into(), [1.0, 0.2].into()));
     let bar = FourBar {};
@@ -291,7 +291,7 @@ fn the_motion_is_that_by_differences() {
 }
 
 #[test]
-fn the_order_is_four() {
+fn implicit_method_has_order_four() {
     let late = Late { lag: 0.4, torque: 0.0 };
     let whole = late.extended();
     let end_with_method =
@@ -306,7 +306,7 @@ fn the_order_is_four() {
 
 /// Under constraints the order of convergence is four, with generated derivatives and with differences.
 #[test]
-fn the_order_is_four_under_constraints() {
+fn implicit_method_has_order_four_under_constraints() {
     let start = ([0.0, -1.0].into(), [2.5, 0.0].into());
     let precise = ends_of_runs(&OnCircle {}, start, DormandPrince8::new().tolerance(1e-13, 1e-13))[0];
     let fixed_step_method = |h: f64| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h);
@@ -323,10 +323,10 @@ fn the_order_is_four_under_constraints() {
 /// than the differences in time that the method would take. Forces that depend on time then cost no more
 /// steps. The motion changes only by the effect of the clock's rounding on the forces.
 #[test]
-fn a_clock_that_has_run_for_long_costs_no_steps() {
+fn large_clock_times_cost_no_extra_steps() {
     let cart = Cart {};
     let end_from_start_time = |start: f64| {
-        let counted = Counted::<_, true>::new(&cart);
+        let counted = CountingMechanism::<_, true>::new(&cart);
         let run = simulate(&counted).from([0.01, 0.4], [0.0, 1.0]).start_at(start).duration(1.0);
         let run = run.inputs(|t, _, _| [5.0 * (3.0 * (t - start)).sin()].into());
         let end = run.clone().method(Rodas::new().tolerance(1e-9, 1e-9)).finish().unwrap();
@@ -347,7 +347,7 @@ fn a_clock_that_has_run_for_long_costs_no_steps() {
 }
 
 #[test]
-fn derivatives_spare_two_evaluations_for_each_velocity() {
+fn generated_derivatives_save_two_evaluations_per_velocity() {
     let [known, differences] = count_step_evaluations(&Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into());
     assert_eq!((known, differences - known), (8, 4));
     let late = Late { lag: 1e-3, torque: 0.0 };
@@ -367,7 +367,7 @@ fn derivatives_spare_two_evaluations_for_each_velocity() {
 }
 
 #[test]
-fn wrappers_pass_derivatives_on_that_they_do_not_change() {
+fn wrappers_forward_unchanged_derivatives() {
     let (cart, q, v, u) = (Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into(), [0.3].into());
     let known = Hooks::acceleration_derivatives(&cart, 0.0, &q, &v, &u);
     assert!(known.is_some());
@@ -455,7 +455,7 @@ fn check_decaying_violations<
 
 /// Stabilized derivatives exist for closed loops, a rod, a rolling wheel and a moving road.
 #[test]
-fn decaying_violations_have_derivatives() {
+fn stabilized_constraints_have_derivatives() {
     check_decaying_violations(&OnCircle {}, 0.0, ([0.6, -0.8].into(), [0.8, 0.6].into()));
     let bar = FourBar {};
     check_decaying_violations(&bar, 0.0, closed_linkage_state(&bar));
@@ -472,7 +472,7 @@ fn decaying_violations_have_derivatives() {
 /// Checks that each SIMD lane has the derivatives of its own state, and that an implicit method moves each
 /// lane as it moves a single state.
 #[test]
-fn lanes_have_derivatives() {
+fn implicit_lanes_equal_single_states() {
     let cart = Cart {};
     let lanes = cart.lanes::<4>();
     let splat = Lanes::<f64, 4>::splat;

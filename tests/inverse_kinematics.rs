@@ -62,7 +62,7 @@ where
 }
 
 #[test]
-fn what_is_in_reach_is_reached() {
+fn reachable_targets_are_reached() {
     let tool = frame_index(<Ur5 as Frames<6, 6>>::FRAMES, "tool0");
     let hand = frame_index(<Panda as Frames<7, 7>>::FRAMES, "panda_hand");
     let found = [
@@ -78,7 +78,7 @@ fn what_is_in_reach_is_reached() {
 /// Four feet with a free base are reached at once. Directions that the targets do not determine stay near the
 /// start.
 #[test]
-fn several_frames_are_reached_at_once() {
+fn several_frame_targets_are_reached_together() {
     let mut random = Random::new(4);
     let frames = <Solo as Frames<19, 18>>::FRAMES;
     let feet = ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"].map(|name| frame_index(frames, name));
@@ -109,7 +109,7 @@ fn several_frames_are_reached_at_once() {
 }
 
 #[test]
-fn targets_that_make_no_sense_are_errors() {
+fn invalid_targets_are_errors() {
     let (tool, start) = (frame_index(<Ur5 as Frames<6, 6>>::FRAMES, "tool0"), SVector::from([0.3; 6]));
     let search_for_target = |target| InverseKinematics::new().reach(&Ur5, 0.0, &[target], &start);
     // Three metres are more than the length of the arm.

@@ -32,7 +32,7 @@ struct Names {
 }
 
 #[test]
-fn names_of_all_kinds() {
+fn field_names_of_all_kinds_compile() {
     let m = Names { q: 2.0, v: 0.3, a: 0.4, u: 0.1, tau: 0.05, g: 9.81, r#type: 3.0, self_: 0.5 };
     assert_eq!(Names::CONFIGURATION, ["fn", "loop_"]);
     assert_eq!(Names::INPUTS, ["match"]);
@@ -55,7 +55,7 @@ struct Projectile {
 }
 
 #[test]
-fn particle_on_a_joint() {
+fn particle_may_be_the_child_of_a_joint() {
     let ball = Projectile { m: 2.0 };
     let a = ball.forward_dynamics(&Vector3::zeros(), &Vector3::x(), &Vector3::new(0.0, 4.0, 0.0));
     assert_close("acceleration", a.as_slice(), &[0.0, 2.0, -9.81], TOLERANCE);
@@ -85,7 +85,7 @@ where
 }
 
 #[test]
-fn scalars() {
+fn mechanisms_are_generic_over_scalars() {
     assert_eq!(inertia_at_neutral(&Generic { length: 0.5_f32 }), 0.25_f32);
     assert_eq!(inertia_at_neutral(&Generic { length: 0.5 }), 0.25);
     let end = Generic { length: 0.5 }.frame_placement(frame!(Generic<f64>, "rod"), &SVector::from([0.0]));
@@ -111,7 +111,7 @@ struct Expressions {
 }
 
 #[test]
-fn expressions_mean_what_they_say() {
+fn expressions_have_their_documented_values() {
     let (l, w, angle, m) = (0.7_f64, 0.2_f64, 0.4_f64, 1.1_f64);
     let plate = Expressions { l, w, angle, m };
     let q = SVector::from([0.3]);
@@ -137,7 +137,7 @@ struct Solids {
 }
 
 #[test]
-fn solids_add_up_and_turn() {
+fn solid_inertias_add_and_rotate() {
     let (l, w, angle, m) = (0.7_f64, 0.2_f64, 0.4_f64, 1.1_f64);
     let body = Solids { l, w, angle, m };
     let rod = m * l * l / 12.0;
@@ -156,7 +156,7 @@ fn solids_add_up_and_turn() {
 
 /// Checks that an expression which a user's macro passes on is one operand, even without written parentheses.
 #[test]
-fn expressions_of_macros_stay_together() {
+fn macro_expressions_remain_one_operand() {
     macro_rules! pendulum {
         ($name:ident, $length:expr) => {
             #[mechanism(gravity = -9.81 * y)]
@@ -182,7 +182,7 @@ struct Structure {
 }
 
 #[test]
-fn structure_without_motion() {
+fn structure_without_joints_compiles() {
     assert_eq!((Structure::NQ, Structure::NV, Structure::NU), (0, 0, 0));
     let q = Structure {}.neutral();
     assert_eq!(Structure {}.potential_energy(&q), 0.0);
@@ -195,7 +195,7 @@ fn structure_without_motion() {
 /// the piston follows from Pythagoras's theorem, and its velocity equals that of the crank's end. Coordinates
 /// and constraint rows have names.
 #[test]
-fn joint_that_closes_a_loop() {
+fn joint_closing_a_loop_forms_a_slider_crank() {
     let engine = SliderCrank { g: 9.81, r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };
     assert_eq!(SliderCrank::CONFIGURATION, ["main", "big_end", "cylinder"]);
     assert_eq!(SliderCrank::CONSTRAINTS, ["small_end.x", "small_end.y"]);
@@ -226,7 +226,7 @@ struct RollingDisk {
 /// `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`, `u̇₂ = −⅔ u₁ u₃`, `u̇₃ = (−2 u₂ + u₃ tan q₂) u₁`
 /// (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972, ch. II).
 #[test]
-fn rolling_pair() {
+fn rolling_disk_has_textbook_accelerations() {
     let (g, radius, lean) = (9.81, 0.4, 0.35_f64);
     let disk = RollingDisk { g, m: 2.0, radius };
     assert_eq!(RollingDisk::CONSTRAINTS, ["contact.normal", "contact.x", "contact.y"]);
@@ -269,7 +269,7 @@ struct Extremes {
 
 /// Minimum and maximum of numbers with very different magnitudes lose no digits.
 #[test]
-fn extremes_are_exact() {
+fn minimum_and_maximum_are_exact() {
     for (k, expected) in [(1e17, 1.0), (1e-20, 1e-20), (f64::INFINITY, 1.0), (-1e300, -1e300), (0.3, 0.3)] {
         let m = Extremes { k, l: 1.0 };
         assert_eq!(m.least(&[0.0].into()), expected);
@@ -317,7 +317,7 @@ struct Pieces {
 }
 
 #[test]
-fn pieces_are_themselves_on_their_sides() {
+fn pieces_of_piecewise_functions_hold_in_their_intervals() {
     let m = Pieces { gap: 0.5, k: 80.0, least: -0.4, most: 0.6 };
     let spring_force = |x: f64, v: f64| -m.bias_forces(&[x].into(), &[v].into())[0];
     let valve_force = |v: f64| if v > 0.1 { 0.2 + v } else { 3.0 * v };
@@ -376,7 +376,7 @@ struct Winged {
 /// Stability and wind axes follow from the rotations of Etkin and Reid, *Dynamics of Flight* (1996), appendix
 /// A.7: by the sideslip about z, then by the angle of attack about y.
 #[test]
-fn stability_and_wind_axes_turn_by_their_angles() {
+fn stability_and_wind_axes_rotate_by_their_angles() {
     let (m, mut random) = (Winged {}, support::random::Random::new(5));
     for _ in 0..10 {
         let q = random.random_configuration(&m);
@@ -434,7 +434,7 @@ struct Buffers {
 
 /// A force between two points pushes them apart, does work only on their distance, and changes no momentum.
 #[test]
-fn forces_between_points_push_them_apart() {
+fn forces_between_points_repel_them() {
     let (m, mut random) = (Pushed {}, support::random::Random::new(3));
     assert_eq!(Pushed::INPUTS, ["piston"]);
     for _ in 0..10 {

@@ -100,7 +100,7 @@ struct Gripper {
     bend_thumb: Pin,
 }
 
-fn quadruped<T: Real>() -> Quadruped<T> {
+fn sample_quadruped<T: Real>() -> Quadruped<T> {
     let number = linkwork::nalgebra::convert::<f64, T>;
     Quadruped {
         trunk_mass: number(8.0),
@@ -114,12 +114,12 @@ fn quadruped<T: Real>() -> Quadruped<T> {
 
 /// Returns a random configuration, velocity and acceleration of the quadruped.
 fn random_state(random: &mut Random) -> (SVector<f64, 15>, [SVector<f64, 14>; 2]) {
-    (random.random_configuration(&quadruped()), [random.random_vector(2.0), random.random_vector(2.0)])
+    (random.random_configuration(&sample_quadruped()), [random.random_vector(2.0), random.random_vector(2.0)])
 }
 
 #[test]
-fn functions_agree() {
-    let (robot, mut random) = (quadruped::<f64>(), Random::new(7));
+fn limb_lanes_give_equal_functions() {
+    let (robot, mut random) = (sample_quadruped::<f64>(), Random::new(7));
     for _ in 0..20 {
         let (q, [v, a]) = random_state(&mut random);
         let (m, h) = (robot.mass_matrix(&q), robot.bias_forces(&q, &v));
@@ -150,8 +150,8 @@ fn difference_columns(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) ->
 }
 
 #[test]
-fn derivatives_are_limits_of_differences() {
-    let (robot, mut random) = (quadruped::<f64>(), Random::new(5));
+fn limb_derivatives_agree_with_finite_differences() {
+    let (robot, mut random) = (sample_quadruped::<f64>(), Random::new(5));
     let is_close =
         |x: &SMatrix<f64, 14, 14>, y: &SMatrix<f64, 14, 14>| (x - y).amax() < 1e-7 * (1.0 + y.amax());
     for _ in 0..5 {
@@ -187,10 +187,10 @@ fn derivatives_are_limits_of_differences() {
 }
 
 #[test]
-fn every_type_of_scalars_gives_the_same() {
+fn limb_lanes_agree_for_every_scalar_type() {
     let mut random = Random::new(11);
-    let (double, single) = (quadruped::<f64>(), quadruped::<f32>());
-    let lanes = quadruped::<Lanes<f64, 2>>();
+    let (double, single) = (sample_quadruped::<f64>(), sample_quadruped::<f32>());
+    let lanes = sample_quadruped::<Lanes<f64, 2>>();
     for _ in 0..20 {
         let (q, [v, a]) = random_state(&mut random);
         let (tau, m) = (double.inverse_dynamics(&q, &v, &a), double.mass_matrix(&q));
@@ -211,7 +211,7 @@ fn every_type_of_scalars_gives_the_same() {
 }
 
 #[test]
-fn three_fingers_agree() {
+fn three_finger_lanes_agree() {
     let (gripper, mut random) = (Gripper { mass: 0.3 }, Random::new(3));
     for _ in 0..20 {
         let mut vector = || SVector::<f32, 6>::from_fn(|_, _| random.uniform_number(1.5) as f32);
@@ -245,7 +245,7 @@ struct Carts {
 }
 
 #[test]
-fn a_spring_between_two_of_three_carts_pulls_those() {
+fn spring_between_two_of_three_carts_acts_on_those() {
     let (m, mut random) = (Carts {}, Random::new(5));
     for _ in 0..20 {
         let (q, v): (SVector<f64, 3>, _) = (random.random_vector(0.5), random.random_vector(1.0));
@@ -307,7 +307,7 @@ hand!(Hand,);
 hand!(PlainHand, , skip_passes = [frames, regroup, parallel, limbs]);
 
 #[test]
-fn elements_between_limbs_act_with_and_without_passes() {
+fn springs_between_limbs_act_with_and_without_passes() {
     support::compare::assert_same_dynamics(&Hand {}, &PlainHand {}, 20, 1e-11);
 }
 
@@ -347,6 +347,6 @@ noisy!(NoisyArm,);
 noisy!(NoisyPlainArm, , skip_passes = [frames, regroup, parallel]);
 
 #[test]
-fn noise_in_figures_costs_no_digits() {
+fn coefficient_noise_costs_no_accuracy() {
     support::compare::assert_same_dynamics(&NoisyArm {}, &NoisyPlainArm {}, 50, 1e-11);
 }

@@ -45,7 +45,7 @@ where
 }
 
 #[test]
-fn robots_have_the_limits_of_their_files() {
+fn robots_have_the_joint_limits_of_their_files() {
     let text_of_urdf = |file: &str| {
         std::fs::read_to_string(format!("{}/../models/urdf/{file}.urdf", env!("CARGO_MANIFEST_DIR"))).unwrap()
     };
@@ -58,7 +58,7 @@ fn robots_have_the_limits_of_their_files() {
 
 /// Checks that the arm has the limits of Franka Emika's *Robot and interface specifications* (2021).
 #[test]
-fn the_panda_has_the_limits_of_its_data_sheet() {
+fn panda_has_the_limits_of_its_data_sheet() {
     let lower = [-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0.0];
     let speed = [2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61, 0.2];
     assert_eq!(Panda.lower_limits(), vector_from_entries(lower));
@@ -76,7 +76,7 @@ struct Several;
 struct Ignored;
 
 #[test]
-fn files_say_limits_in_many_ways() {
+fn limits_are_read_in_every_file_format() {
     assert_eq!(Several::VELOCITIES, ["leader", "wheel", "endless", "rail", "free"]);
     // −2 q + 0.5 from −2 to 1.5 is q from −0.5 to 1.25; the follower's maximum velocity of 4 is 2 of the
     // leader's. The effort limit of the leader is its own.
@@ -89,7 +89,7 @@ fn files_say_limits_in_many_ways() {
 }
 
 #[test]
-fn free_joints_have_none() {
+fn free_joints_have_no_limits() {
     let q = SVector::<f64, 19>::from_fn(|k, _| k as f64 - 9.0);
     let clamped = Solo12.clamp_configuration(&q);
     assert_eq!(clamped.rows(0, 7), q.rows(0, 7));
@@ -131,7 +131,7 @@ fn clamp_to_limits<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
 }
 
 #[test]
-fn structs_declare_limits() {
+fn structs_declare_joint_limits() {
     let hand = Hand { reach: 1.0, strength: 4.0 };
     assert_eq!(hand.lower_limits(), vector_from_entries([-1.0, -NONE, 0.0]));
     assert_eq!(hand.upper_limits(), vector_from_entries([2.0, NONE, NONE]));
@@ -155,7 +155,7 @@ fn structs_declare_limits() {
     );
 }
 
-/// Slide that rotates as a function of time.
+/// Slide whose direction rotates as a function of time.
 #[mechanism]
 struct Turning {
     rate: f64,
@@ -170,18 +170,18 @@ struct Turning {
 }
 
 #[test]
-fn limits_do_not_depend_on_time() {
+fn joint_limits_are_independent_of_time() {
     let turning = Turning { rate: 2.0, bead_range: 0.25 };
     assert_eq!(turning.upper_limits()[0], 0.25);
     assert_eq!(at(&turning, 3.0).clamp_configuration(&vector_from_entries([-1.0]))[0], -0.25);
     assert_eq!(Mechanism::neutral(&turning)[0], 0.0);
 }
 
-/// Robot without inertia, of which only kinematics are generated.
+/// Robot without inertia, for which only kinematics are generated.
 #[mechanism(urdf = "data/urdf/limits.urdf", inertia = none)]
 struct Weightless;
 
 #[test]
-fn kinematics_have_limits() {
+fn kinematic_mechanisms_have_limits() {
     assert_eq!((Weightless.lower_limits()[5], Weightless.upper_limits()[5]), (0.1, 0.2));
 }

@@ -124,7 +124,7 @@ struct Zoo {
 }
 
 #[test]
-fn every_joint_and_load() {
+fn linearisation_covers_every_joint_and_load() {
     check_differences!(Zoo { mass: 1.1 }, Zoo, m => m);
 }
 
@@ -154,7 +154,7 @@ struct Placed {
 }
 
 #[test]
-fn placed_bodies() {
+fn linearisation_covers_placed_bodies() {
     check_differences!(Placed { length: 0.8 }, Placed, m => m);
 }
 
@@ -177,16 +177,16 @@ struct Driven {
 }
 
 #[test]
-fn driven_pivot() {
+fn linearisation_covers_a_driven_pivot() {
     check_differences!(Driven { amplitude: 0.2 }, Driven, m => at(&m, 0.4_f64), 0.4);
 }
 
-/// Panda arm whose second finger follows the first.
+/// Panda robot arm whose second finger follows the first.
 #[mechanism(urdf = "../models/urdf/panda.urdf", derivatives)]
 struct PandaMimic;
 
 #[test]
-fn coupled_joints() {
+fn linearisation_covers_coupled_joints() {
     check_differences!(PandaMimic, PandaMimic, m => m);
 }
 
@@ -213,7 +213,7 @@ struct Pendulum {
 }
 
 #[test]
-fn pendulum() {
+fn linearised_pendulum_has_its_natural_frequency() {
     let p = Pendulum { g: 9.81, mass: 0.7, length: 0.4, damping: 0.03 };
     for angle in [0.0, 0.4, 3.0] {
         let (a, b) = p.linearize(&SVector::from([angle]), &SVector::from([0.3]), &SVector::from([0.1]));
@@ -249,7 +249,7 @@ struct CartAndPole {
 /// Checks the linearisation of a cart with a pole in the upright position: `(m_c + m) ẍ − m l θ̈ = u` and
 /// `l θ̈ − ẍ = g θ`, with the angle counter-clockwise seen from +z.
 #[test]
-fn cart_and_pole() {
+fn linearised_cart_pole_has_the_textbook_matrices() {
     let c = CartAndPole { g: 9.81, cart_mass: 1.2, mass: 0.3, length: 0.5 };
     let zero = SVector::zeros();
     let (a, b) = c.linearize(&zero, &zero, &SVector::zeros());
@@ -290,7 +290,7 @@ struct Swing<T> {
 }
 
 #[test]
-fn scalar_types() {
+fn linearisation_agrees_for_all_scalar_types() {
     let (narrow, wide) = (Swing { g: 9.81_f32, length: 0.4 }, Swing { g: 9.81_f64, length: 0.4 });
     let mut random = Random::new(22);
     let q = random.random_configuration(&wide);

@@ -102,7 +102,7 @@ struct Bodies {
 /// ground's origin, have the kinetic energy `½ ω² J`. Rotations about two axes determine products of inertia,
 /// and the parallel-axis theorem gives the moment about another line.
 #[test]
-fn moments_of_inertia_are_those_of_energies() {
+fn moments_of_inertia_agree_with_kinetic_energies() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(15));
     let assert_close_values = |found: f64, expected: f64| {
         assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} {expected}")
@@ -131,7 +131,7 @@ fn moments_of_inertia_are_those_of_energies() {
 /// Checks that momenta and energies of the bodies add up to those of the whole mechanism. About its own
 /// centre of mass, a body has the angular momentum `I ω`.
 #[test]
-fn bodies_share_momentum_and_energy() {
+fn body_momenta_and_energies_add_up() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(5));
     for _ in 0..5 {
         let (q, v): (SVector<f64, 9>, SVector<f64, 8>) =
@@ -235,7 +235,7 @@ where
 }
 
 #[test]
-fn measurements_change_as_their_derivatives_say() {
+fn measurement_derivatives_agree_with_differences() {
     let carrier = Carrier { mass: 1.3, reach: 0.4 };
     check_output_derivatives(&carrier);
     check_output_derivatives(&carrier.prepare());
@@ -243,7 +243,7 @@ fn measurements_change_as_their_derivatives_say() {
 }
 
 #[test]
-fn measurements_change_with_parameters() {
+fn measurement_parameter_derivatives_agree_with_differences() {
     let mut random = Random::new(5);
     let m = Carrier { mass: 1.3, reach: 0.4 };
     let q = m.integrate(&Carrier::neutral(&m), &random.random_vector(1.0));
@@ -268,7 +268,7 @@ fn measurements_change_with_parameters() {
 }
 
 #[test]
-fn all_outputs_stand_in_one_vector() {
+fn output_vector_contains_all_outputs() {
     type All = [&'static str; 11];
     const NAMES: All = <Carrier as Outputs<11, 9, 2, 11>>::OUTPUTS;
     assert_eq!(NAMES[0], "gyroscope.x");
@@ -334,7 +334,7 @@ struct Loaded {
     of_grease: Scalar,
 }
 
-/// Two rods on a cart without force elements.
+/// Two rods on a cart, without force elements.
 #[mechanism(gravity = -9.81 * y)]
 struct Bare {
     #[body(mass = 2)]
@@ -355,7 +355,7 @@ struct Bare {
 /// forces with and without elements times the velocities. For each group of elements it is the power balance
 /// of the whole.
 #[test]
-fn elements_deliver_what_energies_gain() {
+fn element_powers_equal_energy_rates() {
     let mut random = Random::new(25);
     for _ in 0..20 {
         let (q, v): (SVector<f64, 6>, SVector<f64, 5>) =
@@ -396,7 +396,7 @@ struct Bracket {
 /// A mechanism without degrees of freedom has no derivatives with respect to velocities, and the wall
 /// supports the weight.
 #[test]
-fn what_is_welded_has_reactions_and_no_motion() {
+fn welded_mechanism_has_reactions_without_motion() {
     let none = SVector::<f64, 0>::zeros();
     let moment = Bracket {}.moment(&none, &none);
     assert!((moment - SVector::from([0.0, 0.0, 2.0 * 9.81 * 0.5])).amax() < 1e-12, "{moment}");

@@ -5,7 +5,7 @@ use linkwork::{Limits, Mechanism};
 use support::compare::assert_close;
 use support::table::Record;
 
-/// MuJoCo computes principal axes only to some 1e-11.
+/// Tolerance of results: MuJoCo computes principal axes only to about 1e-11.
 const TOLERANCE: f64 = 1e-10;
 /// Tolerance of forward dynamics, which includes the condition of the mass matrix.
 const FORWARD: f64 = 1e-9;
@@ -70,7 +70,7 @@ macro_rules! check_frames {
 }
 
 #[test]
-fn joints_shapes_classes_and_servos() {
+fn mjcf_joints_shapes_classes_and_servos_agree_with_mujoco() {
     assert_eq!(
         Everything::VELOCITIES,
         ["yaw", "pitch", "reach", "roll.wx", "roll.wy", "roll.wz", "body4_slide", "spin", "tilt"]
@@ -81,7 +81,7 @@ fn joints_shapes_classes_and_servos() {
 }
 
 #[test]
-fn bodies_that_fly_and_masses_that_are_scaled() {
+fn mjcf_flying_bodies_and_scaled_masses_agree_with_mujoco() {
     assert_eq!(FreeBodies::NU, 0);
     assert!((FreeBodies.total_mass() - 7.5).abs() > 1.0, "what stands on the ground moves nothing");
     check_robot(&FreeBodies, "free_bodies");
@@ -89,7 +89,7 @@ fn bodies_that_fly_and_masses_that_are_scaled() {
 }
 
 #[test]
-fn joints_that_follow_and_that_are_held() {
+fn mjcf_coupled_and_fixed_joints_agree_with_mujoco() {
     assert_eq!(Coupled::VELOCITIES, ["turn", "left"]);
     assert_eq!(Coupled::INPUTS, ["squeeze"]);
     check_robot(&Coupled, "coupled");
@@ -100,7 +100,7 @@ fn joints_that_follow_and_that_are_held() {
 /// the shorter side of one, and over pulleys. Actuators act on the tendons and on sites. Each surface
 /// deflects its tendon in some cases only.
 #[test]
-fn cables_and_sites() {
+fn mjcf_spatial_tendons_agree_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/cables.xml")]
     struct Cables;
 
@@ -111,7 +111,7 @@ fn cables_and_sites() {
 /// Motors, filters, integrals, cylinders and muscles with their states, and polynomial springs and dampers.
 /// The script `peers/drives.py` computed the reference values.
 #[test]
-fn drives_with_states() {
+fn mjcf_actuators_with_states_agree_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/drives.xml", derivatives)]
     #[derive(Clone, Copy)]
     struct Drives;
@@ -120,7 +120,7 @@ fn drives_with_states() {
     assert_eq!(Drives::INPUTS[14..], ["wound_pos", "wound_vel", "wound_ff", "wound_voltage"]);
     let drives = Drives::FILE;
     let whole = drives.extended();
-    let rates = |q: &SVector<f64, 6>, v: &SVector<f64, 18>, u: &SVector<f64, 18>| {
+    let state_rates = |q: &SVector<f64, 6>, v: &SVector<f64, 18>, u: &SVector<f64, 18>| {
         whole.forward_dynamics(0.0, q, v, &whole.generalized_forces(0.0, q, v, u))
     };
     for case in Record::load("mujoco/drives.json").records_with_key("cases") {
@@ -128,15 +128,15 @@ fn drives_with_states() {
         let v =
             SVector::from_column_slice(&[case.numbers_with_key("v"), case.numbers_with_key("x")].concat());
         let expected = [case.numbers_with_key("a"), case.numbers_with_key("rates")].concat();
-        assert_close("rates", rates(&q, &v, &u).as_slice(), &expected, FORWARD);
+        assert_close("rates", state_rates(&q, &v, &u).as_slice(), &expected, FORWARD);
 
         let linear = at(&whole, 0.0).linear_motion(&q, &v, &u);
         let step = SVector::<f64, 18>::from_fn(|k, _| (1.3 * k as f64).cos());
-        let displaced = |h: f64| {
+        let displaced_rates = |h: f64| {
             let q = whole.integrate(&q, &(step * h));
-            rates(&q, &(v + step * h), &(u + step * h))
+            state_rates(&q, &(v + step * h), &(u + step * h))
         };
-        let slope = (displaced(1e-6) - displaced(-1e-6)) / 2e-6;
+        let slope = (displaced_rates(1e-6) - displaced_rates(-1e-6)) / 2e-6;
         let found = (linear.by_q + linear.by_v + linear.by_u) * step;
         assert_close("derivatives", found.as_slice(), slope.as_slice(), 1e-6);
     }
@@ -144,7 +144,7 @@ fn drives_with_states() {
 
 /// The drag of a medium acts on each body as on the box with the same inertia.
 #[test]
-fn a_medium_brakes() {
+fn mjcf_fluid_drag_agrees_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/medium.xml")]
     struct Medium;
 
@@ -154,7 +154,7 @@ fn a_medium_brakes() {
 /// A connection constrains two points to coincide, a weld constrains two bodies. The out-of-plane conditions
 /// of a plane loop are redundant.
 #[test]
-fn loops() {
+fn mjcf_loops_agree_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/loops.xml")]
     struct Loops;
 
@@ -171,7 +171,7 @@ fn loops() {
 /// Equality constraints between coordinates, linear and polynomial, are satisfied. Actuators take their
 /// parameters from a default class that several actuator shortcuts define.
 #[test]
-fn conditions() {
+fn mjcf_coordinate_couplings_agree_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/conditions.xml")]
     struct Conditions;
 
@@ -197,7 +197,7 @@ fn conditions() {
 
 /// A contact can refer to shapes of the file: here a box stands on its corners next to a ball.
 #[test]
-fn geometry_for_contact() {
+fn contacts_refer_to_mjcf_shapes() {
     #[mechanism(mjcf = "data/mjcf/contacts.xml")]
     struct Standing {
         #[contact(collision(), ground.plane(z), friction = 0.5)]
@@ -218,7 +218,7 @@ fn geometry_for_contact() {
 /// Checks contacts that are read from the file: each shape collides with the plane of its world, with the
 /// larger of the two coefficients of friction.
 #[test]
-fn contacts_of_the_file() -> Result<(), linkwork::integrate::Error> {
+fn mjcf_contacts_are_read_from_the_file() -> Result<(), linkwork::integrate::Error> {
     #[mechanism(mjcf = "data/mjcf/contacts.xml", contacts = file)]
     struct Sliding;
 
@@ -233,7 +233,7 @@ fn contacts_of_the_file() -> Result<(), linkwork::integrate::Error> {
 
 /// Checks the options that change or omit parts of a file.
 #[test]
-fn options() {
+fn mjcf_options_change_or_omit_elements() {
     #[mechanism(mjcf = "data/mjcf/coupled.xml", mimic = independent, inputs = joints, passive = ignore)]
     struct Independent;
     #[mechanism(mjcf = "data/mjcf/coupled.xml", inputs = none, lock = ["left"], gravity = -3.7 * z)]
@@ -257,7 +257,7 @@ fn options() {
 /// Limits are in the file's units. The effort limit of a joint is the smaller of its motors' total and the
 /// joint's own.
 #[test]
-fn limits() {
+fn mjcf_limits_have_the_units_of_the_file() {
     let (lower, upper) = (Everything.lower_limits(), Everything.upper_limits());
     assert_close("angles", &[lower[0], upper[0]], &[-90.0, 120.0].map(f64::to_radians), 1e-15);
     assert_eq!([lower[2], upper[2], lower[1]], [-0.1, 0.4, f64::NEG_INFINITY]);

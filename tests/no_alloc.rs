@@ -52,7 +52,7 @@ fn heap_calls<T>(f: impl FnOnce() -> T) -> usize {
 }
 
 #[test]
-fn heap_calls_are_seen() {
+fn heap_allocations_are_detected() {
     assert_eq!(heap_calls(|| drop(black_box(vec![1]))), 2);
     assert_eq!(heap_calls(|| black_box([1])), 0);
 }
@@ -105,7 +105,7 @@ where
     assert_eq!(heap_calls(|| simulate_with_control().count()), 0, "control, samples and events");
 }
 
-/// Checks the functions that are not in the trait.
+/// Checks that kinematic functions outside the trait `Mechanism` allocate no memory.
 macro_rules! check_kinematics {
     ($mechanism:expr, $type:ident, $frame:literal) => {
         let m = $mechanism;
@@ -128,14 +128,14 @@ macro_rules! check_kinematics {
 }
 
 #[test]
-fn generated_functions() {
+fn generated_functions_do_not_allocate() {
     check_all_functions(&CartPole);
     check_all_functions(&Kinova);
     check_all_functions(&Panda);
     check_all_functions(&PandaMimic);
     check_all_functions(&Solo12);
     check_all_functions(&Humanoid);
-    check_all_functions(&workshop());
+    check_all_functions(&sample_workshop());
     check_all_functions(&Spacecraft {});
     check_all_functions(&OnScrew {});
     check_all_functions(&OnUniversal {});
@@ -144,16 +144,16 @@ fn generated_functions() {
     check_kinematics!(Panda, Panda, "panda_hand_tcp");
     check_kinematics!(Solo12, Solo12, "HR_FOOT");
     check_kinematics!(Humanoid, Humanoid, "r_wrist");
-    check_kinematics!(workshop(), Workshop, "tip");
+    check_kinematics!(sample_workshop(), Workshop, "tip");
     check_kinematics!(Spacecraft {}, Spacecraft, "weight");
 }
 
-/// Panda arm with generated derivatives of the dynamics.
+/// Panda robot arm with generated derivatives of the dynamics.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, derivatives)]
 struct PandaWithDerivatives;
 
 #[test]
-fn derivatives() {
+fn derivatives_do_not_allocate() {
     let m = PandaWithDerivatives;
     let q = &Random::new(15).random_configuration(&m);
     let (v, a, u) = (
@@ -168,12 +168,12 @@ fn derivatives() {
     assert_eq!(heap_calls(|| m.linearize(q, v, u)), 0, "linearize");
 }
 
-/// Quadruped Solo12 with generated batched functions.
+/// Solo12 quadruped robot with generated functions of several states.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch)]
 struct Solo12InLanes;
 
 #[test]
-fn batches() {
+fn batches_do_not_allocate() {
     const COUNT: usize = 13;
     let (m, mut random) = (Solo12InLanes, Random::new(19));
     let mut q = [0.0; 19 * COUNT];
@@ -208,7 +208,7 @@ struct Arm {
 }
 
 #[test]
-fn on_request() {
+fn optional_functions_do_not_allocate() {
     let m = Arm { g: 9.81, m: 0.7, l: 0.4 };
     assert_eq!(heap_calls(|| m.prepare()), 0, "prepare");
     check_all_functions(&m.prepare());
@@ -256,7 +256,7 @@ fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const
 
 /// Constrained mechanisms: a loop, a loop with a redundant condition, and two rolling wheels.
 #[test]
-fn constraints() {
+fn constrained_mechanisms_do_not_allocate() {
     let four_bar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
     check_constrained(&four_bar, &[0.7, 0.2, 1.8].into());
     let ring = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
@@ -280,7 +280,7 @@ struct Crate {
 }
 
 #[test]
-fn contacts() {
+fn contacts_do_not_allocate() {
     let m = Crate {};
     let (q, v) = ([0.0, 0.0, 0.055, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, -0.5, 0.0, 0.0, 0.0]);
     let simulate_contacts = || simulate(&m).from(q, v).duration(0.1);
@@ -296,8 +296,8 @@ fn contacts() {
         "event by event"
     );
     let (u, step) = (SVector::zeros(), TimeStepping::step(0.02));
-    let transition = || discrete::transition(&m, &step, 0.0, &at, &rates, &u).unwrap();
-    assert!(transition().v[2].abs() < 0.2 && heap_calls(transition) == 0, "transition");
+    let transition_at_state = || discrete::transition(&m, &step, 0.0, &at, &rates, &u).unwrap();
+    assert!(transition_at_state().v[2].abs() < 0.2 && heap_calls(transition_at_state) == 0, "transition");
     assert_eq!(heap_calls(|| contact::impact(&m, 0.0, &at, &rates)), 0, "impact");
     assert_eq!(heap_calls(|| contact::forces(&m, 0.0, &at, &rates, &SVector::zeros(), 1e-3)), 0, "forces");
 }

@@ -44,7 +44,7 @@ fn random_positive_definite<const N: usize>(random: &mut Random) -> SMatrix<f64,
 
 /// The recursion on blocks gives the results of Riccati's equation with dense matrices.
 #[test]
-fn blocks_obey_riccatis_equation() {
+fn block_recursion_satisfies_riccatis_equation() {
     let mut random = Random::new(1);
     let m = Flyer {};
     let q = m.integrate(&Flyer::neutral(&m), &random.random_vector(1.0));
@@ -56,16 +56,16 @@ fn blocks_obey_riccatis_equation() {
     let (s, c, r) =
         (random_positive_definite::<12>(&mut random), random_positive_definite::<14>(&mut random), 0.3);
     let (g, w) = (random.random_vector::<14>(1.0), random.random_vector::<12>(1.0));
-    let block =
+    let diagonal_block =
         |m: &SMatrix<f64, 14, 14>, i: usize, j: usize| m.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
     let mixed_block = |i: usize| c.fixed_view::<6, 2>(6 * i, 12).into_owned();
     let cost = Quadratic {
         q: g.fixed_rows::<6>(0).into_owned(),
         v: g.fixed_rows::<6>(6).into_owned(),
         u: g.fixed_rows::<2>(12).into_owned(),
-        qq: block(&c, 0, 0),
-        qv: block(&c, 0, 1),
-        vv: block(&c, 1, 1),
+        qq: diagonal_block(&c, 0, 0),
+        qv: diagonal_block(&c, 0, 1),
+        vv: diagonal_block(&c, 1, 1),
         qu: mixed_block(0),
         vu: mixed_block(1),
         uu: c.fixed_view::<2, 2>(12, 12).into_owned(),
@@ -125,7 +125,7 @@ struct Flapper {
 /// Second-order costs of values that depend on state and inputs are `Jᵀ g` and `Jᵀ H J`. The blocks equal the
 /// product of the whole matrices, also where half of the values have zero gradient and curvature.
 #[test]
-fn costs_of_numbers_go_through_their_derivatives() {
+fn cost_derivatives_follow_the_chain_rule() {
     let mut random = Random::new(7);
     let mut numbers = |n: usize| (0..n).map(|_| random.uniform_number(1.0)).collect::<Vec<f64>>();
     let jacobian = SMatrix::<f64, 6, 8>::from_column_slice(&numbers(48));
@@ -167,7 +167,7 @@ fn costs_of_numbers_go_through_their_derivatives() {
 }
 
 #[test]
-fn steps_that_are_chained_are_steps() {
+fn chained_steps_equal_one_long_step() {
     let (mut random, m) = (Random::new(3), Flapper {});
     let q = m.integrate(&Flapper::neutral(&m), &random.random_vector(1.0));
     let (v, u) = (random.random_vector(1.0), random.random_vector(3.0));
@@ -195,7 +195,7 @@ fn steps_that_are_chained_are_steps() {
 }
 
 #[test]
-fn costs_that_are_not_convex_are_errors() {
+fn nonconvex_costs_are_errors() {
     let step = discrete::transition(
         &Pendubot {},
         &Rk4::step(0.01),
@@ -337,7 +337,7 @@ fn dynamic_programming_converges_quadratically() {
 /// Checks that within limits the change of two inputs is the best of nine candidates, each input free or at
 /// one of its limits. The cost-to-go predicts the costs of a displaced state under the policy.
 #[test]
-fn limits_bound_the_change_of_inputs() {
+fn input_limits_bound_the_optimal_change() {
     let mut random = Random::new(5);
     let m = Flyer {};
     let q = Flyer::neutral(&m);
@@ -394,7 +394,7 @@ fn limits_bound_the_change_of_inputs() {
 /// At the end of iterations with a weak motor, the gradient of the costs is zero where the torque is within
 /// its limits, and presses it against the limit elsewhere (conditions of Karush, Kuhn and Tucker).
 #[test]
-fn a_weak_motor_is_used_at_its_limits() {
+fn weak_motor_reaches_its_torque_limits() {
     let m = Pendubot {};
     let problem = Problem { method: SemiImplicitEuler::step(0.02), goal: [0.9, 0.4].into() };
     let reach = SVector::from([2.0]);

@@ -82,7 +82,7 @@ macro_rules! check {
 }
 
 #[test]
-fn packed_is_whole() {
+fn packed_mass_matrix_equals_the_full_matrix() {
     // The base with itself has a mass that is the same in all directions, a skew-symmetric first moment and
     // an inertia. Each joint is coupled to the base; the rotation of a hip about x causes no force along x.
     // In each leg, each joint is coupled to the joints above it.

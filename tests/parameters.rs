@@ -22,13 +22,13 @@ struct Everything;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AllOfIt;
 
-/// Quadruped whose inertial parameters are parameters of the struct.
+/// Quadruped robot whose inertial parameters are fields of the struct.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, parameters = inertial, prepare)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadruped;
 
 #[test]
-fn with_the_figures_of_the_file_it_is_the_robot_of_the_file() {
+fn parametric_robot_with_file_values_equals_the_file_robot() {
     let (plain, robot) = (Everything, AllOfIt::FILE);
     assert_eq!(robot.validate(), Ok(()));
     assert_eq!(AllOfIt::from_file(), robot);
@@ -63,7 +63,7 @@ fn with_the_figures_of_the_file_it_is_the_robot_of_the_file() {
     assert_same_dynamics(&quadruped.prepare(), &linkwork_models::Solo12, 10, TOLERANCE);
 }
 
-/// Arm with the constant values of two different files.
+/// Arm with the constant values of the file before its numbers are changed.
 #[mechanism(urdf = "data/urdf/arm_before.urdf")]
 struct Before;
 #[mechanism(urdf = "data/urdf/arm_after.urdf")]
@@ -81,12 +81,12 @@ struct Arm<T> {
     tool: Particle,
 }
 
-/// Parameters with the default values of the second file.
+/// Parameters of the arm with the default values of another file.
 #[mechanism(urdf = "data/urdf/arm_after.urdf", parameters = [inertial, placement, damping, friction])]
 #[derive(Clone, Copy)]
 struct Figures;
 
-fn arm_of(f: &Figures) -> Arm<f64> {
+fn arm_with_parameters(f: &Figures) -> Arm<f64> {
     Arm {
         load: 0.0,
         upper_arm: f.upper_arm,
@@ -105,10 +105,10 @@ fn arm_of(f: &Figures) -> Arm<f64> {
 }
 
 #[test]
-fn with_other_figures_it_is_the_robot_of_another_file() {
+fn parametric_robot_with_new_values_equals_the_new_file_robot() {
     let before = Arm::<f64>::from_file(0.0);
     assert_same_dynamics(&before, &Before, 20, TOLERANCE);
-    let after = arm_of(&Figures::FILE);
+    let after = arm_with_parameters(&Figures::FILE);
     assert_same_dynamics(&after, &After, 20, TOLERANCE);
     assert_ne!(before, after);
     // The parameters have the values that the file states; the inertia of the file is in other axes.
@@ -135,7 +135,7 @@ fn with_other_figures_it_is_the_robot_of_another_file() {
 }
 
 #[test]
-fn parameters_have_the_names_by_which_they_are_written() {
+fn mass_parameters_have_readable_names() {
     assert_eq!(Arm::<f64>::LINKS, ["upper-arm", "fore", "type"]);
     let parameter_index = |name| linkwork::index_of(&Arm::<f64>::PARAMETERS, name).unwrap();
     assert_eq!(parameter_index("load"), 0);
@@ -159,7 +159,7 @@ fn parameters_have_the_names_by_which_they_are_written() {
 }
 
 #[test]
-fn lanes_carry_different_parameters() {
+fn lanes_may_have_different_parameters() {
     let mut robots = Arm::<f64x4>::from_file(Lanes([0.0, 0.1, 0.2, 0.3]));
     robots.fore.mass = Lanes([2.0, 2.5, 3.0, 3.5]);
     robots.elbow_friction = Lanes([0.0, 0.1, 0.2, 0.3]);
@@ -178,7 +178,7 @@ fn lanes_carry_different_parameters() {
 }
 
 #[test]
-fn what_no_body_has_is_named() {
+fn physically_impossible_parameters_are_reported() {
     let sound = Arm::<f64>::from_file(1.0);
     assert_eq!(sound.validate(), Ok(()));
     let fault_after_change = |change: fn(&mut Arm<f64>)| {
@@ -241,7 +241,7 @@ fn other_inertial(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
 
 /// Checks that two robots have the same inverse dynamics in random motions. They may differ only in
 /// parameters without effect.
-fn same_torques(one: &Panda, other: &Panda) {
+fn check_same_torques(one: &Panda, other: &Panda) {
     let mut random = Random::new(2);
     for _ in 0..20 {
         let [q, v, a] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(3.0)];
@@ -251,7 +251,7 @@ fn same_torques(one: &Panda, other: &Panda) {
 }
 
 #[test]
-fn identified_base_parameters_are_put_back() {
+fn identified_base_parameters_convert_to_mass_parameters() {
     let mut random = Random::new(17);
     for _ in 0..3 {
         let mut truth = Panda::FILE;
@@ -263,7 +263,7 @@ fn identified_base_parameters_are_put_back() {
         assert_eq!(found.validate(), Ok(()));
         let again = found.base_parameters(&found.standard_parameters());
         assert_similar("base parameters", again.as_slice(), base.as_slice(), 1e-9);
-        same_torques(&found, &truth);
+        check_same_torques(&found, &truth);
         // The bodies differ: combinations of parameters without effect on the torques cannot be identified.
         assert_ne!(found, truth);
         // Setting the same base parameters again does not change the result.
@@ -277,11 +277,11 @@ fn identified_base_parameters_are_put_back() {
     // physical consistency.
     let mut same = Panda::FILE;
     same.set_base_parameters(&same.base_parameters(&same.standard_parameters())).unwrap();
-    same_torques(&same, &Panda::FILE);
+    check_same_torques(&same, &Panda::FILE);
 }
 
 #[test]
-fn noise_gives_bodies_all_the_same() {
+fn noisy_identification_yields_physical_bodies() {
     let mut random = Random::new(23);
     let file = Panda::FILE;
     let base = file.base_parameters(&file.standard_parameters());
@@ -302,7 +302,7 @@ fn noise_gives_bodies_all_the_same() {
 }
 
 #[test]
-fn what_no_bodies_have_is_an_error_and_changes_nothing() {
+fn infeasible_identification_is_an_error_without_changes() {
     let file = Panda::FILE;
     let base = file.base_parameters(&file.standard_parameters());
     let mut found = file;
@@ -340,14 +340,14 @@ macro_rules! one_link {
 }
 
 #[test]
-fn one_link_takes_what_reaches_it() {
+fn base_parameters_of_a_load_are_written_to_one_link() {
     one_link!(Wrist, f64, 1e-6);
     one_link!(SingleWrist, f32, 2e-2);
 }
 
 /// Frames of links whose placement is a parameter are at the placement that the parameter states.
 #[test]
-fn calibration_moves_frames() {
+fn calibrated_placements_move_frames() {
     let mut arm = Arm::<f64>::from_file(0.0);
     let q = [0.0; 3].into();
     let position_of_fore =

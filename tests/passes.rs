@@ -17,7 +17,7 @@ use linkwork_compiler::mechanism::{Model, Quantity};
 use linkwork_compiler::passes::{Passes, Variant, in_common_axes, link_sizes, model_variants};
 use linkwork_compiler::syntax::Requests;
 use linkwork_compiler::vectorise::{Limbs, find_limb_groups};
-use linkwork_compiler::{compile_with, derive_with, read_source};
+use linkwork_compiler::{compile_with, derive_with_options, read_source};
 use proptest::prelude::*;
 use random_limbs::random_creatures;
 use random_robot::random_robots;
@@ -26,7 +26,7 @@ use std::path::Path;
 use support::model::{random_symbol_values, try_model, with_model};
 use support::random::property_test_config;
 
-/// Tolerance of results, relative to the largest entry.
+/// Tolerance between results with and without passes, relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
 
 const CHOICES: [Passes; 4] = [
@@ -84,7 +84,7 @@ fn frame_placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>
 /// Checks that every variant of a model has the model's functions, and that forward dynamics inverts inverse
 /// dynamics. Variants with common axes are compared only in functions that do not depend on the axes of
 /// links.
-fn check_forms(model: &Model<'_>, seed: u64) {
+fn check_variants(model: &Model<'_>, seed: u64) {
     let at = random_symbol_values(model, seed);
     let joints = kinematics::joints_of_model(model);
     let old: Vec<_> =
@@ -95,7 +95,7 @@ fn check_forms(model: &Model<'_>, seed: u64) {
         {
             assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
         }
-        check_forward(variant, seed);
+        check_forward_dynamics(variant, seed);
     };
     for passes in CHOICES {
         let variants = model_variants(model, passes);
@@ -104,7 +104,7 @@ fn check_forms(model: &Model<'_>, seed: u64) {
     }
 }
 
-fn check_forward(variant: &Variant<'_>, seed: u64) {
+fn check_forward_dynamics(variant: &Variant<'_>, seed: u64) {
     let (model, joints) = (&variant.model, &variant.joints);
     let at = random_symbol_values(model, seed);
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
@@ -115,7 +115,7 @@ fn check_forward(variant: &Variant<'_>, seed: u64) {
     let mass = crba::mass_matrix(model, joints);
     let solved = eval(&ldl::solve_symmetric(mass, r.clone(), joints), &at);
     assert_near("factorisation", seed, 10.0 * TOLERANCE, &solved, &expected);
-    let wrenches = rnea::wrenches(model, joints, &v, None);
+    let wrenches = rnea::link_wrenches(model, joints, &v, None);
     for articulated in
         [aba::accelerations(model, joints, &r), aba::forward_dynamics(model, joints, wrenches, &tau)]
     {
@@ -163,13 +163,14 @@ fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Outp
     for seed in 0..3 {
         let at = random_symbol_values(model, seed);
         let numbers = prepared.numbers.interpret_program(&at);
-        let of_state = |s| match Quantity::from_symbol(s) {
+        let value_with_prepared = |s| match Quantity::from_symbol(s) {
             Quantity::Prepared(k) => numbers[k],
             Quantity::Parameter(_) => f64::NAN,
             _ => at(s),
         };
         for (new, old) in prepared.functions.iter().zip(&old.functions) {
-            let (a, b) = (new.program.interpret_program(&of_state), old.program.interpret_program(&at));
+            let (a, b) =
+                (new.program.interpret_program(&value_with_prepared), old.program.interpret_program(&at));
             assert_near(&format!("{name}: {}, prepared", new.name), seed, tolerance, &a, &b);
         }
     }
@@ -190,7 +191,7 @@ fn check_robot(name: &str, options: &str) {
 }
 
 #[test]
-fn robots_move_as_without_passes() {
+fn model_passes_preserve_robot_dynamics() {
     for (name, options) in [
         ("cartpole", ""),
         ("double_pendulum", ""),
@@ -207,7 +208,7 @@ fn robots_move_as_without_passes() {
 
 /// Checks that every variant of a model with identical limbs has the model's functions when the limbs are
 /// lanes. Forces between limbs may have different expressions in each limb; then no lanes exist.
-fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
+fn check_limb_variants(model: &Model<'_>, interacts: bool, seed: u64) {
     const TOLERANCE: f64 = 1e-11;
     let at = random_symbol_values(model, seed);
     let joints = &kinematics::joints_of_model(model);
@@ -216,7 +217,7 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     let bias = eval(&rnea::inverse_dynamics(model, joints, &v, None), &at);
     let tau = eval(&rnea::inverse_dynamics(model, joints, &v, Some(&a)), &at);
     let expected = eval(&a, &at);
-    let with_tau = |s| match Quantity::from_symbol(s) {
+    let value_with_tau = |s| match Quantity::from_symbol(s) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
@@ -249,7 +250,7 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
             assert_near("mass matrix", seed, TOLERANCE, &found, &mass);
         }
         let found = limb_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
-        assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &with_tau), &expected);
+        assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &value_with_tau), &expected);
         // The lowered program has the same results.
         let program = lower(&limb_lanes::inverse_dynamics(&limbs, true));
         assert_near("program", seed, TOLERANCE, &program.interpret_program(&at), &tau);
@@ -260,30 +261,30 @@ proptest! {
     #![proptest_config(property_test_config(150))]
 
     #[test]
-    fn alike_limbs_as_lanes_are_the_same_mechanism(creature in random_creatures(3), seed in 0_u64..1000) {
+    fn identical_limbs_as_lanes_preserve_the_dynamics(creature in random_creatures(3), seed in 0_u64..1000) {
         let source = creature.creature_source();
         let interacts = source.1.contains(" between");
         // Models with an element between a limb and itself are rejected.
-        let refused = try_model(&source, |_, model| check_limbs(model, interacts, seed)).is_err();
+        let refused = try_model(&source, |_, model| check_limb_variants(model, interacts, seed)).is_err();
         prop_assert!(!refused || interacts);
     }
 
     #[test]
-    fn noise_costs_no_digits(robot in random_robots(8), seed in 0_u64..1000) {
-        with_model(&robot.robot_source(), |_, model| check_digits(model, seed));
+    fn noisy_coefficients_cost_no_accuracy_in_passes(robot in random_robots(8), seed in 0_u64..1000) {
+        with_model(&robot.robot_source(), |_, model| check_accuracy_of_variants(model, seed));
     }
 }
 
 /// Checks that every variant of a model has the same functions up to rounding, and that no length of a
 /// variant exceeds those of the model by more than a factor of 10.
-fn check_digits(model: &Model<'_>, seed: u64) {
+fn check_accuracy_of_variants(model: &Model<'_>, seed: u64) {
     let at = random_symbol_values(model, seed);
     let joints = kinematics::joints_of_model(model);
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let mass = eval(&crba::mass_matrix(model, &joints).concat(), &at);
     let tau = eval(&rnea::inverse_dynamics(model, &joints, &v, Some(&a)), &at);
     let expected = eval(&a, &at);
-    let with_tau = |s| match Quantity::from_symbol(s) {
+    let value_with_tau = |s| match Quantity::from_symbol(s) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
@@ -291,7 +292,8 @@ fn check_digits(model: &Model<'_>, seed: u64) {
     let acceleration_error = |variant: &Model<'_>, joints: &[Joint<'_>]| -> f64 {
         let h = rnea::inverse_dynamics(variant, joints, &v, None);
         let rest = h.iter().enumerate().map(|(k, h)| force_symbol(k) - *h).collect();
-        let found = eval(&ldl::solve_symmetric(crba::mass_matrix(variant, joints), rest, joints), &with_tau);
+        let found =
+            eval(&ldl::solve_symmetric(crba::mass_matrix(variant, joints), rest, joints), &value_with_tau);
         found.iter().zip(&expected).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
     let (n, own) = (model.nv(), acceleration_error(model, &joints));
@@ -329,13 +331,13 @@ proptest! {
     #![proptest_config(property_test_config(40))]
 
     #[test]
-    fn forms_are_the_same_mechanism(tree in random_trees(4), seed in 0_u64..1000) {
-        with_model(&tree.tree_source(), |_, model| check_forms(model, seed));
+    fn passes_preserve_the_dynamics_of_all_forms(tree in random_trees(4), seed in 0_u64..1000) {
+        with_model(&tree.tree_source(), |_, model| check_variants(model, seed));
     }
 
     /// Robots of pins and sleeves, most of them parallel to the joint before.
     #[test]
-    fn parallel_joints_are_the_same_in_common_axes(
+    fn common_axes_of_parallel_joints_preserve_the_dynamics(
         joints in prop::collection::vec((0..3_usize, 0..4_usize, any::<bool>(), -1.0..1.0_f64), 2..6),
         seed in 0_u64..1000,
     ) {
@@ -361,17 +363,17 @@ proptest! {
             );
         }
         let item = format!("pub struct Arm {{ {fields} }}");
-        with_model(&("gravity = [1, 2, -9]".to_string(), item), |_, model| check_forms(model, seed));
+        with_model(&("gravity = [1, 2, -9]".to_string(), item), |_, model| check_variants(model, seed));
     }
 
     #[test]
-    fn programs_are_the_same_functions(tree in random_trees(6), seed in 0_u64..1000) {
+    fn program_passes_preserve_functions(tree in random_trees(6), seed in 0_u64..1000) {
         let _ = seed;
         with_model(&tree.tree_source(), |_, model| {
             let mut cx = Diagnostics::new();
             let prepare = Requests { prepare: true, ..Requests::default() };
-            let new = derive_with(model, prepare, Passes::default(), &mut cx);
-            let old = derive_with(model, Requests::default(), OFF, &mut cx);
+            let new = derive_with_options(model, prepare, Passes::default(), &mut cx);
+            let old = derive_with_options(model, Requests::default(), OFF, &mut cx);
             check_programs("tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8);
         });
     }
@@ -380,7 +382,7 @@ proptest! {
 /// No rotation is computed between links whose pins are parallel; constant rotations are merged. Links whose
 /// axes are not parallel are unchanged.
 #[test]
-fn parallel_joints_share_their_axes() {
+fn parallel_joints_need_no_rotations() {
     let arm_with_axes = |axes: [&str; 3]| {
         let [a, b, c] = axes;
         let body = "#[body(mass = 1.5, com = [0.1, 0.2, 0.3], inertia = cuboid(1.5, 0.3, 0.2, 0.1))]";
@@ -413,7 +415,7 @@ fn parallel_joints_share_their_axes() {
 /// Checks that nearly zero lengths between axes, as exporters write them, are not multiplied by large masses
 /// and lose no digits. Nearly parallel axes must not place a frame far away.
 #[test]
-fn figures_next_to_zero_cost_no_digits() {
+fn nearly_zero_lengths_cost_no_accuracy() {
     let mut fields = String::new();
     for k in 0..6 {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}", k - 1) };

@@ -69,7 +69,7 @@ fn arm_with_parameters<T: Real>() -> Arm<T> {
 }
 
 #[test]
-fn a_prepared_mechanism_is_the_mechanism() {
+fn prepared_mechanism_equals_the_mechanism() {
     let arm = arm_with_parameters::<f64>();
     let prepared: PreparedArm<f64> = arm.prepare();
     assert_same_dynamics(&prepared, &arm, 20, TOLERANCE);
@@ -126,7 +126,7 @@ fn a_prepared_mechanism_is_the_mechanism() {
 }
 
 #[test]
-fn in_single_precision() {
+fn prepared_single_precision_equals_the_mechanism() {
     let (single, double) = (arm_with_parameters::<f32>().prepare(), arm_with_parameters::<f64>());
     let q = double.neutral();
     let mass = single.mass_matrix(&q.cast::<f32>()).cast::<f64>();
@@ -146,7 +146,7 @@ struct LoadedPanda {
 }
 
 #[test]
-fn robot_with_a_load() {
+fn prepared_loaded_robot_equals_the_robot() {
     let arm = LoadedPanda { load: 1.7, stiffness: 12.0 };
     assert_same_dynamics(&arm.prepare(), &arm, 20, TOLERANCE);
     // Prepared values do not follow later changes of the parameters.
@@ -170,7 +170,7 @@ struct Hoop {
 }
 
 #[test]
-fn driven_in_time() {
+fn prepared_driven_mechanism_equals_the_mechanism() {
     let hoop = Hoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
     let prepared = hoop.prepare();
     for t in [0.0, 0.4] {
@@ -182,7 +182,7 @@ fn driven_in_time() {
     assert!((end_coordinate(one) - end_coordinate(other)).abs() < 1e-9);
 }
 
-/// Four-bar linkage with all options of generated functions.
+/// Four-bar linkage with all options that request functions.
 #[mechanism(
     gravity = -g * y,
     prepare,
@@ -214,7 +214,7 @@ struct FourBars {
 }
 
 #[test]
-fn with_a_closed_loop() {
+fn prepared_closed_loop_equals_the_loop() {
     let bars = FourBars { g: 9.81, m: 0.7, l: 0.4 };
     let prepared = bars.prepare();
     // With the crank upright, the loop is a kite: its other corner is as far from the crank's end as from the
@@ -334,7 +334,7 @@ fn chain_source(n: usize, axes: &[&str], parameters: bool) -> String {
 /// Checks that prepared functions need at most ten per cent more operations than a mechanism with constants,
 /// and exactly the stated counts. Where rods are along an axis, two lengths merge into one.
 #[test]
-fn parameters_cost_next_to_nothing() {
+fn prepared_parameters_add_few_operations() {
     for (name, numbers, parameters, expected) in [
         ("puma, masses", puma_source(false, false), puma_source(false, true), [470, 412, 245, 799]),
         ("puma, lengths too", puma_source(false, false), puma_source(true, true), [470, 412, 245, 799]),

@@ -151,22 +151,22 @@ macro_rules! robot {
             use super::*;
 
             #[test]
-            fn dynamics() {
+            fn robot_dynamics_agree_with_pinocchio() {
                 check_dynamics(&$robot, $name);
             }
 
             #[test]
-            fn inputs() {
+            fn robot_inputs_agree_with_pinocchio() {
                 check_inputs(&$robot, $name);
             }
 
             #[test]
-            fn frames() {
+            fn robot_frames_agree_with_pinocchio() {
                 check_frames!($robot, $name);
             }
 
             #[test]
-            fn kinematics() {
+            fn robot_kinematics_agree_with_pinocchio() {
                 check_kinematics!($robot, $name, $last);
             }
         }
@@ -189,7 +189,7 @@ mod panda_mimic {
     use super::*;
 
     #[test]
-    fn dynamics() {
+    fn mimic_panda_dynamics_agree_with_pinocchio() {
         let robot = PandaMimic;
         for (i, case) in reference_table("panda_mimic").records_with_key("cases").iter().enumerate() {
             let label_of_case = |what: &str| format!("panda with mimic, case {i}: {what}");
@@ -221,19 +221,19 @@ mod panda_mimic {
     }
 
     #[test]
-    fn inputs() {
+    fn mimic_panda_inputs_agree_with_pinocchio() {
         check_inputs(&PandaMimic, "panda_mimic");
     }
 
     #[test]
-    fn frames() {
+    fn mimic_panda_frames_agree_with_pinocchio() {
         check_frames!(PandaMimic, "panda_mimic");
     }
 
     /// The mimic joint gives the dynamics of an independent second finger that moves identically to the
     /// first.
     #[test]
-    fn following_is_moving_alike() {
+    fn mimic_joint_equals_an_independent_identical_finger() {
         for case in reference_table("panda_mimic").records_with_key("cases") {
             let (q, v) = (case.vector_with_key::<8>("q"), case.vector_with_key::<8>("v"));
             let (q_free, v_free) = (q.insert_row(8, q[7]), v.insert_row(8, v[7]));
@@ -257,8 +257,8 @@ fn locked_joints_stay_at_zero() {
     for case in reference_table("panda").records_with_key("cases") {
         let [q, v, a] =
             ["q", "v", "a"].map(|key| case.vector_with_key::<9>(key).fixed_rows::<7>(0).into_owned());
-        let with_fingers = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
-        let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| with_fingers(x)[i]));
+        let add_finger_entries = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
+        let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| add_finger_entries(x)[i]));
 
         let mass_matrix = Panda.mass_matrix(&q_free).fixed_view::<7, 7>(0, 0).into_owned();
         assert_close("mass matrix", PandaArm.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), DYNAMICS);

@@ -74,7 +74,12 @@ fn proportional_derivative_law<const L: usize, const N: usize>(
     SVector::from_fn(|i, _| (rest - q[i]) * 20.0 - v[i] * 3.0 + t)
 }
 
-fn one_law<const N: usize>(k: usize, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+fn command_of_state<const N: usize>(
+    k: usize,
+    t: f64,
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+) -> SVector<f64, N> {
     proportional_derivative_law::<1, N>(k, Lanes([t]), &q.map(|x| Lanes([x])), &v.map(|x| Lanes([x])))
         .map(|x| x.0[0])
 }
@@ -85,7 +90,8 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
         let (q, v) = (state_column::<6>(&states.q, count, k), state_column::<6>(&states.v, count, k));
         let mut state = State { t: 0.5, q, v };
         let mut memory = method.memory();
-        let inputs = ContinuousInputs(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| one_law(k, t, q, v));
+        let inputs =
+            ContinuousInputs(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| command_of_state(k, t, q, v));
         let mut system: System<'_, _, _, 6> = System::new(&Ur5, inputs);
         for _ in 0..steps {
             state = method.advance(&mut memory, &mut system, &state, None, false).expect("finite").end;
@@ -98,8 +104,8 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
 }
 
 #[test]
-fn a_rollout_is_that_of_the_integrator_state_by_state() {
-    fn check_method<S: Lockstep<f64> + Copy>(method: S) {
+fn rollout_equals_integrator_runs_of_each_state() {
+    fn check_lockstep_method<S: Lockstep<f64> + Copy>(method: S) {
         for count in [1, 5, 8, 19] {
             let mut expected = States::new(&Ur5, count);
             one_by_one(method, 50, &mut expected, count);
@@ -120,12 +126,12 @@ fn a_rollout_is_that_of_the_integrator_state_by_state() {
             compare_bits(&eight, "eight lanes");
         }
     }
-    check_method(Rk4::step(2e-3));
-    check_method(SemiImplicitEuler::step(1e-3));
+    check_lockstep_method(Rk4::step(2e-3));
+    check_lockstep_method(SemiImplicitEuler::step(1e-3));
 }
 
 #[test]
-fn threads_change_nothing() {
+fn thread_count_does_not_change_rollouts() {
     let (count, rollout) = (203, Rollout::new(Rk4::step(2e-3), 20));
     let mut expected = States::new(&Ur5, count);
     Ur5.lanes::<8>()
@@ -158,7 +164,7 @@ fn threads_change_nothing() {
 }
 
 #[test]
-fn a_free_rollout_keeps_its_energy() {
+fn free_rollout_conserves_energy() {
     let count = 20;
     let lanes = Solo12.lanes::<8>();
     let mut states = States::new(&Solo12, count);
@@ -185,7 +191,7 @@ fn a_free_rollout_keeps_its_energy() {
 }
 
 #[test]
-fn arrays_of_states_are_evaluated_state_by_state() {
+fn state_arrays_are_evaluated_state_by_state() {
     for count in [1, 3, 8, 21] {
         let states = States::new(&Solo12, count);
         let a: Vec<f64> = Random::new(43).random_vector::<{ 18 * 21 }>(3.0).as_slice()[..18 * count].to_vec();
@@ -215,7 +221,7 @@ fn arrays_of_states_are_evaluated_state_by_state() {
 }
 
 #[test]
-fn a_state_that_fails_leaves_the_others_alone() {
+fn failing_state_does_not_affect_other_states() {
     let count = 11;
     let rollout = Rollout::new(Rk4::step(1e-2), 60);
     let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
@@ -245,7 +251,7 @@ fn a_state_that_fails_leaves_the_others_alone() {
 }
 
 #[test]
-fn what_does_not_fit_is_an_error() {
+fn mismatched_array_sizes_are_errors() {
     let lanes = Ur5.lanes::<8>();
     let [q, v] = [vec![0.0; 6 * 5], vec![0.0; 6 * 4]];
     let mut tau = vec![0.0; 6 * 5];
@@ -274,7 +280,7 @@ fn what_does_not_fit_is_an_error() {
 }
 
 #[test]
-fn a_rollout_can_be_cancelled() {
+fn rollout_can_be_cancelled() {
     let (count, rollout) = (40, Rollout::new(Rk4::step(2e-3), 5));
     let (start, mut all) = (States::new(&Ur5, count), States::new(&Ur5, count));
     let lanes = Ur5.lanes::<8>();

@@ -8,7 +8,7 @@ use support::random::Random;
 const TOLERANCE: f64 = 1e-12;
 
 #[test]
-fn the_same_arm_as_sdf_and_as_urdf() {
+fn sdf_arm_equals_urdf_arm() {
     #[mechanism(sdf = "data/sdf/arm.sdf")]
     struct Sdf;
     #[mechanism(urdf = "data/sdf/arm.urdf")]
@@ -33,7 +33,7 @@ fn the_same_arm_as_sdf_and_as_urdf() {
 /// Fixed joints between links with mass, frames relative to frames, joints relative to frames, links relative
 /// to joints, and nested models give the tree of the reference.
 #[test]
-fn the_same_tree_of_nested_frames() {
+fn sdf_tree_of_nested_frames_equals_the_urdf_tree() {
     #[mechanism(sdf = "data/sdf/tree.sdf")]
     struct Sdf;
     #[mechanism(urdf = "data/sdf/tree.urdf")]
@@ -61,7 +61,7 @@ fn the_same_tree_of_nested_frames() {
 
 /// A joint with two axes is two joints with a massless link between them; a screw joint rotates and advances.
 #[test]
-fn other_joints() {
+fn two_axis_and_screw_joints_of_sdf_are_converted() {
     #[mechanism(sdf = "data/sdf/joints.sdf", inputs = none)]
     struct File;
     #[mechanism(gravity = 0.1 * y - 9.8 * z)]
@@ -95,7 +95,7 @@ fn other_joints() {
 /// A joint to a link that already has a parent closes a loop. Joints connect frames on links, and frames have
 /// placements.
 #[test]
-fn linkage() {
+fn sdf_joint_to_a_second_parent_closes_a_loop() {
     #[mechanism(sdf = "data/sdf/linkage.sdf")]
     struct File;
     #[mechanism(gravity = -9.81 * z)]
@@ -146,7 +146,7 @@ fn linkage() {
 
 /// A contact can refer to shapes of the file: a rod and a ball, in the pose of the file.
 #[test]
-fn geometry_for_contact() {
+fn contacts_refer_to_sdf_shapes() {
     #[mechanism(sdf = "data/sdf/linkage.sdf")]
     struct Standing {
         #[contact(collision(), ground.plane(z), friction = 0.5)]

@@ -93,7 +93,7 @@ fn parameter_derivatives<M: Copy, const NV: usize, const NP: usize>(
 }
 
 #[test]
-fn arm() {
+fn arm_sensitivities_agree_with_differences() {
     let arm = Arm {
         g: 9.7,
         m: 1.3,
@@ -137,7 +137,7 @@ fn arm() {
 }
 
 #[test]
-fn robot_with_a_load() {
+fn loaded_robot_sensitivities_agree_with_differences() {
     let robot = Quadruped { load: 0.7, height: 0.1, stiffness: 2.0 };
     let parameters: [fn(&mut Quadruped) -> &mut f64; 3] =
         [|robot| &mut robot.load, |robot| &mut robot.height, |robot| &mut robot.stiffness];
@@ -155,7 +155,7 @@ fn robot_with_a_load() {
 /// The hoop's bead satisfies `m r² θ̈ = m r (r Ω² cos θ − g) sin θ`, whose derivatives with respect to the
 /// parameters are known.
 #[test]
-fn driven_in_time() {
+fn driven_hoop_sensitivities_have_closed_forms() {
     let hoop = Hoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };
     let (q, v, tau) = ([0.5].into(), [2.0].into(), [0.02].into());
     let (sin, cos) = 0.5_f64.sin_cos();
@@ -251,7 +251,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP:
 }
 
 #[test]
-fn steps() {
+fn step_sensitivities_agree_with_differences() {
     let flyer = Flyer { g: 9.7, m: 1.3, l: 0.6 };
     let of_flyer: [fn(&mut Flyer) -> &mut f64; 3] = [|m| &mut m.g, |m| &mut m.m, |m| &mut m.l];
     assert_eq!(<Flyer as Sensitivities<_, _, _, _>>::PARAMETERS, Flyer::PARAMETERS);
@@ -268,7 +268,7 @@ fn steps() {
 }
 
 #[test]
-fn a_period_that_is_none_is_an_error() {
+fn invalid_period_is_an_error() {
     let hoop = Hoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
     for period in [0.0, -0.1, f64::NAN, f64::INFINITY] {
         let found =

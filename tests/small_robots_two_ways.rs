@@ -164,19 +164,19 @@ macro_rules! assert_same_kinematics {
 }
 
 #[test]
-fn cart_pole() {
+fn cart_pole_struct_equals_its_urdf() {
     assert_same_dynamics(&CartPole {}, &CartPoleFile, 20, TOLERANCE);
     assert_same_kinematics!(CartPole, CartPoleFile, "pole");
 }
 
 #[test]
-fn double_pendulum() {
+fn double_pendulum_struct_equals_its_urdf() {
     assert_same_dynamics(&DoublePendulum {}, &DoublePendulumFile, 20, TOLERANCE);
     assert_same_kinematics!(DoublePendulum, DoublePendulumFile, "link3");
 }
 
 #[test]
-fn ur5() {
+fn ur5_struct_equals_its_urdf() {
     assert_same_dynamics(&Ur5 {}, &Ur5File, 20, TOLERANCE);
     assert_same_kinematics!(Ur5, Ur5File, "tool0");
 }

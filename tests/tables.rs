@@ -114,27 +114,31 @@ fn random_states() -> Vec<State> {
 }
 
 #[test]
-fn a_table_of_a_parabola_is_the_parabola_in_every_function() {
+fn table_of_a_parabola_equals_the_parabola() {
     let (table, formula) = (tabulated_aircraft(900.0, 16.0), Written { mass: 900.0, area: 16.0 });
     let prepared = table.prepare();
     for State { q, v, u } in random_states() {
-        let same =
+        let check_same_values =
             |what: &str, found: &[f64], expected: &[f64]| assert_similar(what, found, expected, FORMULA);
         let (tau, expected) = (table.generalized_forces(&q, &v, &u), formula.generalized_forces(&q, &v, &u));
-        same("τ", tau.as_slice(), expected.as_slice());
-        same("τ, prepared", prepared.generalized_forces(&q, &v, &u).as_slice(), expected.as_slice());
-        same("output", &[table.coefficient(&q, &v, &u)], &[formula.coefficient(&q, &v, &u)]);
+        check_same_values("τ", tau.as_slice(), expected.as_slice());
+        check_same_values(
+            "τ, prepared",
+            prepared.generalized_forces(&q, &v, &u).as_slice(),
+            expected.as_slice(),
+        );
+        check_same_values("output", &[table.coefficient(&q, &v, &u)], &[formula.coefficient(&q, &v, &u)]);
         let ((a, b), (c, d)) = (table.linearize(&q, &v, &u), formula.linearize(&q, &v, &u));
-        same("A", a.as_slice(), c.as_slice());
-        same("B", b.as_slice(), d.as_slice());
+        check_same_values("A", a.as_slice(), c.as_slice());
+        check_same_values("B", b.as_slice(), d.as_slice());
         let (a, b) = prepared.linearize(&q, &v, &u);
-        same("A, prepared", a.as_slice(), c.as_slice());
-        same("B, prepared", b.as_slice(), d.as_slice());
+        check_same_values("A, prepared", a.as_slice(), c.as_slice());
+        check_same_values("B, prepared", b.as_slice(), d.as_slice());
     }
 }
 
 #[test]
-fn tables_agree_with_differences_of_high_order() {
+fn table_derivatives_agree_with_high_order_differences() {
     let (lift, drag, thrust) = aircraft_tables();
     for linear in [true, false] {
         let aircraft_with_tables = |smooth: bool| {
@@ -185,7 +189,7 @@ fn derivative_at_zero<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVe
 }
 
 #[test]
-fn several_states_at_once_look_up_each_for_itself() {
+fn batched_table_lookups_are_independent() {
     let aircraft = tabulated_aircraft(900.0, 16.0);
     let wide = tabulated_aircraft(Lanes::<f64, 4>::splat(900.0), Lanes::splat(16.0));
     let states = random_states();
@@ -222,7 +226,7 @@ struct Attitude {
 }
 
 #[test]
-fn angles_of_flight_are_those_that_the_attitude_was_made_of() {
+fn flight_angles_reproduce_the_attitude() {
     use linkwork::nalgebra::{UnitQuaternion, Vector3};
     let (heading, elevation, bank) = (0.7, 0.3, -0.4);
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading)
@@ -258,7 +262,7 @@ struct Fan {
 }
 
 #[test]
-fn tables_are_looked_up_at_numbers() {
+fn tables_are_evaluated_at_constants() {
     static SPEED: [f64; 3] = [0.0, 2.0, 4.0];
     static TORQUE: [f64; 3] = [1.0, 5.0, 6.0];
     let fan = Fan { torque: Table::new([&SPEED], &TORQUE).unwrap(), gear: 3.0 };
@@ -289,7 +293,7 @@ struct Cam {
 }
 
 #[test]
-fn a_constraint_may_be_a_table() {
+fn constraint_may_contain_a_table() {
     static ANGLE: [f64; 4] = [-2.0, -0.5, 0.5, 2.0];
     static RISE: [f64; 4] = [0.4, 0.025, 0.025, 0.4];
     // The follower's height is θ² / 10.
@@ -304,7 +308,7 @@ fn a_constraint_may_be_a_table() {
 }
 
 #[test]
-fn all_adaptive_methods_agree_on_a_constrained_motion() {
+fn adaptive_methods_agree_on_a_constrained_motion() {
     use linkwork::prelude::{DormandPrince, DormandPrince8, Rodas, simulate};
     static ANGLE: [f64; 4] = [-2.0, -0.5, 0.5, 2.0];
     static RISE: [f64; 4] = [0.4, 0.025, 0.025, 0.4];

@@ -34,7 +34,7 @@ fn machine_source(more: &str) -> String {
     )
 }
 
-fn of_machine(more: &str) -> Result<Units, Vec<String>> {
+fn units_of_machine(more: &str) -> Result<Units, Vec<String>> {
     units_of_mechanism("", &machine_source(more))
 }
 
@@ -43,7 +43,7 @@ fn of_machine(more: &str) -> Result<Units, Vec<String>> {
 #[track_caller]
 fn check_units(fields: &str, expected: &[&str]) {
     let names: String = ('a'..='f').take(expected.len()).map(|c| format!("{c}: f64, ")).collect();
-    match of_machine(&format!("{names}{fields}")) {
+    match units_of_machine(&format!("{names}{fields}")) {
         Ok(units) => assert_eq!(units.parameters, expected, "{fields}"),
         Err(messages) => panic!("{fields}: {messages:?}"),
     }
@@ -56,23 +56,23 @@ fn note_of_line(line: &str) -> Option<&str> {
 
 /// Whether an expected text belongs to a note. Notes state the unit of a parameter and the argument that
 /// determines it, or the unit that would be required.
-fn is_note(text: &str) -> bool {
+fn is_note_text(text: &str) -> bool {
     text.starts_with("it is ") || text.ends_with(" in")
 }
 
 /// Checks the errors of a machine with the parameters `a`, `b`, `c`, and the notes of these errors.
 #[track_caller]
 fn check_unit_errors(fields: &str, expected: &[&str]) {
-    let has =
+    let has_word =
         |name: &&&str| fields.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == **name);
-    let names: String = ["a", "b", "c"].iter().filter(has).map(|n| format!("{n}: f64, ")).collect();
+    let names: String = ["a", "b", "c"].iter().filter(has_word).map(|n| format!("{n}: f64, ")).collect();
     let names = if fields.contains("unit(") { String::new() } else { names };
-    match of_machine(&format!("{names}{fields}")) {
+    match units_of_machine(&format!("{names}{fields}")) {
         Ok(units) => panic!("{fields} is accepted with {units:?}"),
         Err(messages) => {
             let first: Vec<&str> = messages.iter().map(|m| m.lines().next().unwrap_or_default()).collect();
             let notes: Vec<&str> = messages.iter().flat_map(|m| m.lines()).filter_map(note_of_line).collect();
-            let (told, errors): (Vec<&str>, Vec<&str>) = expected.iter().partition(|text| is_note(text));
+            let (told, errors): (Vec<&str>, Vec<&str>) = expected.iter().partition(|text| is_note_text(text));
             assert_eq!(first, errors, "{fields}");
             assert_eq!(notes.len(), told.len(), "{fields}: {notes:?}");
             for (note, told) in notes.iter().zip(&told) {
@@ -83,7 +83,7 @@ fn check_unit_errors(fields: &str, expected: &[&str]) {
 }
 
 #[test]
-fn every_place_gives_a_unit() {
+fn units_are_inferred_from_every_use() {
     check_units(
         "#[body(mass = a, com = b * x, inertia = diagonal(c, c, c))] k: Body, #[joint(arm -> k)] j: Ball,",
         &["kg", "m", "kg·m²"],
@@ -142,7 +142,7 @@ fn every_place_gives_a_unit() {
 }
 
 #[test]
-fn expressions_carry_units() {
+fn units_propagate_through_expressions() {
     check_units(
         "#[acts(on = cart, value = sqrt(a * b) * x)] s: Force, #[energy(a * rail + b * rail)] t_: Potential,",
         &["N", "N"],
@@ -185,7 +185,7 @@ fn expressions_carry_units() {
 }
 
 #[test]
-fn numbers_take_any_unit() {
+fn numeric_literals_take_any_unit() {
     for fields in [
         "#[acts(on = cart, value = -g * a * y)] s: Force, #[define(9.81)] g: Scalar, \
          #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
@@ -201,15 +201,15 @@ fn numbers_take_any_unit() {
         "#[acts(on = cart, value = sin(t) * x - 3 * v(cart / ground / ground))] s: Force, \
          #[energy(a)] e: Potential,",
     ] {
-        if let Err(messages) = of_machine(&format!("a: f64, {fields}")) {
+        if let Err(messages) = units_of_machine(&format!("a: f64, {fields}")) {
             panic!("{fields}: {messages:?}");
         }
     }
 }
 
 #[test]
-fn coordinates_inputs_and_outputs_have_units_too() {
-    let units = of_machine(
+fn coordinates_inputs_and_outputs_have_units() {
+    let units = units_of_machine(
         "m: f64, s: Coordinate, phi: Coordinate, gain: f64, #[unit(m)] lever: f64, steer: Input,
         #[particle(mass = m, at = s * (cos(phi) * x + sin(phi) * y))] p: Particle,
         #[acts(on = rail)] push: Force, #[acts(on = hinge)] turn: Torque,
@@ -228,7 +228,7 @@ fn coordinates_inputs_and_outputs_have_units_too() {
 }
 
 #[test]
-fn robots_of_files_have_units() {
+fn robot_file_mechanisms_have_units() {
     let units = units_of_mechanism("urdf = \"urdf/solo12.urdf\", base = free", "struct Robot;").unwrap();
     assert_eq!(units.configuration[..8], ["m", "m", "m", "1", "1", "1", "1", "rad"]);
     assert_eq!(units.velocities[..7], ["m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s", "rad/s"]);
@@ -236,7 +236,7 @@ fn robots_of_files_have_units() {
 }
 
 #[test]
-fn a_parameter_is_one_thing() {
+fn parameter_with_two_units_is_rejected() {
     check_unit_errors(
         "#[acts(on = rail, stiffness = a)] s: Spring, #[acts(on = hinge, stiffness = a)] t_: Spring,",
         &[
@@ -271,7 +271,7 @@ fn a_parameter_is_one_thing() {
 
 /// A mechanism that cannot move, with a parameter of two conflicting units: both errors are reported.
 #[test]
-fn units_are_told_with_what_holds_the_mechanism() {
+fn unit_errors_are_reported_with_topology_errors() {
     check_unit_errors(
         "#[joint(arm.at(a * x) -> ground.at(3 * x))] stop: Weld,
         #[acts(on = rail, stiffness = a)] coil: Spring,",
@@ -284,7 +284,7 @@ fn units_are_told_with_what_holds_the_mechanism() {
 }
 
 #[test]
-fn like_is_added_to_like() {
+fn sums_of_different_units_are_rejected() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";
     let sites = ["`a` is a mass (kg) in", "`b` is a length (m) in"];
     let message_with_sites = |first: &'static str| [first, sites[0], sites[1]];
@@ -328,7 +328,7 @@ fn like_is_added_to_like() {
 
 /// Units of sums that contain only coordinates, rates, time and inputs are checked, too.
 #[test]
-fn what_moves_is_added_to_like() {
+fn sums_of_coordinates_and_rates_have_checked_units() {
     let input = "#[acts(on = rail)] f: Force, #[acts(on = hinge)] m: Torque,";
     for (sum, message) in [
         ("f + rail", "a length (m) cannot be added to a force (N)"),
@@ -357,7 +357,7 @@ fn what_moves_is_added_to_like() {
 /// The number in the mechanism's gravity is an acceleration also as a factor of a parameter; no other number
 /// is.
 #[test]
-fn the_number_of_gravity_is_an_acceleration() {
+fn gravity_literal_is_an_acceleration() {
     let is_valid_hover_force = |gravity: &str, number: &str| {
         let item = machine_source(&format!(
             "m: f64, #[body(mass = m)] load: Body, #[joint(cart -> load)] fixed: Weld,
@@ -374,27 +374,27 @@ fn the_number_of_gravity_is_an_acceleration() {
 
 /// A number that multiplies a parameter is dimensionless, for every value.
 #[test]
-fn numbers_beside_parameters_are_plain() {
+fn factors_of_parameters_are_dimensionless() {
     for number in ["0.5", "0.6", "9.81", "40", "2 / 7", "1e-3", "sin(0.3)", "pi"] {
         let body_with_mass = |value: &str| {
             format!("#[unit(kg / m)] rho: f64, #[body(mass = {value})] w: Body, #[joint(cart -> w)] j: Weld,")
         };
         for value in [format!("rho * {number}"), format!("{number} * rho"), format!("rho / ({number})")] {
-            let messages = of_machine(&body_with_mass(&value)).unwrap_err();
+            let messages = units_of_machine(&body_with_mass(&value)).unwrap_err();
             assert!(
                 messages[0].starts_with("`rho` is declared as a quantity in kg/m, but used as a mass (kg)")
             );
             assert!(messages[0].contains("`#[define(9.81)] g: Scalar`"), "{messages:?}");
         }
-        of_machine(&format!("{} #[define({number})] length: Scalar,", body_with_mass("rho * length")))
+        units_of_machine(&format!("{} #[define({number})] length: Scalar,", body_with_mass("rho * length")))
             .unwrap();
     }
 }
 
 #[test]
-fn attributes_pin_units_down() {
+fn unit_attributes_fix_the_units_of_parameters() {
     let unit_of_attribute = |written: &str| {
-        let units = of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
+        let units = units_of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
         Ok::<String, Vec<String>>(units.parameters[0].clone())
     };
     for (written, shown) in [
@@ -431,7 +431,7 @@ fn attributes_pin_units_down() {
 
 /// The struct keeps its fields without the attribute, and its documentation states all units.
 #[test]
-fn units_are_documented() {
+fn inferred_units_are_documented() {
     let item = machine_source(
         "/// A length.\n#[unit(m)] a: f64, b: f64, #[acts(on = rail, stiffness = b, free_length = a)] s: \
          Spring,
@@ -509,7 +509,7 @@ fn constraints_and_multipliers_have_units() {
 
 /// The time of inference is bounded for structs of any size.
 #[test]
-fn large_structs_are_read_in_time() {
+fn unit_inference_of_large_structs_terminates() {
     let n = 800;
     let fields: String = (0..n).map(|k| format!("p{k}: f64, ")).collect();
     let product_of_parameters =

@@ -60,7 +60,7 @@ struct Written {
 /// The order of joints is depth first, with the joints of a link in alphabetical order, independent of the
 /// order in the file.
 #[test]
-fn order_of_joints() {
+fn urdf_joints_are_ordered_depth_first() {
     assert_eq!(Everything::INPUTS, ["b_turn", "c_follow", "z_slide"]);
     assert_eq!(Everything::VELOCITIES, Written::VELOCITIES);
     assert_eq!(Everything::CONFIGURATION, Written::CONFIGURATION);
@@ -71,7 +71,7 @@ fn order_of_joints() {
 }
 
 #[test]
-fn file_and_struct_say_the_same() {
+fn urdf_file_and_struct_have_equal_dynamics() {
     assert_same_dynamics(&Everything, &Written {}, 20, TOLERANCE);
     let q = Random::new(18).random_configuration(&Everything);
     for (name, placement) in Everything::FRAMES.iter().zip(Everything.frame_placements(&q)) {
@@ -83,7 +83,7 @@ fn file_and_struct_say_the_same() {
 
 /// Damping `c v` and friction `f tanh(v / friction_speed)` have the coefficients of the file.
 #[test]
-fn passive_forces_are_honoured() {
+fn passive_forces_have_the_coefficients_of_the_file() {
     #[mechanism(
         urdf = "data/urdf/everything.urdf",
         mimic = independent,
@@ -108,7 +108,7 @@ fn passive_forces_are_honoured() {
 /// Checks a mimic joint with factor and offset, `c_follow = 0.2 − 0.5 b_turn`. The equations are those of
 /// independent joints reduced by that relation.
 #[test]
-fn follower_with_factor_and_offset() {
+fn mimic_joint_has_factor_and_offset() {
     #[mechanism(urdf = "data/urdf/everything.urdf", passive = ignore, gravity = x - 9 * z)]
     struct Following;
 
@@ -158,7 +158,7 @@ fn follower_with_factor_and_offset() {
 }
 
 #[test]
-fn free_base_without_inputs() {
+fn locked_joints_of_a_free_base_leave_the_coordinates() {
     #[mechanism(
         urdf = "data/urdf/everything.urdf",
         base = free,
@@ -179,7 +179,7 @@ fn free_base_without_inputs() {
 }
 
 #[test]
-fn impossible_inertia_is_taken_on_trust() {
+fn impossible_inertia_is_accepted_with_trust() {
     #[mechanism(urdf = "data/urdf/impossible.urdf", inertia = trust)]
     struct Impossible;
 
@@ -187,7 +187,7 @@ fn impossible_inertia_is_taken_on_trust() {
 }
 
 #[test]
-fn single_precision() {
+fn urdf_mechanism_supports_single_precision() {
     #[mechanism(
         urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z,
         scalar = f32
@@ -203,7 +203,7 @@ fn single_precision() {
 
 /// Arm whose right angles are written with five digits: as written, and with exact right angles.
 #[test]
-fn rounded_frames_are_those_that_were_meant() {
+fn nearly_right_angles_are_rounded_to_exact_ones() {
     #[mechanism(urdf = "../models/urdf/gen3.urdf")]
     struct Written;
     #[mechanism(urdf = "../models/urdf/gen3.urdf", snap = 1e-4)]
@@ -252,7 +252,7 @@ fn rounded_numbers_are_documented() {
 /// A file without inertia has frames, their Jacobians, the configuration space and the effect of inputs. The
 /// example has polar coordinates, and a ball joint at the end.
 #[test]
-fn kinematics_need_no_inertia() {
+fn urdf_kinematics_need_no_inertia() {
     #[mechanism(urdf = "data/urdf/bare.urdf", inertia = none)]
     struct Bare;
 
@@ -286,7 +286,7 @@ fn kinematics_need_no_inertia() {
 
 /// Checks that with `inertia = none` the kinematics of a file with inertia do not change.
 #[test]
-fn kinematics_are_those_of_the_whole_robot() {
+fn kinematics_without_inertia_equal_those_of_the_robot() {
     #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, inertia = none)]
     struct Outside;
 
@@ -311,7 +311,7 @@ fn kinematics_are_those_of_the_whole_robot() {
 
 /// Linkage that is defined by its lengths: constraints and outputs need no inertia either.
 #[test]
-fn a_linkage_without_inertia() {
+fn linkage_without_inertia_has_constraints_and_outputs() {
     #[mechanism(inertia = none)]
     struct Linkage {
         pub crank: f64,
@@ -348,7 +348,7 @@ fn a_linkage_without_inertia() {
 
 /// A fixed root named `ground` is the ground, and a frame like other links.
 #[test]
-fn the_ground_may_be_a_link() {
+fn link_named_ground_is_the_fixed_root() {
     #[mechanism(urdf = "data/urdf/grounded.urdf")]
     struct Grounded;
 
@@ -373,7 +373,7 @@ struct Parallelogram;
 /// Checks the motion of a parallelogram, whose coupler moves in translation. By the principle of virtual work
 /// its inertia about the cranks is `2 (I + m c²) + M l²`, and gravity acts on it with `2 m g c + M g l`.
 #[test]
-fn a_joint_closes_a_loop() {
+fn urdf_joint_closes_a_loop() {
     let (inertia, weight) = (2.0 * (0.02 + 1.5 * 0.04) + 2.0 * 0.16, 9.81 * (2.0 * 1.5 * 0.2 + 2.0 * 0.4));
     assert_eq!(Parallelogram::INPUTS, ["shoulder", "elbow", "support"]);
     for (angle, rate, torque) in [(0.7_f64, 0.0, 0.0), (2.0, -1.5, 3.0), (-1.2, 4.0, -2.0)] {

@@ -13,11 +13,11 @@ macro_rules! with_text {
         struct $name<T> { $($parameter: T,)* $($elements)* }
 
         impl<T: Real> $name<T> {
-            fn sound() -> Self {
+            fn sound_parameters() -> Self {
                 $name { $($parameter: linkwork::nalgebra::convert($value),)* }
             }
 
-            fn set(&mut self, name: &str, value: T) {
+            fn set_parameter(&mut self, name: &str, value: T) {
                 match name {
                     $(stringify!($parameter) => self.$parameter = value,)*
                     _ => panic!("no parameter {name}"),
@@ -70,15 +70,15 @@ with_text! { WHEELS, Wheels {
     rolling: Rolling,
 } }
 
-/// Returns the tokens with parameters replaced by numbers.
-fn with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
+/// Returns the tokens of a mechanism with parameters replaced by numbers.
+fn tokens_with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
     let replace_by_number = |token: TokenTree| match &token {
         TokenTree::Ident(name) => match values.iter().find(|(known, _)| name == known) {
             Some((_, value)) => format!("({value:e})").parse().unwrap(),
             None => TokenStream::from(token),
         },
         TokenTree::Group(group) => {
-            let inner = with_numbers(group.stream(), values);
+            let inner = tokens_with_numbers(group.stream(), values);
             TokenTree::from(Group::new(group.delimiter(), inner)).into()
         }
         _ => token.into(),
@@ -91,7 +91,7 @@ fn compiler_messages((values, elements): (&[(&str, f64)], &str), change: (&str, 
     let values: Vec<(&str, f64)> =
         values.iter().map(|(name, x)| (*name, if *name == change.0 { change.1 } else { *x })).collect();
     // No parameter of these mechanisms has the name of an attribute.
-    let elements = with_numbers(elements.parse().unwrap(), &values);
+    let elements = tokens_with_numbers(elements.parse().unwrap(), &values);
     let item = quote::quote!(struct Machine { #elements });
     linkwork_compiler::check_mechanism("gravity = -9.81 * y".parse().unwrap(), item, Path::new(""))
 }
@@ -135,12 +135,12 @@ const WHEEL_ROWS: [(&str, f64, Fault, &str); 7] = [
 /// number, too.
 macro_rules! check {
     ($name:ident, $text:ident, $rows:ident) => {
-        assert_eq!($name::<f64>::sound().validate(), Ok(()));
-        assert_eq!($name::<f32>::sound().validate(), Ok(()));
+        assert_eq!($name::<f64>::sound_parameters().validate(), Ok(()));
+        assert_eq!($name::<f32>::sound_parameters().validate(), Ok(()));
         assert_eq!(compiler_messages($text, ("", 0.0)), Vec::<String>::new());
         for (parameter, value, fault, figure) in $rows {
-            let mut wrong = $name::<f64>::sound();
-            wrong.set(parameter, value);
+            let mut wrong = $name::<f64>::sound_parameters();
+            wrong.set_parameter(parameter, value);
             let error: ParameterError = wrong.validate().expect_err(parameter);
             assert_eq!(error.fault, fault, "{parameter} = {value}: {error}");
             assert!(error.parameters.contains(&parameter), "{error}");
@@ -148,15 +148,15 @@ macro_rules! check {
             let said = compiler_messages($text, (parameter, value));
             assert_eq!(said.len(), 1, "{parameter} = {value}: {said:?}");
             // One of four lanes is wrong.
-            let mut lanes = $name::<f64x4>::sound();
+            let mut lanes = $name::<f64x4>::sound_parameters();
             let own = $text.0.iter().find(|(name, _)| *name == parameter).unwrap().1;
-            lanes.set(parameter, Lanes([own, own, value, own]));
+            lanes.set_parameter(parameter, Lanes([own, own, value, own]));
             assert_eq!(lanes.validate().map_err(|e| e.fault), Err(fault), "a lane of {parameter}");
         }
         for (parameter, _) in $text.0 {
             for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-                let mut wrong = $name::<f64>::sound();
-                wrong.set(parameter, value);
+                let mut wrong = $name::<f64>::sound_parameters();
+                wrong.set_parameter(parameter, value);
                 let error = wrong.validate().expect_err(parameter);
                 assert_eq!(error.fault, Fault::NotFinite, "{parameter} = {value}: {error}");
                 assert!(error.parameters.contains(parameter), "{error}");
@@ -166,18 +166,18 @@ macro_rules! check {
 }
 
 #[test]
-fn what_is_wrong_in_a_number_is_wrong_in_a_parameter() {
+fn invalid_numbers_and_parameters_break_the_same_conditions() {
     check!(Arm, ARM, ARM_ROWS);
     check!(Wheels, WHEELS, WHEEL_ROWS);
 }
 
 /// A load of zero mass and the inertia of a rod, which is at the bound of physical consistency, are accepted.
 #[test]
-fn what_is_at_the_bound_is_sound() {
-    assert_eq!(Arm { load: 0.0, ..Arm::<f64>::sound() }.validate(), Ok(()));
-    assert_eq!(Arm { xx: 0.1, yy: 0.3, zz: 0.4, ..Arm::<f64>::sound() }.validate(), Ok(()));
-    assert_eq!(Arm { xx: 0.1, yy: 0.3, zz: 0.4, ..Arm::<f32>::sound() }.validate(), Ok(()));
-    assert_eq!(Arm { m: 0.0, offset: -2.0, ..Arm::<f64>::sound() }.validate(), Ok(()));
+fn mass_properties_at_the_physical_bound_are_valid() {
+    assert_eq!(Arm { load: 0.0, ..Arm::<f64>::sound_parameters() }.validate(), Ok(()));
+    assert_eq!(Arm { xx: 0.1, yy: 0.3, zz: 0.4, ..Arm::<f64>::sound_parameters() }.validate(), Ok(()));
+    assert_eq!(Arm { xx: 0.1, yy: 0.3, zz: 0.4, ..Arm::<f32>::sound_parameters() }.validate(), Ok(()));
+    assert_eq!(Arm { m: 0.0, offset: -2.0, ..Arm::<f64>::sound_parameters() }.validate(), Ok(()));
 }
 
 /// Trusted inertia is not validated, nor is a parameter that no element uses, nor the sign of a stiffness,
@@ -196,7 +196,7 @@ struct Trusted {
 }
 
 #[test]
-fn what_is_trusted_need_only_be_finite() {
+fn trusted_inertia_need_only_be_finite() {
     let sound = Trusted { moment: 5.0, stiffness: -1.0, _own: f64::NAN };
     assert_eq!(sound.validate(), Ok(()));
     let error = Trusted { moment: f64::NAN, ..sound }.validate().unwrap_err();

@@ -1,4 +1,4 @@
-//! Adds the arithmetic of the feature to the mechanisms.
+//! Build script: adds the arithmetic that the Cargo feature selects to the options of the mechanisms.
 
 use std::path::PathBuf;
 use std::{env, fs};

@@ -4,20 +4,20 @@
 use rustc_demangle::demangle;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Function of an assembly file.
+/// Function of an assembly file: its size, its stack frame and its calls.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Routine {
-    /// Number of instructions, without padding.
+    /// Number of instructions of the function, without padding.
     pub instructions: usize,
     /// Size of the stack frame of the function itself, bytes.
     pub stack: usize,
-    /// Linker names of the functions that it calls or jumps to.
+    /// Linker names of the functions that this function calls or jumps to.
     pub calls: BTreeSet<String>,
-    /// Whether it calls an address that it has computed or read from memory.
+    /// Whether this function calls an address that it has computed or read from memory.
     pub calls_by_address: bool,
 }
 
-/// Returns all functions by their linker names.
+/// Parses an assembly file and returns all functions by their linker names.
 #[must_use]
 pub fn parse_routines(text: &str) -> BTreeMap<String, Routine> {
     let mut found = BTreeMap::new();
@@ -26,7 +26,7 @@ pub fn parse_routines(text: &str) -> BTreeMap<String, Routine> {
         if let Some(name) = line.strip_prefix("\t.type\t").and_then(|rest| rest.strip_suffix(",@function")) {
             names.insert(name);
         } else if let Some(name) = line.strip_suffix(':').filter(|name| names.contains(name)) {
-            routine = Some((name, Reader::default()));
+            routine = Some((name, RoutineReader::default()));
         } else if line.starts_with("\t.size\t")
             && let Some((name, reader)) = routine.take()
         {
@@ -40,7 +40,7 @@ pub fn parse_routines(text: &str) -> BTreeMap<String, Routine> {
     found
 }
 
-/// Returns the instruction of a line, without its comment.
+/// Returns the instruction on a line of assembly, without its comment.
 fn instruction_of_line(line: &str) -> Option<&str> {
     let text = line.strip_prefix('\t')?.split('#').next()?.trim_end();
     let is_one = text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.starts_with("nop");
@@ -48,7 +48,7 @@ fn instruction_of_line(line: &str) -> Option<&str> {
 }
 
 #[derive(Default)]
-struct Reader {
+struct RoutineReader {
     routine: Routine,
     /// Registers that hold the address of a function, with its name.
     addresses: BTreeMap<String, String>,
@@ -56,7 +56,7 @@ struct Reader {
     probing: bool,
 }
 
-impl Reader {
+impl RoutineReader {
     fn read_instruction(&mut self, instruction: &str) {
         self.routine.instructions += 1;
         let (name, operands) = instruction.split_once('\t').unwrap_or((instruction, ""));
@@ -164,7 +164,7 @@ _ZN4work5inner17h0123456789abcdefE:
 ";
 
     #[test]
-    fn calls_and_stack_are_found() {
+    fn calls_and_stack_frame_are_read_from_disassembly() {
         let found = parse_routines(TEXT);
         assert_eq!(found.len(), 2);
         let outer = &found["_ZN4work5outer17h0123456789abcdefE"];
@@ -177,7 +177,7 @@ _ZN4work5inner17h0123456789abcdefE:
     }
 
     #[test]
-    fn names_are_those_of_the_source() {
+    fn symbol_names_are_demangled_to_source_names() {
         let panic = "_ZN4core9panicking18panic_bounds_check17h0123456789abcdefE";
         assert_eq!(name_in_source(panic), "core::panicking::panic_bounds_check");
         let generic = "_ZN88_$LT$linkwork..arithmetic..Compiled$u20$as$u20$linkwork..lanes..registers..Registers$GT$6within17h5068f906a8b23952E";

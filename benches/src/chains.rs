@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// Text of a mechanism as the attribute receives it.
+/// Source text of a mechanism: the arguments of its attribute, and the struct.
 pub struct Source {
     /// Arguments in the parentheses of `#[mechanism]`.
     pub arguments: String,
@@ -12,10 +12,10 @@ pub struct Source {
 
 /// Names of a link's parameters: mass, centre of mass, moments of inertia about it, length.
 const NUMBERS: [&str; 6] = ["m", "c", "a", "b", "e", "l"];
-/// Typical values of the parameters: kg, m, kg·m², m.
+/// Typical values of the parameters of a link: mass, lengths and moments of inertia, in SI units.
 const SIZES: [f64; 6] = [2.0, 0.2, 0.03, 0.04, 0.02, 0.4];
 
-/// Returns the values of link `k` as text.
+/// Returns the numeric values of link `k` as source text.
 fn link_values_text(k: usize) -> [String; 6] {
     SIZES.map(|size| format!("{:.4}", size * (1.0 + 0.1 / k as f64)))
 }
@@ -64,7 +64,7 @@ pub fn chain_value_expression(name: &str, n: usize) -> String {
     format!("{name} {{ {} }}", fields.join(", "))
 }
 
-/// Returns the same robot as a URDF file.
+/// Returns the chain as the text of a URDF file.
 pub fn chain_as_urdf(n: usize) -> String {
     let mut text = "<robot name=\"chain\">\n  <link name=\"link0\"/>\n".to_string();
     let mut length = "0".to_string();

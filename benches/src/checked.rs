@@ -13,23 +13,23 @@ const PERIOD: Duration = Duration::from_millis(3);
 /// Clock ticks per second in which Linux counts processor time.
 const TICKS: f64 = 100.0;
 
-/// Compiled runtime, which generated code calls.
+/// Compiled runtime crate, to which generated code is linked.
 pub struct Library {
     /// Path of the rlib that rustc links; its dependencies are in the folder `deps` next to it.
     pub rlib: PathBuf,
 }
 
-/// Cost of one run of rustc: time and memory.
+/// Cost of compiling a mechanism with rustc: time and memory.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
-    /// Processor time of the run.
+    /// Processor time of the compilation.
     pub time: Duration,
-    /// Peak resident memory, bytes.
+    /// Peak resident memory of the compilation, bytes.
     pub memory: f64,
 }
 
 impl Library {
-    /// Builds the runtime in the dev profile.
+    /// Compiles the runtime crate in the dev profile.
     pub fn build_runtime() -> Result<Library, Box<dyn Error>> {
         let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
         let build =
@@ -83,7 +83,7 @@ fn wait_for_process(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
     }
 }
 
-/// Returns the cost of a process so far.
+/// Returns processor time and peak memory of a process so far.
 fn cost_of_process(process: u32) -> Option<Cost> {
     let status = read_to_string(format!("/proc/{process}/status")).ok()?;
     let memory = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

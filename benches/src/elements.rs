@@ -3,7 +3,7 @@
 use crate::chains::Source;
 use std::fmt::Write;
 
-/// Number of links of the arm with springs.
+/// Number of links of the arm with springs between its links.
 const LINKS: usize = 4;
 
 /// Returns an arm of spatial pins with this number of springs between points of the ground and points of its

@@ -1,9 +1,9 @@
 //! Hand-written reference implementation: rigid-body dynamics of any tree of links, read at run time.
 //!
 //! The algorithms are the recursive ones of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7,
-//! in link axes, with nalgebra's fixed 3-vectors and 3×3 matrices. All intermediate results are in a [`Data`]
-//! that is allocated once, so that no function allocates. It does not use the compiler's crates and is
-//! therefore also an oracle for the generated code.
+//! in link axes, with nalgebra's fixed 3-vectors and 3×3 matrices. All intermediate results are in a
+//! [`Workspace`] that is allocated once, so that no function allocates. It does not use the compiler's crates
+//! and is therefore also an oracle for the generated code.
 
 mod spatial;
 mod urdf;
@@ -16,9 +16,9 @@ use nalgebra::{DMatrix, Matrix3, Matrix6xX, Quaternion, Unit, UnitQuaternion, Ve
 /// Motion that a joint allows for a link relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// Rotation about an axis.
+    /// Rotation of the link about an axis.
     Turn(Unit<Vector3<f64>>),
-    /// Translation along an axis.
+    /// Translation of the link along an axis.
     Slide(Unit<Vector3<f64>>),
     /// Free motion: q = position, quaternion x y z w; v = linear, angular velocity in link axes.
     Free,
@@ -33,7 +33,7 @@ impl Motion {
         }
     }
 
-    /// Returns column `k` of the motion subspace.
+    /// Returns column `k` of the motion subspace of a joint.
     fn subspace_column(self, k: usize) -> Spatial {
         match self {
             Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis),
@@ -42,7 +42,7 @@ impl Motion {
         }
     }
 
-    /// Returns the motion subspace times the rates.
+    /// Returns the joint twist: the motion subspace times the joint velocities.
     fn twist_from_rates(self, rates: &[f64]) -> Spatial {
         match self {
             Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis * rates[0]),
@@ -82,46 +82,46 @@ fn rotation_about_axis(n: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     )
 }
 
-/// Moving link, including all links that are fixed to it.
+/// Moving link of the robot, including all links that are rigidly fixed to it.
 #[derive(Clone, Debug)]
 pub struct Link {
     /// Index of the parent link, which is smaller; `None` for the ground.
     pub parent: Option<usize>,
-    /// Placement of the joint's frame in the parent.
+    /// Placement of the joint's frame in the frame of the parent link.
     pub placement: Placement,
-    /// Motion of the link in the joint's frame.
+    /// Type of motion of the link relative to the joint's frame.
     pub motion: Motion,
     /// Index in `q` of the link's first coordinate.
     pub q: usize,
     /// Index in `v` of the link's first velocity.
     pub v: usize,
-    /// Inertia of the link about its origin.
+    /// Rigid-body inertia of the link about its origin.
     pub inertia: Inertia,
 }
 
 /// Named frame, fixed to a link or to the ground.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Name of the frame.
+    /// Name of the frame in the URDF file.
     pub name: String,
-    /// Index of the link; `None` for the ground.
+    /// Index of the link to which the frame is attached; `None` for the ground.
     pub link: Option<usize>,
-    /// Placement of the frame in its link.
+    /// Placement of the frame relative to its link.
     pub placement: Placement,
 }
 
-/// Tree of links with its named frames and gravity.
+/// Robot of a generic implementation: tree of links with named frames and gravity.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Links, parents first.
+    /// Links of the robot, parents before children.
     pub links: Vec<Link>,
-    /// Named frames.
+    /// Named frames of the robot.
     pub frames: Vec<Frame>,
     /// Gravitational acceleration in ground axes, m/s².
     pub gravity: Vector3<f64>,
-    /// Number of entries of `q`.
+    /// Number of entries of the configuration `q`.
     pub nq: usize,
-    /// Number of entries of `v`.
+    /// Number of entries of the velocity `v`.
     pub nv: usize,
 }
 
@@ -140,9 +140,9 @@ struct LinkData {
     force: f64,
 }
 
-/// Working storage for the intermediate results of a model.
+/// Working storage of the recursive algorithms, one entry for each link.
 #[derive(Clone, Debug)]
-pub struct Data(Vec<LinkData>);
+pub struct Workspace(Vec<LinkData>);
 
 impl Model {
     /// Reads a URDF file.
@@ -150,8 +150,8 @@ impl Model {
         urdf::read_urdf(text, options)
     }
 
-    /// Allocates the intermediate results.
-    pub fn allocate_data(&self) -> Data {
+    /// Allocates the working storage of the recursive algorithms.
+    pub fn allocate_data(&self) -> Workspace {
         let initial_link_data = |link: &Link| LinkData {
             placement: link.placement,
             twist: Spatial::zero(),
@@ -163,10 +163,10 @@ impl Model {
             inverse: 0.0,
             force: 0.0,
         };
-        Data(self.links.iter().map(initial_link_data).collect())
+        Workspace(self.links.iter().map(initial_link_data).collect())
     }
 
-    fn compute_placements(&self, data: &mut Data, q: &[f64]) {
+    fn compute_placements(&self, data: &mut Workspace, q: &[f64]) {
         for (link, d) in self.links.iter().zip(&mut data.0) {
             d.placement = link.placement.compose_with(&link.motion.placement_in_joint_frame(&q[link.q..]));
         }
@@ -176,14 +176,14 @@ impl Model {
     /// Newton–Euler algorithm.
     pub fn inverse_dynamics(
         &self,
-        data: &mut Data,
+        data: &mut Workspace,
         q: &[f64],
         v: &[f64],
         a: Option<&[f64]>,
         tau: &mut [f64],
     ) {
         self.compute_placements(data, q);
-        self.move_outward(data, v, a);
+        self.propagate_outward(data, v, a);
         for (k, link) in self.links.iter().enumerate().rev() {
             let d = &data.0[k];
             let (wrench, placement) = (d.wrench, d.placement);
@@ -196,8 +196,8 @@ impl Model {
         }
     }
 
-    /// Computes twists, accelerations and the wrenches that they need, link by link.
-    fn move_outward(&self, data: &mut Data, v: &[f64], a: Option<&[f64]>) {
+    /// Computes twists, accelerations and inertial wrenches of the links, from the base outwards.
+    fn propagate_outward(&self, data: &mut Workspace, v: &[f64], a: Option<&[f64]>) {
         for (k, link) in self.links.iter().enumerate() {
             let nv = link.motion.coordinate_counts().1;
             let (before, rest) = data.0.split_at_mut(k);
@@ -218,14 +218,14 @@ impl Model {
     }
 
     /// Computes the mass matrix, both triangles, by the composite-rigid-body algorithm.
-    pub fn mass_matrix(&self, data: &mut Data, q: &[f64], m: &mut DMatrix<f64>) {
+    pub fn mass_matrix(&self, data: &mut Workspace, q: &[f64], m: &mut DMatrix<f64>) {
         self.compute_placements(data, q);
         for (link, d) in self.links.iter().zip(&mut data.0) {
             d.composite = link.inertia;
         }
         for (k, link) in self.links.iter().enumerate().rev() {
             if let Some(p) = link.parent {
-                let moved = data.0[k].composite.to_parent(&data.0[k].placement);
+                let moved = data.0[k].composite.inertia_in_parent(&data.0[k].placement);
                 data.0[p].composite += moved;
             }
         }
@@ -252,7 +252,7 @@ impl Model {
     }
 
     /// Computes forward dynamics `v̇ = M⁻¹ (τ − h)` by the articulated-body algorithm.
-    pub fn forward_dynamics(&self, data: &mut Data, q: &[f64], v: &[f64], tau: &[f64], a: &mut [f64]) {
+    pub fn forward_dynamics(&self, data: &mut Workspace, q: &[f64], v: &[f64], tau: &[f64], a: &mut [f64]) {
         self.compute_placements(data, q);
         for (k, link) in self.links.iter().enumerate() {
             let own = link.motion.twist_from_rates(&v[link.v..]);
@@ -286,7 +286,7 @@ impl Model {
                 let parent = &mut data.0[p];
                 parent.wrench += placement.wrench_to_parent(&wrench);
                 if let Some(inertia) = inertia {
-                    parent.articulated += inertia.to_parent(&placement);
+                    parent.articulated += inertia.inertia_in_parent(&placement);
                 }
             }
         }
@@ -315,7 +315,7 @@ impl Model {
     }
 
     /// Returns the kinetic energy, J.
-    pub fn kinetic_energy(&self, data: &mut Data, q: &[f64], v: &[f64]) -> f64 {
+    pub fn kinetic_energy(&self, data: &mut Workspace, q: &[f64], v: &[f64]) -> f64 {
         self.compute_placements(data, q);
         let mut twice = 0.0;
         for (k, link) in self.links.iter().enumerate() {
@@ -327,13 +327,19 @@ impl Model {
         0.5 * twice
     }
 
-    /// Returns the index of a frame.
+    /// Returns the index of the frame with a name.
     pub fn index_of_frame(&self, name: &str) -> Option<usize> {
         self.frames.iter().position(|frame| frame.name == name)
     }
 
     /// Writes the Jacobian of a frame: velocity of its origin, then angular velocity, in ground axes.
-    pub fn frame_jacobian(&self, data: &mut Data, frame: usize, q: &[f64], jacobian: &mut Matrix6xX<f64>) {
+    pub fn frame_jacobian(
+        &self,
+        data: &mut Workspace,
+        frame: usize,
+        q: &[f64],
+        jacobian: &mut Matrix6xX<f64>,
+    ) {
         jacobian.fill(0.0);
         let frame = &self.frames[frame];
         // Ancestors from the frame inwards, relative to the frame and in its axes …
@@ -368,9 +374,9 @@ impl Model {
 mod tests {
     use crate::pairs;
 
-    /// Generated and generic code are independent implementations for the same files, and agree.
+    /// Generated and generic code are independent implementations of the same robots, and agree.
     #[test]
-    fn generated_and_generic_code_agree() {
+    fn generated_and_generic_dynamics_agree() {
         for robot in pairs::benchmark_robots() {
             for mut pair in robot.pairs {
                 let error = (0..crate::states::STATES).map(|k| (pair.difference)(k)).fold(0.0, f64::max);

@@ -8,14 +8,14 @@ use linkwork_compiler::{compile, read_source};
 use proc_macro2::TokenStream;
 use std::path::Path;
 
-/// Numbers of operations of one function.
+/// Size of one generated function: operations, and calls of elementary functions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Size {
     /// Number of multiplications, additions and divisions.
     pub operations: usize,
-    /// Number of operations with a product and its sum as one instruction.
+    /// Number of operations if each product and its sum count as one instruction.
     pub fused: usize,
-    /// Number of elementary functions.
+    /// Number of calls of elementary functions.
     pub calls: usize,
 }
 
@@ -34,9 +34,9 @@ impl Size {
 /// Output of the compiler for a mechanism, whose operations are counted.
 pub struct Operations {
     output: Output,
-    /// Number of nodes of the expression graph.
+    /// Number of nodes of the mechanism's expression graph.
     pub nodes: usize,
-    /// Number of velocities.
+    /// Number of velocities of the mechanism.
     pub velocities: usize,
 }
 

@@ -1,6 +1,6 @@
 //! Generated functions and the generic implementation of the same functions, on the same random states.
 
-use crate::generic::{Data, Model, Options};
+use crate::generic::{Model, Options, Workspace};
 use crate::operations::{Operations, Size};
 use crate::robots::Panda;
 use crate::states::{STATES, State, random_states};
@@ -14,13 +14,13 @@ use std::rc::Rc;
 pub struct Pair {
     /// Name of the measured function.
     pub function: &'static str,
-    /// Closure that runs the generated code for a state.
+    /// Closure that calls the generated function at one of the states.
     pub generated: Box<dyn FnMut(usize)>,
-    /// Closure that runs the generic implementation for a state.
+    /// Closure that calls the generic implementation at one of the states.
     pub generic: Box<dyn FnMut(usize)>,
     /// Closure that returns the largest difference of both results, relative to one plus their magnitude.
     pub difference: Box<dyn FnMut(usize) -> f64>,
-    /// Numbers of operations of the generated code.
+    /// Size of the generated function, in operations.
     pub size: Size,
 }
 
@@ -28,7 +28,7 @@ pub struct Pair {
 pub struct Robot {
     /// Name of the robot.
     pub name: &'static str,
-    /// Functions of the robot in both implementations.
+    /// Measured functions of the robot, each in both implementations.
     pub pairs: Vec<Pair>,
 }
 
@@ -79,17 +79,17 @@ struct Source {
 }
 
 /// Generic model with storage for the results of its algorithms.
-struct Generic {
+struct GenericModel {
     model: Rc<Model>,
-    data: Data,
+    data: Workspace,
     vector: DVector<f64>,
     matrix: DMatrix<f64>,
     jacobian: Matrix6xX<f64>,
     frame: usize,
 }
 
-/// Runs a generic function and returns its result.
-type Run<const NQ: usize, const NV: usize> = for<'s> fn(&'s mut Generic, &State<NQ, NV>) -> &'s [f64];
+/// Type of closures that run a function of the generic implementation and return its result.
+type Run<const NQ: usize, const NV: usize> = for<'s> fn(&'s mut GenericModel, &State<NQ, NV>) -> &'s [f64];
 
 fn robot_with_pairs<M, J, const NQ: usize, const NV: usize, const NU: usize>(
     source: &Source,
@@ -104,7 +104,7 @@ where
     let model = Rc::new(model.unwrap_or_else(|message| panic!("{}: {message}", source.name)));
     let operations = Operations::compile(source.arguments, "pub struct Robot;");
     let states = Rc::new(random_states(&model));
-    let bench = Bench { frame: model.index_of_frame(source.frame).unwrap_or_default(), model, states };
+    let bench = GenericBench { frame: model.index_of_frame(source.frame).unwrap_or_default(), model, states };
     let pairs = vec![
         bench.pair_of_implementations(
             "mass matrix",
@@ -173,15 +173,15 @@ where
 }
 
 /// Generic model with the states at which it is evaluated.
-struct Bench<const NQ: usize, const NV: usize> {
+struct GenericBench<const NQ: usize, const NV: usize> {
     model: Rc<Model>,
     frame: usize,
     states: Rc<Vec<State<NQ, NV>>>,
 }
 
-impl<const NQ: usize, const NV: usize> Bench<NQ, NV> {
-    fn generic_algorithms(&self) -> Generic {
-        Generic {
+impl<const NQ: usize, const NV: usize> GenericBench<NQ, NV> {
+    fn generic_algorithms(&self) -> GenericModel {
+        GenericModel {
             model: self.model.clone(),
             data: self.model.allocate_data(),
             vector: DVector::zeros(NV),

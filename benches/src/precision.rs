@@ -91,8 +91,8 @@ pub struct StiffGovernor {
     air: Dashpot,
 }
 
-/// Mechanism that counts its evaluations by an integrator.
-struct Counted<'m, M> {
+/// Mechanism wrapper that counts how often an integrator evaluates the accelerations.
+struct CountingMechanism<'m, M> {
     mechanism: &'m M,
     evaluations: &'m Cell<usize>,
     derivatives: &'m Cell<usize>,
@@ -110,7 +110,7 @@ macro_rules! pass {
     )*};
 }
 
-impl<M, const NQ: usize, const NV: usize> Mechanism<NQ, NV, 0> for Counted<'_, M>
+impl<M, const NQ: usize, const NV: usize> Mechanism<NQ, NV, 0> for CountingMechanism<'_, M>
 where
     M: Mechanism<NQ, NV, 0, Scalar = f64>,
 {
@@ -161,7 +161,8 @@ where
     }
 }
 
-impl<M, const NQ: usize, const NV: usize> linkwork::integrate::Hooks<f64, NQ, NV, 0> for Counted<'_, M>
+impl<M, const NQ: usize, const NV: usize> linkwork::integrate::Hooks<f64, NQ, NV, 0>
+    for CountingMechanism<'_, M>
 where
     M: Mechanism<NQ, NV, 0, Scalar = f64>,
 {
@@ -193,19 +194,19 @@ where
     }
 }
 
-/// Result of an integration method on a test problem.
-pub struct Found {
+/// Result of an integration method on a test problem: final state, evaluations and time.
+pub struct IntegrationResult {
     /// Final configuration of the motion.
     pub q: Vec<f64>,
     /// Number of evaluations of the accelerations.
     pub evaluations: usize,
-    /// Number of evaluations of their derivatives.
+    /// Number of evaluations of the derivatives of the accelerations.
     pub derivatives: usize,
-    /// Minimum of the measured times, s.
+    /// Minimum of the measured processor times, s.
     pub seconds: f64,
 }
 
-/// Names of the problems, by index.
+/// Names of the test problems of the integrators, by index.
 pub const PROBLEMS: [&str; 4] = ["pleiades", "car axis", "Andrews' squeezer", "stiff governor"];
 
 /// Operation on a test problem, generic over the type of its mechanism.
@@ -225,26 +226,27 @@ fn visit_problem<V: Visit>(problem: usize, visit: V) -> V::Result {
     }
 }
 
-struct Solve<S>(S);
+struct SolveVisitor<S>(S);
 
-impl<S: Method<f64> + Clone> Visit for Solve<S> {
-    type Result = Result<Found, Error>;
+impl<S: Method<f64> + Clone> Visit for SolveVisitor<S> {
+    type Result = Result<IntegrationResult, Error>;
 
     fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
     where
         M: Mechanism<N, N, 0, Scalar = f64>,
     {
-        let mut best: Option<Found> = None;
+        let mut best: Option<IntegrationResult> = None;
         for _ in 0..5 {
             let (evaluations, derivatives) = (Cell::new(0), Cell::new(0));
-            let counted = Counted { mechanism: m, evaluations: &evaluations, derivatives: &derivatives };
+            let counted =
+                CountingMechanism { mechanism: m, evaluations: &evaluations, derivatives: &derivatives };
             let clock = Instant::now();
             let run =
                 simulate(&counted).from(start.0, start.1).method(self.0.clone()).duration(end).finish()?;
             let seconds = clock.elapsed().as_secs_f64();
             if best.as_ref().is_none_or(|found| seconds < found.seconds) {
                 let q = run.q.iter().copied().collect();
-                best = Some(Found {
+                best = Some(IntegrationResult {
                     q,
                     evaluations: evaluations.get(),
                     derivatives: derivatives.get(),
@@ -256,18 +258,18 @@ impl<S: Method<f64> + Clone> Visit for Solve<S> {
     }
 }
 
-/// Solves a problem.
+/// Integrates a test problem with a method, and returns its result.
 ///
 /// # Errors
 ///
 /// Returns the errors of the simulation.
-pub fn solve_problem<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<Found, Error> {
-    visit_problem(problem, Solve(method))
+pub fn solve_problem<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<IntegrationResult, Error> {
+    visit_problem(problem, SolveVisitor(method))
 }
 
-struct Start;
+struct StartVisitor;
 
-impl Visit for Start {
+impl Visit for StartVisitor {
     type Result = (Vec<f64>, f64);
 
     fn visit<M, const N: usize>(self, _: &M, (q, v): ([f64; N], [f64; N]), end: f64) -> Self::Result
@@ -280,16 +282,16 @@ impl Visit for Start {
 
 /// Returns the initial state, configuration and velocity, and the final time of a problem, s.
 pub fn initial_state_of_problem(problem: usize) -> (Vec<f64>, f64) {
-    visit_problem(problem, Start)
+    visit_problem(problem, StartVisitor)
 }
 
-struct Rate<'a> {
+struct RateVisitor<'a> {
     t: f64,
     y: &'a [f64],
     rate: &'a mut [f64],
 }
 
-impl Visit for Rate<'_> {
+impl Visit for RateVisitor<'_> {
     type Result = ();
 
     fn visit<M, const N: usize>(self, m: &M, _: ([f64; N], [f64; N]), _: f64)
@@ -305,8 +307,8 @@ impl Visit for Rate<'_> {
     }
 }
 
-/// Writes the rate of a state, with accelerations that satisfy the constraints: the right-hand side for other
-/// libraries.
+/// Writes the time derivative of a state, with accelerations that satisfy the constraints, as the right-hand
+/// side for other libraries.
 pub fn rate_of_state(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
-    visit_problem(problem, Rate { t, y, rate });
+    visit_problem(problem, RateVisitor { t, y, rate });
 }

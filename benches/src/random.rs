@@ -1,4 +1,4 @@
-//! Reproducible random numbers.
+//! Generator of reproducible random numbers for the benchmarks.
 
 /// Random generator (xorshift64*, Vigna 2016).
 pub struct Random(u64);

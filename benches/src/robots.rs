@@ -1,13 +1,13 @@
-//! Robots of the benchmarks in addition to those of `linkwork-models`.
+//! Robots of the benchmarks that the crate `linkwork-models` does not contain.
 
 use linkwork::mechanism;
 
-/// Arm with seven axes and two independent fingers.
+/// Panda arm with seven axes and two independent fingers.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, derivatives, packed)]
 #[derive(Clone, Copy)]
 pub struct Panda;
 
-/// Arm with six axes and continuous joints.
+/// Kinova arm with six axes, whose joints are continuous.
 #[mechanism(urdf = "../models/urdf/kinova.urdf", derivatives, packed)]
 #[derive(Clone, Copy)]
 pub struct Kinova;

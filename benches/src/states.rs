@@ -1,4 +1,4 @@
-//! Reproducible random states.
+//! Reproducible random states at which the benchmarked functions are called.
 
 use crate::generic::{Model, Motion};
 use crate::random::Random;
@@ -7,7 +7,7 @@ use nalgebra::SVector;
 /// Number of states that the calls cycle through.
 pub const STATES: usize = 256;
 
-/// Arguments of the measured functions at one state.
+/// State at which measured functions are called: `q`, `v`, `a` and `τ`.
 #[derive(Clone, Copy, Debug)]
 pub struct State<const NQ: usize, const NV: usize> {
     /// Configuration of the robot.
@@ -21,8 +21,8 @@ pub struct State<const NQ: usize, const NV: usize> {
 }
 
 impl<const NQ: usize, const NV: usize> State<NQ, NV> {
-    /// Returns a state with random coordinates and unit quaternions; all other values are of the order of
-    /// one.
+    /// Returns a state with random coordinates and unit quaternions; velocities, accelerations and forces are
+    /// of order one.
     fn random_for_model(model: &Model, random: &mut Random) -> State<NQ, NV> {
         let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.uniform_within(3.0));
         for link in model.links.iter().filter(|link| link.motion == Motion::Free) {

@@ -32,7 +32,7 @@ mod tests {
     use super::stands_below_a_derive;
 
     #[test]
-    fn the_derive_of_the_same_item_is_found() {
+    fn derive_above_the_attribute_is_found() {
         let below = ["#[derive(Clone)]\n", "#[derive(\n    Clone,\n)]\n/// A cart.\n\n", "#[derive(Clone)] "];
         for above in below {
             let text = format!("use a::b;\n{above}#[mechanism]\nstruct Cart;");
@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn the_derive_of_another_item_is_not() {
+    fn derive_of_another_item_is_ignored() {
         for above in [
             "#[derive(Clone)]\nstruct A;\n",
             "#[derive(Clone)]\nstruct A { a: f64 } // end\n",

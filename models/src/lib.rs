@@ -174,52 +174,52 @@
 //! | --- | --- | --- | --- |
 //! | 1 | classes of mechanisms: pendulums, springs and masses, gimbals, shafts, linkages, rolling bodies, tops | the gallery | the tables above, a test each: [`Pendulum`], [`SpringChain`], [`Gyroscope`], [`ShaftWithSlider`], [`FourBar`], [`RollingDisk`], [`HeavyTop`] |
 //! | 1 | joints and their degrees of freedom | `Pin`, `Sleeve`, `Screw`, `Collar`, `Slot`, `Universal`, `Ball`, `Planar`, `Stage`, `Free`, `Weld` | the table by joint above; `invariants`: `joints.rs` |
-//! | 1 | conservative, dissipative, control and disturbance forces | `dissipated_power`, `control_power`, `disturbance_power`, `power(element)` | `power_balance`; `measurements.rs`: `elements_deliver_what_energies_gain` |
-//! | 2 | points, relative positions, frames with and without an origin | `Point`, `Frame`, `r(y / x)`, `body.at(vector)` | `textbook/orientations.rs`: `words_for_vectors`; [`Gyroscope`] |
-//! | 2 | physical vectors, `dot`, `cross`, angles, projections | expressions | `textbook/orientations.rs`: `words_for_vectors` |
-//! | 2 | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_in_two_charts` |
-//! | 2 | physical matrices: projectors, rotation and cross-product matrices, their products and transposes, resolved in any frame | `Matrix`: `projector`, `rotation`, `skew`, `outer`, `transpose`, `trace` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
-//! | 2 | resolving in a frame, orientation matrices | `resolved_in = frame`, `rotation(B / A)`, `linkwork::rotation` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
-//! | 2 | nonstandard and reciprocal frames | `linkwork::rotation::reciprocal`, and components along any three vectors as expressions, `dot(v, cross(f2, f3)) / dot(f1, cross(f2, f3))`; frames that carry bodies are orthonormal, because the orientation of a rigid body is a rotation | `textbook/matrices.rs`: `components_in_oblique_frames`, `outputs_have_components_in_oblique_frames` |
-//! | 2 | gradients of scalar fields | `gradient(field / point)` | `textbook/curves.rs`: `a_force_is_the_gradient_of_its_field` |
-//! | 3 | tensors of second order as matrices, dyads, transformation of components between frames | `Matrix`, `outer(a, b)`, `resolved_in` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
-//! | 3 | Kronecker products, vectorised matrices, wedge products | nalgebra's `kronecker`; `vectorized`, `wedge` of `linkwork::rotation` | `textbook/matrices.rs`: `kronecker_products_solve_sylvester_s_equation` |
+//! | 1 | conservative, dissipative, control and disturbance forces | `dissipated_power`, `control_power`, `disturbance_power`, `power(element)` | `power_balance`; `measurements.rs`: `element_powers_equal_energy_rates` |
+//! | 2 | points, relative positions, frames with and without an origin | `Point`, `Frame`, `r(y / x)`, `body.at(vector)` | `textbook/orientations.rs`: `vector_functions_have_their_documented_values`; [`Gyroscope`] |
+//! | 2 | physical vectors, `dot`, `cross`, angles, projections | expressions | `textbook/orientations.rs`: `vector_functions_have_their_documented_values` |
+//! | 2 | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_agrees_in_two_coordinate_charts` |
+//! | 2 | physical matrices: projectors, rotation and cross-product matrices, their products and transposes, resolved in any frame | `Matrix`: `projector`, `rotation`, `skew`, `outer`, `transpose`, `trace` | `textbook/matrices.rs`: `matrix_expressions_equal_vector_expressions` |
+//! | 2 | resolving in a frame, orientation matrices | `resolved_in = frame`, `rotation(B / A)`, `linkwork::rotation` | `textbook/matrices.rs`: `matrix_expressions_equal_vector_expressions` |
+//! | 2 | nonstandard and reciprocal frames | `linkwork::rotation::reciprocal`, and components along any three vectors as expressions, `dot(v, cross(f2, f3)) / dot(f1, cross(f2, f3))`; frames that carry bodies are orthonormal, because the orientation of a rigid body is a rotation | `textbook/matrices.rs`: `oblique_components_follow_from_reciprocal_vectors`, `outputs_may_have_oblique_components` |
+//! | 2 | gradients of scalar fields | `gradient(field / point)` | `textbook/curves.rs`: `force_of_a_field_is_its_gradient` |
+//! | 3 | tensors of second order as matrices, dyads, transformation of components between frames | `Matrix`, `outer(a, b)`, `resolved_in` | `textbook/matrices.rs`: `matrix_expressions_equal_vector_expressions` |
+//! | 3 | Kronecker products, vectorised matrices, wedge products | nalgebra's `kronecker`; `vectorized`, `wedge` of `linkwork::rotation` | `textbook/matrices.rs`: `kronecker_products_solve_sylvesters_equation` |
 //! | 3 | tensors of higher order and their coordinates | left out: no equation of a mechanism's user contains one | |
 //! | 4 | position, velocity, acceleration, angular velocity and acceleration with respect to a frame | `r`, `v`, `a`, `omega`, `alpha` with slashes | [`RateGyroscope`]; `accelerations.rs` |
-//! | 4 | rates of vectors and matrices as seen from a frame: the transport theorem, Poisson's equation | `rate(vector / frame)`, `rate(matrix / frame)` | `textbook/motions.rs`: `euler_s_laws_hold_for_a_set_of_bodies`; `matrices_are_what_their_vectors_say` |
-//! | 4 | instantaneous centres of velocity and acceleration | `instant_center`, `acceleration_center` | `textbook/motions.rs`: `a_ladder_turns_about_its_instantaneous_centre`, `a_wheel_turns_about_its_contact_and_accelerates_about_its_hub` |
-//! | 4 | screw of a motion (Chasles, Mozzi) | `screw_axis`, `screw_pitch` | `textbook/motions.rs`: `two_turns_make_a_screw_of_the_cylindroid`, `a_nut_has_the_pitch_and_the_axis_of_its_thread` |
+//! | 4 | rates of vectors and matrices as seen from a frame: the transport theorem, Poisson's equation | `rate(vector / frame)`, `rate(matrix / frame)` | `textbook/motions.rs`: `eulers_laws_hold_for_a_set_of_bodies`; `matrix_expressions_equal_vector_expressions` |
+//! | 4 | instantaneous centres of velocity and acceleration | `instant_center`, `acceleration_center` | `textbook/motions.rs`: `ladder_rotates_about_its_instantaneous_centre`, `wheel_rotates_about_its_contact_point` |
+//! | 4 | screw of a motion (Chasles, Mozzi) | `screw_axis`, `screw_pitch` | `textbook/motions.rs`: `two_rotations_form_a_screw_of_the_cylindroid`, `nut_motion_has_the_screw_axis_and_pitch_of_its_thread` |
 //! | 4 | closed loops, rolling, sliding | `Pin` and others that close loops, `Rolling`, `Slipping` | [`FourBar`], [`RollingDisk`], [`BowlingBall`] |
-//! | 4 | rolling as a condition on the velocity of the lowest point | `wheel.at(-radius * fork.z)` in a `Nonholonomic` | `a_wheel_rolls_on_a_point_in_the_axes_of_its_fork` |
-//! | 5 | cylindrical and spherical coordinates and their frames | `#[frame(ground, cylindrical(r(point / ground)))]`, `spherical`; a chain of joints or `Coordinate`s | `accelerations_in_spherical_and_cylindrical_frames`; [`SphericalPendulum`]; `spherical_pendulum_in_two_charts` |
-//! | 5 | frames along curves (Frenet and Serret), curvature, torsion | `#[frame(ground, frenet(curve, s))]`, `curvature(curve, s)`, `torsion(curve, s)` | `textbook/curves.rs`: `a_helix_has_constant_curvature_and_torsion`, `cubics_and_ellipses_bend_as_geometry_says` |
-//! | 5 | a coordinate along a curve of any form | a `Coordinate`, `at = expression` | `beads_on_wires` |
+//! | 4 | rolling as a condition on the velocity of the lowest point | `wheel.at(-radius * fork.z)` in a `Nonholonomic` | `wheel_rolls_on_a_point_in_fork_axes` |
+//! | 5 | cylindrical and spherical coordinates and their frames | `#[frame(ground, cylindrical(r(point / ground)))]`, `spherical`; a chain of joints or `Coordinate`s | `spherical_and_cylindrical_accelerations_have_textbook_terms`; [`SphericalPendulum`]; `spherical_pendulum_agrees_in_two_coordinate_charts` |
+//! | 5 | frames along curves (Frenet and Serret), curvature, torsion | `#[frame(ground, frenet(curve, s))]`, `curvature(curve, s)`, `torsion(curve, s)` | `textbook/curves.rs`: `helix_has_constant_curvature_and_torsion`, `curvature_of_cubics_and_ellipses_has_closed_forms` |
+//! | 5 | coordinates along a curve | `Coordinate`, `at = expression` | `beads_on_wires_have_closed_forms` |
 //! | 6 | reactions of joints, equilibrium of each free body | `reaction_force`, `reaction_torque` | `constraints/reactions.rs`: `reactions_balance_every_free_body` |
-//! | 6 | free-body diagrams: all forces on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams/main.rs`: `what_acts_on_a_body_changes_its_momenta` |
-//! | 6 | forces along lines, ropes over pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length`, `cables_take_the_shortest_way_around`, `cables_have_exact_derivatives` |
+//! | 6 | free-body diagrams: all forces on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams/main.rs`: `free_body_forces_equal_momentum_rates` |
+//! | 6 | forces along lines, ropes over pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length_expression`, `cables_wrap_along_the_shortest_path`, `cable_lengths_have_exact_derivatives` |
 //! | 6 | equilibria with fixed coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
 //! | 6 | a chain's catenary, an unstable column, three legs, a platform on six | `linkwork_design::steady` | `chain_hangs_in_catenary`, `column_buckles_at_critical_load`, `table_legs_share_the_load`, `six_legs_support_a_platform` of design |
 //! | 6 | stability by energy and by eigenvalues | `stiffness`, `linear_system` of an equilibrium | `bead_on_hoop_has_four_equilibria` |
 //! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that report them | `errors_name_the_wrong_entry` of design |
 //! | 7 | Newton's and Euler's equations | `inverse_dynamics`, `forward_dynamics` | [`FreeRigidBody`], every mechanism |
 //! | 7 | inertia of solids, parallel axes, rotated inertias; physically consistent principal moments | `inertia = …`, `validate()` | `validate.rs` |
-//! | 7 | inertia about any point, of one body or several, in any frame | `inertia(body / point)`, `moment_of_inertia(body / point, x, y)`, `about = point` of a `Body` | `moments_of_inertia_are_those_of_energies`, `inertias_about_another_point_are_moved_to_the_centre_of_mass`, `matrices_are_what_their_vectors_say` |
-//! | 7 | momentum and angular momentum of bodies, about any point | `momentum`, `angular_momentum`, the function `momentum` | `measurements.rs`: `bodies_share_momentum_and_energy` |
-//! | 7 | momenta of a set of bodies, external forces and torques | `momentum((first, second))`, `angular_momentum((first, second) / point)`, `center_of_mass((first, second) / point)` | `euler_s_laws_hold_for_a_set_of_bodies` |
-//! | 7 | centre of percussion | `center_of_percussion(body / point, axis)` | `a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest` |
+//! | 7 | inertia about any point, of one body or several, in any frame | `inertia(body / point)`, `moment_of_inertia(body / point, x, y)`, `about = point` of a `Body` | `moments_of_inertia_agree_with_kinetic_energies`, `inertia_about_another_point_is_moved_to_the_centre_of_mass`, `matrix_expressions_equal_vector_expressions` |
+//! | 7 | momentum and angular momentum of bodies, about any point | `momentum`, `angular_momentum`, the function `momentum` | `measurements.rs`: `body_momenta_and_energies_add_up` |
+//! | 7 | momenta of a set of bodies, external forces and torques | `momentum((first, second))`, `angular_momentum((first, second) / point)`, `center_of_mass((first, second) / point)` | `eulers_laws_hold_for_a_set_of_bodies` |
+//! | 7 | centre of percussion | `center_of_percussion(body / point, axis)` | `impulse_at_the_centre_of_percussion_leaves_the_grip_at_rest` |
 //! | 7 | springs, dashpots, inerters, friction, central gravity | force elements | `textbook/elements.rs`, `textbook/gravity.rs` |
 //! | 7 | steady motions: precession, governor, circles of disk and bicycle, climbing and turning flight | `Trim` of an equilibrium | `tests/steady.rs` here, [`HeavyTop`], [`Aircraft`] |
 //! | 8 | kinetic and potential energy; conservative, dissipative, control and disturbance power | functions of every mechanism, `kinetic_energy(body)` | `textbook/elements.rs`: `power_balance` |
-//! | 8 | work and power of one force | `power(element)`, `#[state(rate = power(motor))] work: State` | `work_is_what_energy_gains_and_drag_takes`, `elements_deliver_what_energies_gain` |
+//! | 8 | work and power of one force | `power(element)`, `#[state(rate = power(motor))] work: State` | `work_state_integrates_the_power_of_a_force`, `element_powers_equal_energy_rates` |
 //! | 8 | conserved quantities: energy, Jacobi's integral, cyclic coordinates, momenta | the option `conserved` | `conserved.rs` |
 //! | 9 | Lagrange's equations, with multipliers | `EQUATIONS`, `equations = lagrange` | [`DoublePendulum`]; `derivations.rs` |
-//! | 9 | Hamilton's equations | the option `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
+//! | 9 | Hamilton's equations | the option `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_equations_agree_with_the_dynamics` |
 //! | 9 | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
-//! | 9 | printed equations of Gibbs, Appell and Kane | `EQUATIONS` of mechanisms with a `Speed` | `a_rolling_disk_moves_alike_in_kanes_speeds` |
-//! | 9 | Kane's equations without multipliers, nonholonomic constraints | `equations = kane` | [`ChaplyginSleigh`]; `printed_equations_are_those_of_the_motion` |
-//! | 9 | Routh's reduction over cyclic coordinates | the option `routh`, `equations = routh` | `lagranges_equations_hold_for_the_routhian`, `printed_reduction_is_that_of_the_functions` of the compiler |
-//! | 9 | user-defined generalized speeds | `#[speed(expression)] wx: Speed` | `methods_keep_their_orders`, `frames_move_alike` |
-//! | 10–16 | printed linear equations in the user's parameters, characteristic polynomial, Routh's conditions | `#[equilibrium(theta = 0)] upright: Equilibrium` | `a_pendulum`, `rows_are_derivatives` of the compiler |
+//! | 9 | printed equations of Gibbs, Appell and Kane | `EQUATIONS` of mechanisms with a `Speed` | `rolling_disk_moves_equally_in_kanes_speeds` |
+//! | 9 | Kane's equations without multipliers, nonholonomic constraints | `equations = kane` | [`ChaplyginSleigh`]; `printed_kane_equations_equal_the_dynamics` |
+//! | 9 | Routh's reduction over cyclic coordinates | the option `routh`, `equations = routh` | `lagranges_equations_hold_for_the_routhian`, `printed_routhian_equals_generated_functions` of the compiler |
+//! | 9 | user-defined generalized speeds | `#[speed(expression)] wx: Speed` | `integrators_in_speeds_have_their_orders`, `frame_velocities_are_equal_in_speeds` |
+//! | 10–16 | printed linear equations in the user's parameters, characteristic polynomial, Routh's conditions | `#[equilibrium(theta = 0)] upright: Equilibrium` | `pendulum_linearises_to_its_natural_frequency`, `linear_equations_are_derivatives_of_the_dynamics` of the compiler |
 //! | 10–16 | linearisation for small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
 //! | 10–16 | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
 //! | 10–16 | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |

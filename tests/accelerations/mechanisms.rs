@@ -1,8 +1,8 @@
-//! Written by the test `the_file_is_what_the_generator_writes`.
+//! Written by the test `generated_file_is_up_to_date`.
 
 use linkwork::mechanism;
 
-/// Random.
+/// Random test mechanism 0: bodies and joints with random masses and placements.
 #[mechanism(gravity = [3.5765833880517284, -1.2951756447213802, 5.266989664766342], derivatives)]
 pub struct Random0 {
     #[body(mass = 0.68727528437819, com = [-0.10449137620483882, -0.21362381193386712, -0.2523877501504262], inertia = diagonal(0.05370262839353467, 0.0354494749207609, 0.06533855966296213).rotated(y(2.470873155812222), z(0.24554419202428623)))]
@@ -28,7 +28,7 @@ pub struct Random0 {
     element2: Attraction,
 }
 
-/// Random.
+/// Random test mechanism 1: bodies and joints with random masses and placements.
 #[mechanism(gravity = [5.0215451074644974, 2.221908369652994, -5.12510366576076], derivatives)]
 pub struct Random1 {
     #[body(
@@ -55,7 +55,7 @@ pub struct Random1 {
     element1: Force,
 }
 
-/// Random.
+/// Random test mechanism 2: bodies and joints with random masses and placements.
 #[mechanism(gravity = [-4.001802022658351, 4.600281077252115, 9.174808449886509], derivatives)]
 pub struct Random2 {
     #[body(
@@ -78,7 +78,7 @@ pub struct Random2 {
     element1: Torque,
 }
 
-/// Random.
+/// Random test mechanism 3: bodies and joints with random masses and placements.
 #[mechanism(gravity = [8.684418107140887, -5.845685869241404, -6.416169144029931], derivatives)]
 pub struct Random3 {
     #[body(mass = 0.6972025977967627, com = [0.0, 0.0, 0.0], inertia = diagonal(0.055858584353104514, 0.04707965034392489, 0.048039336354910915).rotated(y(1.6140406510471246), y(2.2342328618463903)))]
@@ -114,7 +114,7 @@ pub struct Random3 {
     element1: Dashpot,
 }
 
-/// Random.
+/// Random test mechanism 4: bodies and joints with random masses and placements.
 #[mechanism(gravity = [6.558184311797288, -3.6245655454468673, -6.147891589694298], derivatives)]
 pub struct Random4 {
     #[body(mass = 1.219532186528099, com = [-0.34996132910512545, -0.2088797789436816, 0.060222976126130146], inertia = diagonal(0.07779019640973385, 0.08049536753762519, 0.04340871385466647).rotated(z(-2.0271461569472473)))]
@@ -140,7 +140,7 @@ pub struct Random4 {
     slider1: Particle,
 }
 
-/// Random.
+/// Random test mechanism 5: bodies and joints with random masses and placements.
 #[mechanism(gravity = [-2.656148637175264, -4.191294667771421, -7.766137961094937], derivatives)]
 pub struct Random5 {
     #[body(mass = 1.669027957920256, com = [0.0, 0.0, 0.0], inertia = diagonal(0.12432255966814239, 0.15156969716157237, 0.09024314984246577).rotated(y(2.1266097008265046)))]
@@ -204,7 +204,7 @@ pub struct Random5 {
     element2: Torque,
 }
 
-/// Random.
+/// Random test mechanism 6: bodies and joints with random masses and placements.
 #[mechanism(gravity = [3.2897592988364943, -4.471349099854136, 3.2429056495018793], derivatives)]
 pub struct Random6 {
     #[body(mass = 0.4898453334794236, com = [-0.09626656888902847, 0.278525293302691, 0.24243912059524986], inertia = diagonal(0.01954869560441096, 0.027892999589648106, 0.029106359931072415).rotated(z(-2.335144381781973), z(1.2244337610975586)))]
@@ -245,7 +245,7 @@ pub struct Random6 {
     element0: Inerter,
 }
 
-/// Random.
+/// Random test mechanism 7: bodies and joints with random masses and placements.
 #[mechanism(gravity = [8.025798871311993, 4.839292348886559, 3.1177811066919503], derivatives)]
 pub struct Random7 {
     #[body(mass = 1.5062185418561496, com = [-0.21817201206168566, 0.35813877816229267, -0.0736657572484372], inertia = diagonal(0.13197096085873392, 0.09838479144764738, 0.13530280784057316).rotated(x(2.601529748337679), z(2.307630438959551)))]
@@ -278,7 +278,7 @@ pub struct Random7 {
     element0: Inerter,
 }
 
-/// Random.
+/// Random test mechanism 8: bodies and joints with random masses and placements.
 #[mechanism(gravity = [2.714471727135088, -0.5694959225377838, 4.47194044774355], derivatives)]
 pub struct Random8 {
     #[body(
@@ -331,7 +331,7 @@ pub struct Random8 {
     element0: Torque,
 }
 
-/// Random.
+/// Random test mechanism 9: bodies and joints with random masses and placements.
 #[mechanism(gravity = [8.63664902802432, -7.050040642334383, 9.413142787328255], derivatives)]
 pub struct Random9 {
     #[body(mass = 2.5748584377843695, com = [0.0, 0.0, 0.0], inertia = diagonal(0.16085774198430394, 0.09826435768810438, 0.15652041402391684).rotated(y(-0.6419298695651612), z(-0.7008633309452181)))]
@@ -342,7 +342,7 @@ pub struct Random9 {
     element0: Spring,
 }
 
-/// Random.
+/// Random test mechanism 10: bodies and joints with random masses and placements.
 #[mechanism(gravity = [5.695939775470837, 0.33733566758592515, -4.11085890789807], derivatives)]
 pub struct Random10 {
     #[body(mass = 3.0847149818020134, com = [-0.10843533273640445, 0.32178033039827014, -0.07296562497399872], inertia = diagonal(0.13887673769664458, 0.23457621051806213, 0.20161494030549473).rotated(x(-0.47163950968805923), y(-0.4461104745366242)))]
@@ -362,7 +362,7 @@ pub struct Random10 {
     slider2: Particle,
 }
 
-/// Random.
+/// Random test mechanism 11: bodies and joints with random masses and placements.
 #[mechanism(gravity = [-8.113307834237109, 3.536265825759357, -5.574967092878831], derivatives)]
 pub struct Random11 {
     #[body(

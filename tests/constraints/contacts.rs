@@ -88,7 +88,7 @@ struct HeldCone {
 }
 
 #[test]
-fn a_cone_turns_about_the_line_of_contact() {
+fn cone_rotates_about_its_line_of_contact() {
     assert_eq!((FreeCone::NC, FreeCone::NH, FreeCone::NS), (5, 4, 1));
     assert_eq!((HeldCone::NC, HeldCone::NH, HeldCone::NS), (2, 1, 1));
     // The cone leans towards x by the difference of the angles, and is rotated about its axis.
@@ -120,7 +120,7 @@ struct BallOnCone {
 /// Along the line of steepest descent the acceleration is that on an incline: `5/7` of the component of
 /// gravity.
 #[test]
-fn a_ball_rolls_down_a_cone() {
+fn ball_rolls_down_a_cone_as_on_an_incline() {
     let (s, c) = 0.5_f64.sin_cos();
     // The contact is at the distance 0.3 along the cone from its apex; the centre is one radius away from it.
     let (line, normal) = (Vector3::new(s, 0.0, -c), Vector3::new(c, 0.0, s));
@@ -171,7 +171,7 @@ struct BySpeeds {
 
 /// The accelerations and the normal force are equal, with a compressive and with a tensile normal force.
 #[test]
-fn a_plane_is_a_surface() {
+fn parametric_plane_equals_a_plane_contact() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
     let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
     let on = OnPoints {}.assemble(&near, &[]).expect("it is near");
@@ -195,24 +195,26 @@ fn a_plane_is_a_surface() {
 
 /// Derivatives of a contact on a parametric surface agree with differences.
 #[test]
-fn derivatives_on_a_surface() {
+fn parametric_surface_contact_has_exact_derivatives() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
     let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
     let q = OnPoints {}.assemble(&near, &[]).expect("it is near");
     let any = [0.0, 0.0, 0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into();
     let v = OnPoints {}.project_velocity(&q, &any).expect("regular");
     let (by_q, by_v, _) = OnPoints {}.forward_dynamics_derivatives(&q, &v, &SVector::zeros());
-    let accelerations =
+    let accelerations_on_points =
         |q: &SVector<f64, 9>, v: &SVector<f64, 8>| OnPoints {}.forward_dynamics(q, v, &SVector::zeros());
     for k in 0..8 {
         let unit_step = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
         let five_point_derivative = |f: &dyn Fn(f64) -> SVector<f64, 8>, h: f64| {
             ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
         };
-        let found =
-            five_point_derivative(&|h| accelerations(&OnPoints {}.integrate(&q, &unit_step(h)), &v), 1e-3);
+        let found = five_point_derivative(
+            &|h| accelerations_on_points(&OnPoints {}.integrate(&q, &unit_step(h)), &v),
+            1e-3,
+        );
         assert!((found - by_q.column(k)).amax() < 1e-6 * by_q.amax(), "{found} {}", by_q.column(k));
-        let found = five_point_derivative(&|h| accelerations(&q, &(v + unit_step(h))), 1e-3);
+        let found = five_point_derivative(&|h| accelerations_on_points(&q, &(v + unit_step(h))), 1e-3);
         assert!((found - by_v.column(k)).amax() < 1e-6 * by_v.amax(), "{found} {}", by_v.column(k));
     }
 }
@@ -259,7 +261,7 @@ struct InBowl {
 }
 
 #[test]
-fn a_bowl_is_a_surface() {
+fn parametric_bowl_equals_its_closed_form() {
     let t = 0.7;
     let near = [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5].into();
     let q = InBowl {}.project_configuration(t, &near).expect("the bowl is near");
@@ -290,7 +292,7 @@ struct BeadInDish {
 
 /// A particle circles at any constant height with `Ω² = g / c`.
 #[test]
-fn a_particle_circles_in_a_dish() -> Result<(), Error> {
+fn particle_circles_in_a_dish_at_constant_rate() -> Result<(), Error> {
     let rate = (9.81_f64 / 0.3).sqrt();
     for radius in [0.01, 0.4] {
         let q = [radius, 0.0, radius * radius / 0.6];

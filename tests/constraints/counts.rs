@@ -47,7 +47,7 @@ fn windows_source(n: usize) -> String {
 
 /// The elimination preserves the zeros of a chain of loops: each window adds the same number of operations.
 #[test]
-fn a_chain_of_loops_costs_in_proportion_to_its_length() {
+fn elimination_of_loop_chains_grows_linearly() {
     let counts: Vec<usize> =
         (1..=10).map(|n| count_operations("gravity = -9.81 * y", &windows_source(n))).collect();
     let steps: Vec<usize> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -99,7 +99,7 @@ fn platform_source(legs: usize) -> String {
 /// The numbers of operations of the models are exact, which shows every change that the compiler makes to
 /// them.
 #[test]
-fn linkages_and_rolling_bodies() {
+fn operation_counts_of_constrained_models_are_exact() {
     let expected = [
         ("four_bar", 181),
         ("slider_crank", 148),

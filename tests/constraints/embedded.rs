@@ -123,7 +123,7 @@ linkages!(FourBar, Slider, SixBar);
 linkages!(SolvedFourBar, SolvedSlider, SolvedSixBar, 1);
 
 #[test]
-fn a_solved_four_bar_moves_as_with_multipliers() {
+fn eliminated_four_bar_moves_as_with_multipliers() {
     assert_eq!((SolvedFourBar::NV, FourBar::NV, FourBar::NC), (2, 4, 2));
     let (bar, solved) = (FourBar { length: 0.9 }, SolvedFourBar { length: 0.9 });
     for angle in [0.2_f64, 1.1, 2.4, 4.0, -1.3] {
@@ -173,7 +173,7 @@ fn a_solved_four_bar_moves_as_with_multipliers() {
 }
 
 #[test]
-fn a_solved_slider_moves_as_with_multipliers() {
+fn eliminated_slider_moves_as_with_multipliers() {
     let (slider, solved) = (Slider {}, SolvedSlider {});
     for angle in [0.2_f64, 1.1, 2.4, 4.0, -1.3] {
         let q = SVector::from([angle]);
@@ -201,7 +201,7 @@ fn a_solved_slider_moves_as_with_multipliers() {
 }
 
 #[test]
-fn a_solved_six_bar_transmits_what_it_does_with_multipliers() {
+fn eliminated_six_bar_has_the_forces_of_multipliers() {
     let (bar, solved) = (SixBar {}, SolvedSixBar {});
     for angle in [0.4_f64, 1.3, 2.6, 4.0] {
         let q = SVector::from([angle]);

@@ -99,7 +99,7 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
 /// Whether the runtime accepts the accelerations from independent speeds, or falls back to multipliers. It
 /// compares the pivots of the elimination, which follow the accelerations and multipliers in `found`, with
 /// their values before the elimination.
-fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
+fn accepts_eliminated_accelerations(nv: usize, nc: usize, found: &[f64]) -> bool {
     fn has_solution<const NC: usize>(found: &[f64]) -> bool {
         let part_of_solution = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
         let (pivots, before) = (part_of_solution(1), part_of_solution(2));
@@ -124,7 +124,7 @@ fn test_case_count(usual: u32) -> u32 {
 }
 
 #[test]
-fn both_formulations_fulfil_the_equations() {
+fn both_formulations_satisfy_the_equations_of_motion() {
     let checked = Cell::new(0);
     let run = TestRunner::new(property_test_config(test_case_count(64))).run(
         &(random_chains(), 0..1000_u64),
@@ -148,7 +148,7 @@ fn both_formulations_fulfil_the_equations() {
                 // Close to a singular configuration, or with nearly dependent speeds, small pivots exclude the
                 // solution.
                 let regular = (0..nc).all(|k| first[nv + nc + k] > 1e-4 * first[nv + 2 * nc + k]);
-                let taken = is_taken(nv, nc, &second);
+                let taken = accepts_eliminated_accelerations(nv, nc, &second);
                 let m = eval(&mass.concat(), &at);
                 let j = eval(&rows.concat(), &at);
                 let (f, b) = (eval(&force, &at), eval(&bias, &at));
@@ -165,12 +165,12 @@ fn both_formulations_fulfil_the_equations() {
                         let held = (0..nc).map(|c| -j[c * nv + i] * lambda[c]);
                         (0..nv).map(|k| m[i * nv + k] * a[k]).chain(held).chain([-f[i]]).collect()
                     };
-                    let rate = |c: usize| -> Vec<f64> {
+                    let constraint_rate_rows = |c: usize| -> Vec<f64> {
                         (0..nv).map(|k| j[c * nv + k] * a[k]).chain([b[c]]).collect()
                     };
                     for equations in [
                         (0..nv).map(terms_of_motion_equation).collect::<Vec<_>>(),
-                        (0..nc).map(rate).collect(),
+                        (0..nc).map(constraint_rate_rows).collect(),
                     ] {
                         let sums: Vec<(f64, f64)> =
                             equations.iter().map(|terms| sum_and_largest_term(terms)).collect();
@@ -194,7 +194,7 @@ proptest! {
     /// Constraint velocities are the derivatives of the residuals along the motion, and biases are the
     /// derivatives of the constraint velocities at constant `v`.
     #[test]
-    fn rates_and_biases_are_derivatives(chain in random_chains(), seed in 0..1000_u64) {
+    fn constraint_velocities_and_biases_are_time_derivatives(chain in random_chains(), seed in 0..1000_u64) {
         with_model(&chain, "", |model| {
             let q = random_configuration(model, seed);
             let velocity_sample = |k: usize| {

@@ -17,7 +17,7 @@ struct Bob {
 /// would violate the rod's constraint by 0.39 m/s and more. The projection preserves the tangential
 /// component.
 #[test]
-fn impacts_leave_the_constraints_alone() {
+fn impacts_preserve_the_constraints() {
     let pendulum = Bob {};
     let (x, y) = (0.6_f64.sin(), -0.6_f64.cos());
     let run = || {
@@ -54,7 +54,7 @@ fn impacts_leave_the_constraints_alone() {
 
 /// A bob that the wall stops completely would next move through the wall.
 #[test]
-fn a_plastic_impact_is_an_error() {
+fn plastic_impact_through_a_wall_is_an_error() {
     let pendulum = Bob {};
     let run = simulate(&pendulum).from([0.6, -0.8], [0.0, 0.0]).duration(3.0);
     let end = run.impact(Crossing::Falling, |_, q, _| q[0] - 0.1, |_, _, v| v * 0.0).finish();

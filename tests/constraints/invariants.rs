@@ -94,7 +94,7 @@ fn check_completed_velocities<
     assert_eq!(m.assemble(0.0, q, &[0, NV]), outside.map(|_: SVector<f64, NV>| *q));
 }
 
-/// Returns the energy after a short time `h`.
+/// Returns the energy of a mechanism after a short time `h` along its motion.
 fn energy_after<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -141,7 +141,7 @@ fn check_constraint_rates<
 }
 
 #[test]
-fn linkages() {
+fn linkages_satisfy_constrained_dynamics() {
     let four_bar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
     check_constrained_dynamics(&four_bar, &[0.7, 0.2, 1.8].into());
     let crank = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
@@ -157,7 +157,7 @@ fn linkages() {
 }
 
 #[test]
-fn platform() {
+fn platform_satisfies_constrained_dynamics() {
     let platform = StewartPlatform {
         g: 9.81,
         base_radius: 0.8,
@@ -177,7 +177,7 @@ fn platform() {
 }
 
 #[test]
-fn rolling_bodies() {
+fn rolling_bodies_satisfy_constrained_dynamics() {
     let disk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
     check_constrained_dynamics(&disk, &[0.0, 0.0, 0.4, 0.5, 0.3, 0.7].into());
     let bowl = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
@@ -202,7 +202,7 @@ fn rolling_bodies() {
 
 /// States that violate the constraints are rejected, and an assembly that fails reports the constraint.
 #[test]
-fn states_off_the_constraints_are_errors() {
+fn states_violating_constraints_are_errors() {
     let squeezer = AndrewsSqueezer {};
     let mut q = SVector::from(AndrewsSqueezer::START);
     q[2] += 0.01;
@@ -239,7 +239,7 @@ fn states_off_the_constraints_are_errors() {
 
 /// A four-bar linkage is assembled from any guess of its free coordinates if a solution exists.
 #[test]
-fn linkages_are_assembled_from_afar() {
+fn linkages_are_assembled_from_distant_guesses() {
     let linkage = FourBar { g: 9.81, density: 1.0, a: 0.2, b: 0.6, c: 0.5, d: 0.6 };
     for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
         let multiple_of_eighth_turn = |k: i32| f64::from(k) * std::f64::consts::FRAC_PI_4;
@@ -264,7 +264,7 @@ struct Held<T: Real> {
 /// Constraints must be satisfied to half of the digits, so that a wrong configuration is an error in single
 /// precision, too.
 #[test]
-fn single_precision_knows_what_is_off() {
+fn constraint_tolerance_suits_single_precision() {
     fn check_scalar_type<T: Real>(tolerance: T) {
         let one = T::one();
         let held = Held { length: one };
@@ -286,7 +286,7 @@ fn single_precision_knows_what_is_off() {
 /// A completed velocity preserves the rate of the crank. At the dead centre the velocity of the piston cannot
 /// be prescribed, that of the crank can.
 #[test]
-fn velocities_are_completed() {
+fn velocities_are_completed_from_prescribed_ones() {
     let engine = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
     let q = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]).expect("the crank goes round");
     let v = engine.complete_velocity(&q, &[100.0, 0.0, 0.0].into(), &[0]).expect("no dead centre");

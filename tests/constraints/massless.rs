@@ -27,7 +27,7 @@ struct SliderCrank {
 }
 
 #[test]
-fn loops_close_without_inertia() {
+fn massless_links_close_loops() {
     let engine = SliderCrank { r: 0.04, l: 0.13, lift: 0.01 };
     let t = 0.9_f64;
     let q = engine.assemble(t, &[0.8, -1.0, 0.1].into(), &[0]).expect("it closes");

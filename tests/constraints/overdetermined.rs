@@ -44,12 +44,12 @@ fn bennett_ratio(q: &SVector<f64, 3>) -> f64 {
 }
 
 #[test]
-fn bennetts_linkage_moves_along_its_closed_form() {
+fn bennetts_linkage_follows_its_closed_form() {
     assert_eq!((Bennett::NV, Bennett::NC, Bennett::NP), (3, 3, 1));
     let linkage = Bennett {};
     let (q, v) = state_with_angle(0.7, 1.0);
     assert!((bennett_ratio(&q) + 1.0).abs() < 1e-12, "{}", bennett_ratio(&q));
-    let energy =
+    let total_energy =
         |q: &SVector<f64, 3>, v: &SVector<f64, 3>| linkage.kinetic_energy(q, v) + linkage.potential_energy(q);
     let method = DormandPrince::new().tolerance(1e-11, 1e-11);
     let mut farthest = 0.0_f64;
@@ -57,14 +57,14 @@ fn bennetts_linkage_moves_along_its_closed_form() {
         let sample = sample.expect("the linkage turns on");
         assert!((bennett_ratio(&sample.q) + 1.0).abs() < 1e-9, "{}", sample.q);
         assert!((sample.q[2] + sample.q[0]).abs() < 1e-12, "opposite pins turn alike");
-        assert!((energy(&sample.q, &sample.v) - energy(&q, &v)).abs() < 1e-8);
+        assert!((total_energy(&sample.q, &sample.v) - total_energy(&q, &v)).abs() < 1e-8);
         farthest = farthest.max((sample.q[0] - q[0]).abs());
     }
     assert!(farthest > 1.0, "{farthest}");
 }
 
 #[test]
-fn its_multipliers_are_the_least_that_fulfil_the_equations() {
+fn redundant_multipliers_have_minimum_norm() {
     let linkage = Bennett {};
     for (angle, rate) in [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4)] {
         let (q, v) = state_with_angle(angle, rate);
@@ -84,7 +84,7 @@ fn its_multipliers_are_the_least_that_fulfil_the_equations() {
 }
 
 #[test]
-fn lanes_hold_what_single_states_give() {
+fn overconstrained_lanes_equal_single_states() {
     let linkage = Bennett {};
     let each =
         [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4), (2.5, 0.0)].map(|(angle, rate)| state_with_angle(angle, rate));

@@ -35,7 +35,7 @@ struct Coupled {
 }
 
 #[test]
-fn equal_velocities_in_a_plane_are_two_conditions() {
+fn equal_planar_velocities_are_two_constraints() {
     assert_eq!((Convoy::NC, Convoy::NH), (2, 0));
     assert_eq!(Convoy::CONSTRAINTS, ["alike.x", "alike.y"]);
     let a = Convoy {}.forward_dynamics(&SVector::zeros(), &SVector::zeros(), &[4.0, 8.0, 0.0, 0.0].into());
@@ -44,7 +44,7 @@ fn equal_velocities_in_a_plane_are_two_conditions() {
 }
 
 #[test]
-fn a_vector_between_points_of_a_plane_is_two_conditions() {
+fn planar_point_difference_is_two_constraints() {
     assert_eq!((Coupled::NC, Coupled::NH), (2, 2));
     assert_eq!(Coupled::CONSTRAINTS, ["coupling.x", "coupling.y"]);
     let pair = Coupled { gap: 0.5 };

@@ -118,7 +118,7 @@ struct WeldedArm {
 }
 
 #[test]
-fn a_weld_carries_what_hangs_from_it() {
+fn weld_reaction_carries_the_suspended_bodies() {
     let arm = WeldedArm {};
     let (q, v): (SVector<f64, 1>, SVector<f64, 1>) = (SVector::from([0.7]), SVector::from([2.0]));
     let force = arm.force(&q, &v);

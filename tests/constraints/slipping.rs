@@ -1,4 +1,4 @@
-//! Checks of sliding contact constraints with dry friction.
+//! Tests of sliding contact constraints with dry friction.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -36,7 +36,7 @@ impl Roller {
 /// `2 μ g cos θ / R`; on gentle ones it rolls with `⅔ g sin θ`, while the smoothed friction lets it creep at
 /// a constant velocity.
 #[test]
-fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
+fn disk_slides_or_rolls_down_by_closed_form() -> Result<(), Error> {
     let (mu, v0) = (0.3_f64, 1e-3_f64);
     // The disk slides if tan θ > 3 μ.
     for slope in [0.3, 0.6, 0.9, 1.2] {
@@ -111,7 +111,7 @@ fn slip_velocity(q: &SVector<f64, 7>, v: &SVector<f64, 6>) -> Vector3<f64> {
 }
 
 #[test]
-fn friction_dissipates() {
+fn slipping_friction_dissipates_energy() {
     let mut random = Random::new(5);
     for _ in 0..20 {
         let (q, v) = random_coin_state(&mut random);
@@ -134,7 +134,7 @@ fn friction_dissipates() {
 /// Lifted by more than its weight, the coin is pulled onto the table by the constraint. Friction with a
 /// tensile normal force also opposes the slip.
 #[test]
-fn friction_of_a_pull_resists_as_well() {
+fn friction_with_tensile_normal_force_opposes_slip() {
     let mut random = Random::new(6);
     let mut pulled = 0;
     for _ in 0..20 {
@@ -152,7 +152,7 @@ fn friction_of_a_pull_resists_as_well() {
 
 /// Derivatives agree with differences, for compressive and tensile normal forces.
 #[test]
-fn derivatives_are_those_of_the_motion() {
+fn slipping_derivatives_agree_with_finite_differences() {
     let mut random = Random::new(7);
     for lift in [0.0, 4.0] {
         let (q, v) = random_coin_state(&mut random);
@@ -182,7 +182,7 @@ fn derivatives_are_those_of_the_motion() {
 /// Checks that SIMD lanes equal single states bit by bit, for lanes with compressive and with tensile normal
 /// forces.
 #[test]
-fn lanes_are_single_states() {
+fn slipping_lanes_equal_single_states() {
     let mut random = Random::new(8);
     let states: Vec<_> = (0..4).map(|_| random_coin_state(&mut random)).collect();
     let q: SVector<f64x4, 7> = SVector::from_fn(|i, _| Lanes::from_fn(|k| states[k].0[i]));
@@ -216,7 +216,7 @@ struct Ladder {
 /// Three equations, derived by hand from the free body and the kinematics, determine the two normal forces
 /// and the angular acceleration.
 #[test]
-fn a_ladder_slides_down() {
+fn sliding_ladder_satisfies_newtons_equations() {
     let (angle, rate) = (1.0_f64, -0.8);
     let (s, c) = angle.sin_cos();
     let q = SVector::from([-2.0 * c - 0.05, 2.0 * s + 0.05, angle]);
@@ -282,7 +282,7 @@ struct DraggingArm {
 /// Checks that the reaction at an arm's joint satisfies Newton's second law including the friction at its
 /// tip.
 #[test]
-fn reactions_know_friction() {
+fn joint_reactions_include_friction() {
     let guess = SVector::from([0.3, -0.5]);
     let q = DraggingArm {}.assemble(&guess, &[0]).expect("it reaches the table");
     let v = DraggingArm {}.project_velocity(&q, &[0.6, 0.0].into()).expect("regular");

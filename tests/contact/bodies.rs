@@ -30,7 +30,7 @@ fn apex_heights(m: &Ball, height: f64, h: f64, duration: f64) -> Vec<f64> {
 /// Checks that the n-th apex of a ball dropped from a height h is e²ⁿ h. Other engines miss it: with the
 /// nominal restitution 0.25 they bounce with 0.25, 0.07 or 0.01 (dimforge/rapier, issue 974).
 #[test]
-fn apexes_are_those_of_the_coefficient_of_restitution() {
+fn bounce_heights_follow_the_coefficient_of_restitution() {
     for e in [0.3, 0.5, 0.8, 0.95, 1.0] {
         let m = Ball { restitution: e };
         let [coarse, fine] = [1e-3, 1e-4].map(|h| {
@@ -43,7 +43,7 @@ fn apexes_are_those_of_the_coefficient_of_restitution() {
 
 /// A ball comes to rest after infinitely many bounces, at the time √(2h/g)(1 + e)/(1 − e), and stays at rest.
 #[test]
-fn a_ball_comes_to_rest_after_infinitely_many_bounces() {
+fn ball_comes_to_rest_at_the_zeno_time() {
     let m = Ball { restitution: 0.8 };
     let mut q = m.neutral();
     q[2] = 1.05;
@@ -59,7 +59,7 @@ fn a_ball_comes_to_rest_after_infinitely_many_bounces() {
 
 /// A ball without restitution is at rest after its first impact.
 #[test]
-fn a_plastic_impact_ends_the_motion() {
+fn plastic_impact_stops_the_ball() {
     let m = Ball { restitution: 0.0 };
     let mut q = m.neutral();
     q[2] = 1.05;
@@ -89,7 +89,7 @@ struct OnASlope {
 /// Checks that a sphere rolls down a slope of 15° with the acceleration 5/7 g sin α and the friction force
 /// 2/7 m g sin α. Parameters are those of Drake's test.
 #[test]
-fn a_sphere_rolls_down_a_slope() {
+fn sphere_rolls_down_a_slope_by_closed_form() {
     let tilt = 15.0_f64.to_radians();
     let m = OnASlope { tilt, mass: 0.1, radius: 0.05, friction: 0.5 };
     let mut q = m.neutral();
@@ -116,7 +116,7 @@ fn a_sphere_rolls_down_a_slope() {
 
 /// Friction that is too small for rolling lets the sphere slip: g (sin α − μ cos α).
 #[test]
-fn a_sphere_slips_down_a_steep_slope() {
+fn sphere_slips_down_a_steep_slope() {
     let (tilt, friction) = (1.0_f64, 0.2);
     let m = OnASlope { tilt, mass: 0.1, radius: 0.05, friction };
     assert!(friction < 2.0 / 7.0 * tilt.tan());
@@ -141,7 +141,7 @@ struct Block {
 }
 
 impl Block {
-    fn lying_configuration(&self) -> SVector<f64, 7> {
+    fn configuration_on_slope(&self) -> SVector<f64, 7> {
         let mut q = self.neutral();
         q[2] = 0.05;
         q
@@ -151,9 +151,9 @@ impl Block {
 /// A block on a slope below the angle of friction does not move by a micrometre in an hour. The forces at its
 /// four corners are not unique.
 #[test]
-fn a_block_sticks_for_an_hour() {
+fn block_sticks_on_a_slope_for_an_hour() {
     let m = Block { tilt: 15.0_f64.to_radians(), friction: 0.5 };
-    let q = m.lying_configuration();
+    let q = m.configuration_on_slope();
     let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(0.1)).duration(3600.0);
     let end = run.sample_every(3600.0).last().unwrap().unwrap();
     assert!((end.q - q).norm() < 1e-9, "{:e}", (end.q - q).norm());
@@ -162,11 +162,13 @@ fn a_block_sticks_for_an_hour() {
 /// Checks that a block on a slope above the angle of friction slides with g (sin α − μ cos α) and stays flat
 /// on its face.
 #[test]
-fn a_block_slides_down_a_steep_slope() {
+fn block_slides_down_a_steep_slope() {
     let (tilt, friction) = (30.0_f64.to_radians(), 0.3);
     let m = Block { tilt, friction };
-    let run =
-        simulate(&m).from(m.lying_configuration(), [0.0; 6]).method(TimeStepping::step(1e-3)).duration(1.0);
+    let run = simulate(&m)
+        .from(m.configuration_on_slope(), [0.0; 6])
+        .method(TimeStepping::step(1e-3))
+        .duration(1.0);
     let end = run.last().unwrap().unwrap();
     let acceleration = G * (tilt.sin() - friction * tilt.cos());
     assert!((end.q[0] - acceleration / 2.0).abs() < 1e-9, "{:e}", end.q[0] - acceleration / 2.0);
@@ -175,11 +177,11 @@ fn a_block_slides_down_a_steep_slope() {
 
 /// A block that slides on a level plane comes to rest after v²/(2 μ g), and stays at rest.
 #[test]
-fn a_block_slides_to_rest() {
+fn sliding_block_stops_after_the_coulomb_distance() {
     let m = Block { tilt: 0.0, friction: 0.3 };
     let mut v = SVector::zeros();
     v[0] = 1.5;
-    let run = simulate(&m).from(m.lying_configuration(), v).method(TimeStepping::step(1e-3)).duration(2.0);
+    let run = simulate(&m).from(m.configuration_on_slope(), v).method(TimeStepping::step(1e-3)).duration(2.0);
     let end = run.last().unwrap().unwrap();
     let way = 1.5 * 1.5 / (2.0 * 0.3 * G);
     assert!((end.q[0] - way).abs() < 1e-5 && end.v.norm() < 1e-13, "{:e}", end.q[0] - way);
@@ -208,7 +210,7 @@ struct Logs {
 /// Checks that the computed distances between capsules, and between a sphere and a box, equal the minimum
 /// over many pairs of points.
 #[test]
-fn distances_are_the_least() {
+fn computed_distances_are_minima_over_points() {
     let m = Logs {};
     let mut seed = 3_u64;
     let mut random = || {
@@ -298,7 +300,7 @@ struct Groove {
 /// three centres at the corners of an equilateral triangle. Logs overlap by less than a thousandth of their
 /// radius.
 #[test]
-fn a_log_lies_in_a_groove() {
+fn log_comes_to_rest_in_a_groove() {
     let m = Groove {};
     let mut q = m.neutral();
     let half = 0.05_f64;

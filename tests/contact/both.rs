@@ -58,22 +58,28 @@ struct Tile {
 
 /// Rotating tiles fall into a corner: their corners collide, tip, slide and come to rest.
 #[test]
-fn tiles_fall_into_a_corner() {
+fn tiles_falling_into_a_corner_agree_with_located_events() {
     let mut random = Random(7);
     for _ in 0..10 {
-        let m = Tile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.3]) };
+        let m = Tile {
+            friction: random.random_choice([0.0, 0.3, 0.8]),
+            restitution: random.random_choice([0.0, 0.3]),
+        };
         let q = SVector::from([0.3, 0.3, random.next() * 3.0]);
         let (_, end) = follow_motion(&m, &q, &random.random_vector(1.0), 2.0);
         assert!(end.iter().all(|x| x.is_finite()));
     }
 }
 
-/// Balls of very different masses fall on each other.
+/// Balls of very different masses that fall on each other move as with located events.
 #[test]
-fn balls_fall_on_each_other() {
+fn colliding_balls_agree_with_located_events() {
     let mut random = Random(8);
     for _ in 0..3 {
-        let m = Pile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.4]) };
+        let m = Pile {
+            friction: random.random_choice([0.0, 0.3, 0.8]),
+            restitution: random.random_choice([0.0, 0.4]),
+        };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.11, 0.12, 0.11, 0.15, 0.4);
         follow_motion(&m, &q, &random.random_vector(0.3), 0.4);
@@ -82,13 +88,13 @@ fn balls_fall_on_each_other() {
 
 /// The tip of a double pendulum collides with the floor, slides and sticks.
 #[test]
-fn a_double_pendulum_strikes_the_floor() {
+fn double_pendulum_on_the_floor_agrees_with_located_events() {
     let mut random = Random(9);
     for _ in 0..30 {
         let q = SVector::from([random.next() * 1.5, random.next() * 1.5]);
         let m = Chain {
-            friction: random.one_of([0.0, 0.3, 0.7]),
-            restitution: random.one_of([0.0, 0.5]),
+            friction: random.random_choice([0.0, 0.3, 0.7]),
+            restitution: random.random_choice([0.0, 0.5]),
             height: 0.1 - (0.5 * q[0].sin() + 0.5 * (q[0] + q[1]).sin()).min(0.0),
         };
         follow_motion(&m, &q, &random.random_vector(2.0), 2.0);
@@ -98,7 +104,7 @@ fn a_double_pendulum_strikes_the_floor() {
 /// Time stepping converges to the motion with located events, to first order in the step for motions with
 /// impacts.
 #[test]
-fn time_stepping_leads_to_the_same() {
+fn time_stepping_converges_to_located_events() {
     let m = Tile { friction: 0.4, restitution: 0.0 };
     let (q, v) = ([0.5, 0.15, 0.1].into(), [0.5, 0.0, 0.0].into());
     let (_, end) = follow_motion(&m, &q, &v, 0.3);

@@ -7,7 +7,7 @@ use linkwork::prelude::*;
 
 const G: f64 = 9.81;
 
-/// Half of the edge lengths of both boxes.
+/// Half of the edge lengths of the lower and of the upper box, m.
 const LOW: [f64; 3] = [0.1, 0.1, 0.05];
 const HIGH: [f64; 3] = [0.15, 0.1, 0.025];
 
@@ -127,7 +127,7 @@ fn scaled_axes(turn: &UnitQuaternion<f64>, half: [f64; 3]) -> Matrix3<f64> {
     turn.to_rotation_matrix().into_inner() * Matrix3::from_diagonal(&half.into())
 }
 
-pub fn any_turn(random: &mut Random) -> UnitQuaternion<f64> {
+pub fn random_rotation(random: &mut Random) -> UnitQuaternion<f64> {
     let [x, y, z]: [f64; 3] = random.random_vector::<3>(3.0).into();
     UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z))
 }
@@ -147,13 +147,13 @@ pub fn position_with_gap(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, w
 /// The gap of nearly touching boxes, or of a capsule and a box, is the minimum distance of their points; for
 /// larger distances it is positive.
 #[test]
-fn gaps_are_distances() {
+fn box_gaps_are_distances_near_contact() {
     let (m, mut random) = (Two { gravity: G, friction: 0.0, restitution: 0.0 }, Random(3));
     let (log, mut beside) = (Log { friction: 0.0 }, 0);
     let (low, bar) = (Matrix3::from_diagonal(&LOW.into()), Matrix3::from_diagonal(&[0.1, 1.0, 0.1].into()));
     for _ in 0..60 {
         let (turn, far) =
-            (any_turn(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 2.0);
+            (random_rotation(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 2.0);
         let (high, line) = (scaled_axes(&turn, HIGH), scaled_axes(&turn, [0.3, 0.0, 0.0]));
         let least_gap_to_seat = |place: Vector3<f64>| {
             let q = configuration_of_boxes(&m, [place[0], place[1], place[2] + LOW[2]], turn);
@@ -187,7 +187,7 @@ fn gaps_are_distances() {
 /// Checks the columns of the Jacobian that steps read: those of the bodies of each contact. Nothing moves the
 /// surfaces of bodies at rest.
 #[test]
-fn contacts_have_the_columns_of_their_bodies() {
+fn contact_jacobians_have_only_columns_of_their_bodies() {
     use linkwork::contact::Contacts;
     let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
     let columns = m.contact_columns();
@@ -200,7 +200,7 @@ fn contacts_have_the_columns_of_their_bodies() {
 /// Checks boxes that lie face on face: flush, rotated, and crossed such that no corner of either is on the
 /// other. They stay at rest, and their contact points carry the whole weight.
 #[test]
-fn boxes_lie_on_each_other() {
+fn stacked_boxes_stay_at_rest() {
     let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
     for (yaw, x, y) in
         [(0.0, 0.0, 0.0), (0.0, 0.05, 0.0), (0.4, 0.03, -0.06), (core::f64::consts::FRAC_PI_2, 0.0, 0.0)]
@@ -219,7 +219,7 @@ fn boxes_lie_on_each_other() {
 /// Checks a collision edge on edge: the impulse is along the common normal `n` of both edges, with magnitude
 /// `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` summed over both boxes.
 #[test]
-fn edges_strike_edges() {
+fn edge_collision_has_the_closed_form_impulse() {
     let m = Two { gravity: 0.0, friction: 0.0, restitution: 0.5 };
     let box_inertia = |mass: f64, [a, b, c]: [f64; 3]| {
         Matrix3::from_diagonal(&[b * b + c * c, a * a + c * c, a * a + b * b].into()) * (mass / 3.0)
@@ -259,15 +259,15 @@ fn edges_strike_edges() {
 /// Checks that impacts in random contact positions satisfy the contact conditions, and that two boxes without
 /// other contacts preserve their momentum.
 #[test]
-fn boxes_strike_by_the_laws() {
+fn random_box_impacts_satisfy_contact_conditions() {
     let mut random = Random(11);
     for k in 0..60 {
         let m = Two {
             gravity: 0.0,
-            friction: random.one_of([0.0, 0.3, 2.0]),
-            restitution: random.one_of([0.0, 0.6, 1.0]),
+            friction: random.random_choice([0.0, 0.3, 2.0]),
+            restitution: random.random_choice([0.0, 0.6, 1.0]),
         };
-        let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
+        let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { random_rotation(&mut random) };
         let far = Vector3::from(random.random_vector::<3>(1.0)).normalize();
         // Both boxes are above the floor.
         let configuration_at_place = |place: Vector3<f64>| {
@@ -285,11 +285,11 @@ fn boxes_strike_by_the_laws() {
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
         let linear_and_angular_momentum = |v: &SVector<f64, 12>| {
             let p = m.mass_matrix(&q) * v;
-            let turn =
+            let orientation_at =
                 |k: usize| UnitQuaternion::from_quaternion([q[k], q[k + 1], q[k + 2], q[k + 3]].into());
             let momentum_of_body =
                 |k: usize, turn: UnitQuaternion<f64>| turn * Vector3::new(p[k], p[k + 1], p[k + 2]);
-            let (a, b) = (turn(3), turn(10));
+            let (a, b) = (orientation_at(3), orientation_at(10));
             let (pa, pb) = (momentum_of_body(0, a), momentum_of_body(6, b));
             let spin = momentum_of_body(3, a) + momentum_of_body(9, b);
             let position_of_body = |k: usize| Vector3::new(q[k], q[k + 1], q[k + 2]);
@@ -303,7 +303,7 @@ fn boxes_strike_by_the_laws() {
 /// Checks a box that falls on an edge of another box, tips, and comes to rest or slides off. The energy never
 /// grows, overlaps are at most those of one step, and the order of the two surfaces has no effect.
 #[test]
-fn a_box_falls_on_an_edge() {
+fn box_falling_on_an_edge_gains_no_energy() {
     let m = Two { gravity: G, friction: 0.5, restitution: 0.0 };
     let other = Swapped { gravity: G, friction: 0.5, restitution: 0.0 };
     let q = configuration_of_boxes(&m, [0.08, 0.02, 0.3], UnitQuaternion::from_euler_angles(0.3, 0.5, 0.2));
@@ -331,7 +331,7 @@ fn a_box_falls_on_an_edge() {
 
 /// Checks that a log across a beam rests on both edges of the beam's face, which carry its weight.
 #[test]
-fn a_log_lies_across_a_beam() {
+fn log_across_a_beam_rests_on_both_edges() {
     let m = Log { friction: 0.5 };
     let q = [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0].into();
     let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();

@@ -55,7 +55,7 @@ struct Task<const N: usize> {
 }
 
 impl<const N: usize> Task<N> {
-    fn cost(&self, (states, inputs): &(Vec<State<N>>, Vec<Input>)) -> f64 {
+    fn trajectory_cost(&self, (states, inputs): &(Vec<State<N>>, Vec<Input>)) -> f64 {
         let to_go = self.cost_of_end(&states[self.steps]);
         let off = states[self.steps].0 - self.goal;
         let effort: f64 = inputs.iter().map(|u| 0.5 * self.effort * u[0] * u[0]).sum();
@@ -67,7 +67,7 @@ impl<const N: usize> Task<N> {
         Value { q: by_q * (q - self.goal), v: by_v * v, qq: by_q, vv: by_v, ..Value::zeros() }
     }
 
-    fn rollout<M>(
+    fn simulate_inputs<M>(
         &self,
         m: &M,
         start: State<N>,
@@ -86,7 +86,7 @@ impl<const N: usize> Task<N> {
     }
 
     /// Improves a trajectory once by iLQR. Returns the trajectory and the predicted change of the cost.
-    fn improve<M>(
+    fn improve_trajectory<M>(
         &self,
         m: &M,
         (states, inputs): &(Vec<State<N>>, Vec<Input>),
@@ -106,22 +106,22 @@ impl<const N: usize> Task<N> {
             policies.push(policy);
         }
         policies.reverse();
-        let changed = |k: usize, (q, v): &State<N>| {
+        let changed_inputs = |k: usize, (q, v): &State<N>| {
             let (from, before) = &states[k];
             inputs[k] + policies[k].inputs(1.0, &(q - from), &(v - before))
         };
-        (self.rollout(m, states[0], changed), predicted)
+        (self.simulate_inputs(m, states[0], changed_inputs), predicted)
     }
 
     /// Returns the trajectory after iterations that end with the exact optimum within its contact modes.
-    fn optimise<M>(&self, m: &M, start: State<N>, input: f64) -> (Vec<State<N>>, Vec<Input>)
+    fn optimise_trajectory<M>(&self, m: &M, start: State<N>, input: f64) -> (Vec<State<N>>, Vec<Input>)
     where
         M: Derivatives<N, N, 1, Scalar = f64>,
     {
-        let mut trajectory = self.rollout(m, start, |_, _| [input].into());
+        let mut trajectory = self.simulate_inputs(m, start, |_, _| [input].into());
         for iteration in 0..6 {
-            let (next, predicted) = self.improve(m, &trajectory);
-            let change = self.cost(&next) - self.cost(&trajectory);
+            let (next, predicted) = self.improve_trajectory(m, &trajectory);
+            let change = self.trajectory_cost(&next) - self.trajectory_cost(&trajectory);
             assert!(change < 1e-12, "iteration {iteration} changes the cost by {change}");
             trajectory = next;
             if predicted.abs() < 1e-12 {
@@ -136,10 +136,10 @@ const METHOD: TimeStepping<f64> = TimeStepping::step(0.01).midpoint();
 
 /// The box comes to rest near the goal: friction stops it, and the pusher stays in contact.
 #[test]
-fn a_box_is_pushed_to_a_place() {
+fn box_is_pushed_to_its_goal() {
     let weights = [[0.0, 1e3, 0.0].into(), [0.0, 10.0, 0.0].into()];
     let task = Task { steps: 100, goal: [0.0, 0.5, 0.0].into(), weights, effort: 1e-3 };
-    let (states, inputs) = task.optimise(&Push {}, (SVector::zeros(), SVector::zeros()), 7.0);
+    let (states, inputs) = task.optimise_trajectory(&Push {}, (SVector::zeros(), SVector::zeros()), 7.0);
     let (q, v) = states[100];
     assert!((q[1] - 0.5).abs() < 6e-3 && v[1].abs() < 0.1, "{q} {v}");
     assert!((q[1] - q[0]).abs() < 1e-9 && q[2].abs() < 1e-9, "{q}");
@@ -152,14 +152,14 @@ fn a_box_is_pushed_to_a_place() {
 
 /// The hopper leaves the ground, and its trunk reaches the height at which it is to turn round.
 #[test]
-fn a_body_hops_to_a_height() {
+fn hopper_reaches_the_required_height() {
     let task = Task {
         steps: 35,
         goal: [0.8, 0.0].into(),
         weights: [[1e3, 0.0].into(), [10.0, 0.0].into()],
         effort: 1e-3,
     };
-    let (states, _) = task.optimise(&Hopper {}, ([0.3, 0.0].into(), SVector::zeros()), 0.0);
+    let (states, _) = task.optimise_trajectory(&Hopper {}, ([0.3, 0.0].into(), SVector::zeros()), 0.0);
     let (q, v) = states[35];
     assert!((q[0] - 0.8).abs() < 6e-3 && v[0].abs() < 0.02, "{q} {v}");
     assert!(states[5].0[1].abs() < 1e-9 && q[1] > 0.1, "it stands, and then flies");

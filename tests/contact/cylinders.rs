@@ -1,6 +1,6 @@
-//! Boxes and capsules on cylinders.
+//! Tests of boxes and capsules in contact with cylinders.
 
-use super::boxes::{any_turn, position_with_gap};
+use super::boxes::{position_with_gap, random_rotation};
 use super::laws::Random;
 use linkwork::contact;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
@@ -32,15 +32,20 @@ struct Rails {
 /// A box and a capsule that lie across two cylinders stay at rest; the normal forces follow from the lever
 /// arms.
 #[test]
-fn bodies_lie_across_two_cylinders() {
+fn bodies_rest_across_two_cylinders() {
     let m = Rails {};
     let q = SVector::from([0.05, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0, -0.1, 1.0, 0.09, 0.0, 0.0, 0.0, 1.0]);
     let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-    let carried = |name: &str| -> f64 {
+    let carried_normal_force = |name: &str| -> f64 {
         let rows = Rails::CONTACTS.iter().zip(Rails::CONTACT_ROWS);
         rows.filter(|(known, _)| known.split('.').next() == Some(name)).map(|(_, row)| found[row.first]).sum()
     };
-    let shares = [carried("left"), carried("right"), carried("front"), carried("back")];
+    let shares = [
+        carried_normal_force("left"),
+        carried_normal_force("right"),
+        carried_normal_force("front"),
+        carried_normal_force("back"),
+    ];
     let expected = [2.0 * G * 0.375, 2.0 * G * 0.625, 3.0 * G * 0.75, 3.0 * G * 0.25];
     assert!(shares.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{shares:?} {expected:?}");
     let run = simulate(&m).from(q, [0.0; 12]).method(TimeStepping::step(5e-3)).duration(0.3);
@@ -76,7 +81,7 @@ const LYING: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// Drums stand and lie on a box, and a box and a capsule lie on the end of a drum, also beyond its edge.
 #[test]
-fn ends_and_sides_carry_bodies() {
+fn cylinder_ends_and_sides_carry_bodies() {
     let m = Barrels { slope: 0.0 };
     for (drum, turn, block, bar) in [
         ([0.0, 0.0, 0.25], [0.0, 0.0, 0.0, 1.0], [0.0, 3.0, 0.25], [0.02, 6.0, 0.25]),
@@ -89,12 +94,16 @@ fn ends_and_sides_carry_bodies() {
         q.fixed_rows_mut::<3>(7).copy_from_slice(&block);
         q.fixed_rows_mut::<3>(14).copy_from_slice(&bar);
         let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-        let carried = |name: &str| -> f64 {
+        let carried_normal_force = |name: &str| -> f64 {
             let rows = Barrels::CONTACTS.iter().zip(Barrels::CONTACT_ROWS);
             let of_name = rows.filter(|(known, _)| known.split('.').next() == Some(name));
             of_name.map(|(_, row)| found[row.first]).sum()
         };
-        let loads = [carried("table") / 2.0, carried("barrel"), carried("end")];
+        let loads = [
+            carried_normal_force("table") / 2.0,
+            carried_normal_force("barrel"),
+            carried_normal_force("end"),
+        ];
         assert!(loads.iter().all(|load| (load - G).abs() < 1e-5), "{drum:?} {loads:?}");
         let run = simulate(&m).from(q, [0.0; 18]).method(TimeStepping::step(5e-3)).duration(0.2);
         let end = run.finish().unwrap();
@@ -104,30 +113,30 @@ fn ends_and_sides_carry_bodies() {
 
 /// A drum rolls on a table with two thirds of the acceleration of frictionless sliding, and falls off.
 #[test]
-fn a_drum_rolls_on_a_table() {
+fn drum_rolls_on_a_table_by_closed_form() {
     let m = Barrels { slope: 0.2 };
     let mut q = m.neutral();
     q.fixed_rows_mut::<7>(0).copy_from_slice(&[0.0, 0.0, 0.2, LYING, 0.0, 0.0, LYING]);
     q.fixed_rows_mut::<3>(7).copy_from_slice(&[0.0, 3.0, 0.25]);
     q.fixed_rows_mut::<3>(14).copy_from_slice(&[0.0, 6.0, 0.25]);
-    let configuration = |t: f64| {
+    let configuration_after = |t: f64| {
         simulate(&m).from(q, [0.0; 18]).method(TimeStepping::step(1e-3)).duration(t).finish().unwrap().q
     };
     let path = 0.5 * 2.0 / 3.0 * G * 0.2_f64.sin() * 0.25;
-    let rolled = configuration(0.5);
+    let rolled = configuration_after(0.5);
     assert!((rolled[0] - path).abs() < 2e-3 * path && (rolled[2] - 0.2).abs() < 1e-6, "{rolled} {path}");
-    let fallen = configuration(1.6);
+    let fallen = configuration_after(1.6);
     assert!(fallen[0] > 1.1 && fallen[2] < 0.0, "{fallen}");
 }
 
 /// Returns the signed distance of a point from a cylinder along z.
-fn from_drum(p: Vector3<f64>, radius: f64, half: f64) -> f64 {
+fn distance_from_drum(p: Vector3<f64>, radius: f64, half: f64) -> f64 {
     let (side, end) = (p.xy().norm() - radius, p[2].abs() - half);
     if side.max(end) < 0.0 { side.max(end) } else { side.max(0.0).hypot(end.max(0.0)) }
 }
 
 /// Returns the distance of a box from a cylinder along z, by alternating projections on both.
-fn from_box(
+fn distance_box_to_drum(
     center: Vector3<f64>,
     turn: &UnitQuaternion<f64>,
     half: [f64; 3],
@@ -146,19 +155,19 @@ fn from_box(
             break;
         }
     }
-    from_drum(p, radius, length / 2.0)
+    distance_from_drum(p, radius, length / 2.0)
 }
 
 /// The smallest gap of a capsule or a box on a cylinder is the distance of the surfaces when they touch.
 #[test]
-fn gaps_of_cylinders_are_distances() {
+fn cylinder_gaps_are_distances_at_contact() {
     let (m, mut random) = (Barrels { slope: 0.0 }, Random(11));
     let mut missed = 0;
     for _ in 0..60 {
         let (turn, far) =
-            (any_turn(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 1.5);
+            (random_rotation(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 1.5);
         let c = turn.coords;
-        let gap = |first: usize, place: Vector3<f64>| {
+        let smallest_gap = |first: usize, place: Vector3<f64>| {
             let mut q = m.neutral();
             q.fixed_rows_mut::<3>(first).copy_from_slice(&[place[0], place[1], place[2]]);
             q.fixed_rows_mut::<4>(first + 3).copy_from(&c);
@@ -167,19 +176,19 @@ fn gaps_of_cylinders_are_distances() {
             gaps.as_slice()[range].iter().copied().fold(f64::INFINITY, f64::min)
         };
         // The axis of the capsule is along x.
-        let bar = position_with_gap(|p| gap(14, p + Vector3::y() * 6.0), far, 0.0);
+        let bar = position_with_gap(|p| smallest_gap(14, p + Vector3::y() * 6.0), far, 0.0);
         let along = turn * Vector3::x() * 0.15;
         let (mut low, mut high) = (-1.0, 1.0);
-        let distance_at = |t: f64| from_drum(bar + along * t, 0.2, 0.2);
+        let distance_at = |t: f64| distance_from_drum(bar + along * t, 0.2, 0.2);
         for _ in 0..120 {
             let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
             if distance_at(a) < distance_at(b) { high = b } else { low = a }
         }
         assert!((distance_at(low) - 0.05).abs() < 1e-8, "{} {turn} {bar}", distance_at(low));
 
-        let block = position_with_gap(|p| gap(7, p + Vector3::y() * 3.0), far, 0.0);
+        let block = position_with_gap(|p| smallest_gap(7, p + Vector3::y() * 3.0), far, 0.0);
         // Slightly farther outside they do not overlap, and are close to each other.
-        let outside = from_box(block * 1.002, &turn, [0.15, 0.1, 0.05], 0.2, 0.4);
+        let outside = distance_box_to_drum(block * 1.002, &turn, [0.15, 0.1, 0.05], 0.2, 0.4);
         missed += usize::from(!(1e-7..0.01 * block.norm()).contains(&outside));
     }
     assert!(missed < 2, "{missed}");

@@ -32,7 +32,7 @@ pub struct Hollow {
     rest: Contact,
 }
 
-/// Crank that pushes a piston onto a stop.
+/// Slider-crank whose crank pushes a piston onto a stop.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Engine {
     #[body(mass = 2, com = 0.02 * x, inertia = rod(2, 0.04, x))]
@@ -124,7 +124,7 @@ pub fn quadruped_stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 1
 }
 
 #[test]
-fn a_quadruped_on_its_feet() {
+fn contact_derivatives_of_a_standing_quadruped() {
     use Touch::{Open, Slips, Sticks};
     let (q, v, tau) = quadruped_stance();
     for touches in [
@@ -140,7 +140,7 @@ fn a_quadruped_on_its_feet() {
 
 /// Derivatives on curved ground, with forces that depend on time.
 #[test]
-fn a_ball_in_a_hollow_in_the_wind() {
+fn contact_derivatives_of_a_ball_in_a_windy_hollow() {
     let m = Hollow {};
     let mut q = m.neutral();
     (q[0], q[1], q[2]) = (0.3, 0.2, 0.13);
@@ -151,9 +151,9 @@ fn a_ball_in_a_hollow_in_the_wind() {
     }
 }
 
-/// Derivatives of a contact force through a closed loop.
+/// Derivatives of the contact force on a piston act through a closed loop.
 #[test]
-fn a_piston_on_its_stop() {
+fn contact_derivatives_of_a_piston_on_its_stop() {
     let m = Engine {};
     let q = m.assemble(&[0.6, -0.8, 0.2].into(), &[0]).unwrap();
     let v = m.complete_velocity(&q, &[3.0, 0.0, 5.0].into(), &[0, 2]).unwrap();
@@ -164,7 +164,7 @@ fn a_piston_on_its_stop() {
 
 /// Derivatives with respect to inputs follow from the chain rule.
 #[test]
-fn inputs_move_what_is_held() {
+fn input_derivatives_under_contact_follow_the_chain_rule() {
     #[mechanism(gravity = -9.81 * y, derivatives)]
     struct Cart {
         #[body(mass = 3)]
@@ -195,7 +195,7 @@ fn inputs_move_what_is_held() {
 /// Checks a table on four contact points, whose twelve force components exceed the six that determine the
 /// motion. Their effect on the motion is still unique.
 #[test]
-fn a_table_shares_its_weight() {
+fn redundant_contact_forces_of_a_table_have_derivatives() {
     #[mechanism(gravity = -9.81 * z, derivatives)]
     struct Table {
         #[body(mass = 4, com = 0.1 * x + 0.2 * z, inertia = cuboid(4, 0.6, 0.4, 0.1))]
@@ -259,7 +259,7 @@ pub struct OnPoints {
 /// `computeConstraintDynamicsDerivatives` with two contacts `CONTACT_3D`, `LOCAL_WORLD_ALIGNED`, without
 /// correctors, in the state of `stance`.
 #[test]
-fn a_quadruped_on_points_as_in_pinocchio() {
+fn quadruped_contact_derivatives_agree_with_pinocchio() {
     let (q, v, tau) = quadruped_stance();
     let m = OnPoints {};
     let touches = [Touch::Sticks; 2];
@@ -369,7 +369,7 @@ fn a_quadruped_on_points_as_in_pinocchio() {
 /// Steps with fixed contact modes have Jacobians that agree with differences, for explicit and implicit
 /// steps, with and without feedback.
 #[test]
-fn steps_of_a_held_quadruped() {
+fn steps_with_fixed_contact_modes_have_exact_jacobians() {
     use discrete::DifferentiableStep;
     let (q, v, _) = quadruped_stance();
     let m = OnPoints {};
@@ -423,7 +423,7 @@ fn steps_of_a_held_quadruped() {
 
 /// Touchdown with given contact modes has derivatives, also through a closed loop.
 #[test]
-fn landings_have_derivatives() {
+fn touchdown_has_exact_derivatives() {
     fn check_touchdown_derivatives<
         M,
         const NQ: usize,
@@ -439,7 +439,7 @@ fn landings_have_derivatives() {
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = f64>,
     {
         let found = contact::land_derivatives(m, 0.0, q, v, touches).unwrap();
-        let landed =
+        let velocity_after_touchdown =
             |q: &SVector<f64, NQ>, v: &SVector<f64, NV>| contact::land(m, 0.0, q, v, touches).unwrap();
         // Balance of momentum, and velocities of closed contacts after the touchdown.
         let step = found.transition::<NQ, NU>(q);
@@ -453,8 +453,9 @@ fn landings_have_derivatives() {
         assert!(M::CONSTRAINED || balance.amax() < 1e-10, "{balance}");
         for k in 0..NV {
             let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
-            let touchdown_at_displacement = |s: f64| landed(&m.integrate(q, &unit_step(s)), v);
-            let touchdown_at_velocity_step = |s: f64| landed(q, &(v + unit_step(s)));
+            let touchdown_at_displacement =
+                |s: f64| velocity_after_touchdown(&m.integrate(q, &unit_step(s)), v);
+            let touchdown_at_velocity_step = |s: f64| velocity_after_touchdown(q, &(v + unit_step(s)));
             let of_velocity = [
                 (derivative_at_zero(|s| touchdown_at_displacement(s).v), found.by_q.column(k)),
                 (derivative_at_zero(|s| touchdown_at_velocity_step(s).v), found.by_v.column(k)),

@@ -1,4 +1,4 @@
-//! Motions with located events against closed-form solutions, to rounding.
+//! Tests of motions with located contact events against closed-form solutions, to rounding.
 
 use linkwork::integrate::EventDriven;
 use linkwork::prelude::*;
@@ -21,7 +21,7 @@ struct Ball {
 /// The n-th apex of a ball that falls from 1 m is e²ⁿ m high, and the ball rests from the time √(2 h / g) (1
 /// + e) / (1 − e).
 #[test]
-fn a_ball_bounces_until_it_rests() {
+fn bouncing_ball_rests_at_the_zeno_time() {
     let (g, e) = (9.81_f64, 0.8_f64);
     let fall = (2.0 / g).sqrt();
     let m = Ball { restitution: e };
@@ -52,7 +52,7 @@ fn a_ball_bounces_until_it_rests() {
 
 /// A ball without loss bounces to the same height forever.
 #[test]
-fn an_elastic_ball_keeps_its_energy() {
+fn elastic_ball_conserves_energy() {
     let m = Ball { restitution: 1.0 };
     let fall = (2.0 / 9.81_f64).sqrt();
     for start in [1.0_f64, 1e-10] {
@@ -84,7 +84,7 @@ struct Sphere {
 
 /// A sphere rolls down 15° from rest with 5/7 g sin 15°, with a friction force of 2/7 m g sin 15°.
 #[test]
-fn a_sphere_rolls_down() {
+fn sphere_rolls_down_a_slope_with_located_events() {
     let m = Sphere { tilt: 15.0_f64.to_radians(), friction: 0.3 };
     let mut q = m.neutral();
     q[2] = 0.05;
@@ -99,7 +99,7 @@ fn a_sphere_rolls_down() {
 /// Checks that a ball which slides without rotation at 5 m/s begins to roll after 2 v / (7 μ g), with 5/7 of
 /// its speed.
 #[test]
-fn a_bowling_ball_begins_to_roll() {
+fn sliding_bowling_ball_begins_to_roll() {
     let m = Sphere { tilt: 0.0, friction: 0.2 };
     let mut q = m.neutral();
     q[2] = 0.05;
@@ -144,7 +144,7 @@ struct Block {
 /// A force that grows with time moves the block when it exceeds friction, and that instant is located. When
 /// the force ends, the block comes to rest and stays at rest.
 #[test]
-fn a_block_breaks_loose_and_stops() {
+fn block_breaks_loose_and_stops_at_located_instants() {
     let m = Block { friction: 0.4 };
     let hold = 0.4 * 9.81;
     let applied_force = |t: f64| if t < 4.0 { 1.5 * t } else { 0.0 };
@@ -190,7 +190,7 @@ struct Crate {
 /// Checks that a crate pushed at its top edge tips, before it slides, when the moment of the push exceeds
 /// that of its weight.
 #[test]
-fn a_crate_tips() {
+fn pushed_crate_tips_before_it_slides() {
     let m = Crate { friction: 0.8 };
     let mut q = m.neutral();
     q[2] = 0.2;
@@ -226,7 +226,7 @@ struct Housner {
 /// impact on the other edge leaves the fraction 1 − (3/2) sin² α of the angular velocity (Housner, *The
 /// behavior of inverted pendulum structures during earthquakes*, 1963).
 #[test]
-fn a_block_rocks_as_housner_says() {
+fn rocking_block_follows_housners_model() {
     let m = Housner { friction: 5.0 };
     let (half, height) = (0.05_f64, 0.25_f64);
     let (alpha, radius) = ((half / height).atan(), half.hypot(height));

@@ -31,7 +31,7 @@ struct ByHand {
 /// Contacts with the geometry of the file equal the same contacts written by hand, in every configuration of
 /// the robot.
 #[test]
-fn collision_geometry_is_that_of_the_file() {
+fn collision_geometry_of_files_equals_declared_contacts() {
     assert_eq!((FromTheFile::CONTACTS.len(), FromTheFile::CONTACTS[8]), (19, "below.8"));
     let (file, hand) = (FromTheFile {}, ByHand {});
     let mut q = file.neutral();
@@ -56,7 +56,7 @@ struct Drum {
     floor: Contact,
 }
 
-fn last_sample(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
+fn last_sample_of_drum(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
     let run = simulate(m).from(q, [0.0; 6]).method(TimeStepping::step(h)).duration(t);
     run.finish().unwrap()
 }
@@ -64,27 +64,31 @@ fn last_sample(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
 /// A drum stands on its face on slopes below the limits of friction and tipping: tan 30° is less than 2/3,
 /// the ratio of the diameter to the height, and less than 0.7.
 #[test]
-fn a_drum_stands_on_its_face() {
+fn drum_stands_on_its_face_on_a_slope() {
     for slope in [0.0, 20.0_f64.to_radians(), 30.0_f64.to_radians()] {
         let m = Drum { slope };
-        let end = last_sample(&m, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0], 1e-3, 2.0);
+        let end = last_sample_of_drum(&m, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0], 1e-3, 2.0);
         assert!(
             (end.q - SVector::from([0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0])).amax() < 1e-6,
             "{slope} {end:?}"
         );
     }
     // Beyond 2/3 the drum tips over.
-    let end =
-        last_sample(&Drum { slope: 34.5_f64.to_radians() }, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0], 1e-3, 2.0);
+    let end = last_sample_of_drum(
+        &Drum { slope: 34.5_f64.to_radians() },
+        [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0],
+        1e-3,
+        2.0,
+    );
     assert!(end.q[2] < 0.12, "{end:?}");
 }
 
 /// Checks that a drum rolls on its side with two thirds of the acceleration of frictionless sliding.
 #[test]
-fn a_drum_rolls_on_its_side() {
+fn drum_rolls_on_its_side() {
     let m = Drum { slope: 0.2 };
     let turn = core::f64::consts::FRAC_1_SQRT_2;
-    let end = last_sample(&m, [0.0, 0.0, 0.1, turn, 0.0, 0.0, turn], 1e-3, 1.0);
+    let end = last_sample_of_drum(&m, [0.0, 0.0, 0.1, turn, 0.0, 0.0, turn], 1e-3, 1.0);
     let fallen = 9.81 * 0.2_f64.sin() / 3.0;
     assert!((end.q[0] - fallen).abs() < 2e-3 * fallen, "{} {fallen}", end.q[0]);
     let speed = end.v.fixed_rows::<3>(0).norm();
@@ -104,7 +108,7 @@ struct BallOnDrum {
 /// Checks that the distance of a ball from a cylinder with end faces is that from the face, the side or the
 /// rim, whichever is nearest.
 #[test]
-fn a_ball_finds_face_side_and_rim() {
+fn ball_to_cylinder_distance_covers_face_side_and_rim() {
     let gap_to_drum =
         |x: f64, y: f64, z: f64| BallOnDrum {}.contact_gaps(&[x, y, z, 0.0, 0.0, 0.0, 1.0].into())[0];
     let rim = (0.1_f64.hypot(0.3) - 0.05, 0.02_f64.hypot(0.01) - 0.05);

@@ -27,7 +27,7 @@ fn resting_configuration() -> SVector<f64, 7> {
 
 /// Sphere on a slope of 15°, with the parameters of Drake's test of a rolling sphere.
 #[test]
-fn a_rolling_sphere_is_held_by_friction() {
+fn friction_holds_a_rolling_sphere() {
     let m = Ball { tilt: 15.0_f64.to_radians(), friction: 0.5 };
     let force = m.force(&resting_configuration(), &SVector::zeros()).unwrap();
     assert!((force - Vector3::new(-0.072_543_280_927_306_54, 0.0, 0.1 * 9.81 * m.tilt.cos())).amax() < 1e-9);
@@ -40,7 +40,7 @@ fn a_rolling_sphere_is_held_by_friction() {
 
 /// Friction opposes the slip velocity, at any speed.
 #[test]
-fn a_sliding_sphere_is_braked() {
+fn friction_opposes_a_sliding_sphere() {
     let m = Ball { tilt: 0.0, friction: 0.2 };
     for speed in [1e-4, 1.0, 30.0] {
         let v = [0.6 * speed, -0.8 * speed, 0.0, 0.0, 0.0, 0.0].into();
@@ -73,7 +73,7 @@ struct Table {
 /// The output is the total force of the second surface on the first over all points, for either order of the
 /// surfaces.
 #[test]
-fn forces_act_on_the_first_surface() {
+fn contact_force_outputs_act_on_the_first_surface() {
     let m = Table {};
     let q: [f64; 14] = core::array::from_fn(|k| {
         if k == 2 {
@@ -118,7 +118,7 @@ struct Piston {
 
 /// Through a closed loop, virtual work of the motor equals virtual work of the force at the stop.
 #[test]
-fn a_motor_presses_a_piston_onto_its_stop() {
+fn motor_presses_a_piston_onto_its_stop() {
     let m = Piston {};
     // Angle of the crank with the piston at its stop.
     let angle = ((0.04_f64.powi(2) + 0.165_f64.powi(2) - 0.13_f64.powi(2)) / (2.0 * 0.04 * 0.165)).acos();
@@ -138,7 +138,7 @@ fn a_motor_presses_a_piston_onto_its_stop() {
 /// Checks forces for prescribed contact modes: they satisfy the equations of motion, also in a closed loop
 /// and with slip. At rest they equal the forces of the complementarity conditions.
 #[test]
-fn chosen_contacts_stay_closed() {
+fn prescribed_closed_contacts_remain_closed() {
     let m = Table {};
     let mut q = m.neutral();
     (q[2], q[9]) = (0.05, 0.1);
@@ -201,7 +201,7 @@ struct Anvil {
 
 /// Forces are resolved for any mass ratio, in both orders of contacts that matter for the elimination.
 #[test]
-fn heavy_bodies_are_held_on_light_ones() {
+fn heavy_bodies_rest_on_light_ones() {
     for mass in [1.0, 1e2, 1e3, 1e4, 1e5] {
         let m = Anvil { mass };
         let (q, none) = (SVector::zeros(), SVector::zeros());
@@ -219,7 +219,7 @@ fn heavy_bodies_are_held_on_light_ones() {
 
 /// A stop with a prescribed closed mode contradicts a constraint that accelerates the same hinge.
 #[test]
-fn contacts_that_contradict_each_other_are_errors() {
+fn contradictory_contact_modes_are_errors() {
     #[mechanism]
     struct Spun {
         #[body(mass = 1, inertia = rod(1, 1, x))]
@@ -264,7 +264,7 @@ struct Rod {
 /// direction `s` is `a + p N` with `p m = 1 + 3 cos θ (cos θ + s μ sin θ)`. For `p < 0 < −a` no finite force
 /// prevents penetration of the floor (Painlevé); for `p > 0` the force is `−a / p`.
 #[test]
-fn no_finite_force_is_an_error() {
+fn contact_without_finite_force_is_an_error() {
     let mut random = Random(3);
     let mut jammed = 0;
     for _ in 0..1000 {

@@ -10,7 +10,7 @@ use linkwork::prelude::*;
 /// Checks that the gap of an enforced contact decays if it is stabilized by gains, and otherwise stays at one
 /// millimetre.
 #[test]
-fn gaps_of_what_is_held_decay() {
+fn gaps_of_fixed_contacts_decay_with_gains() {
     let (mut q, _, _) = quadruped_stance();
     let m = OnPoints {};
     q[2] -= m.contact_gaps(&q)[0] - 1e-3;
@@ -27,7 +27,7 @@ fn gaps_of_what_is_held_decay() {
 /// A foot with a remaining contact velocity stops after a fiftieth of its speed (in metres per m/s) if only
 /// the velocity has a gain.
 #[test]
-fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
+fn contact_velocities_decay_with_a_separate_gain() {
     let (q, _, _) = quadruped_stance();
     let m = OnPoints {};
     // The foot moves down together with the whole robot.
@@ -45,7 +45,7 @@ fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
 /// A step from given accelerations and their derivatives has the state and the Jacobians of the step that
 /// computes them, and its contact forces enforce the contacts.
 #[test]
-fn steps_are_made_of_known_accelerations() {
+fn steps_accept_precomputed_accelerations() {
     let (q, v, _) = quadruped_stance();
     let (m, touches, h) = (OnPoints {}, [Touch::Sticks, Touch::Slips], 2e-3);
     let held = contact::hold(&m, touches).with_gains(0.0, 50.0);

@@ -1,4 +1,4 @@
-//! Contact problems of textbooks against their closed-form solutions.
+//! Tests of contact problems of textbooks against their closed-form solutions.
 
 use linkwork::contact::{self, Touch};
 use linkwork::integrate::EventDriven;
@@ -31,7 +31,7 @@ struct Billiards {
 /// velocity is `μ (1 + e) v cos φ / 2`, or a seventh of the slip velocity if that is less. With side spin
 /// `r ω = v sin φ` the surfaces do not slip, and the ball is not thrown.
 #[test]
-fn a_ball_is_thrown() {
+fn friction_throws_the_object_ball_off_its_line() {
     let (v, radius) = (2.0, 0.0286);
     for (friction, restitution) in [(0.06, 0.95), (0.03, 1.0), (0.5, 0.9)] {
         let m = Billiards { friction, restitution };
@@ -71,7 +71,7 @@ struct Bouncing {
 /// reverses it (Cross, *Grip-slip behavior of a bouncing ball*, Am. J. Phys. 70, 2002, for a solid sphere
 /// that grips at once).
 #[test]
-fn spin_changes_how_a_ball_bounces() {
+fn spin_changes_the_rebound_of_a_ball() {
     for (friction, spin) in [(1.0, 0.0), (1.0, -150.0), (1.0, 200.0), (0.1, -150.0), (0.1, 250.0)] {
         let m = Bouncing { friction };
         let mut q = m.neutral();
@@ -109,7 +109,7 @@ impl Rod {
 /// = 4/3, `p` is positive for every angle, so that the force is unique (Painlevé, *Sur les lois du frottement
 /// de glissement*, 1895; Génot and Brogliato, *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
 #[test]
-fn a_rod_slides_where_no_paradox_is() {
+fn rod_slides_below_the_painleve_limit() {
     let m = Rod { friction: 1.3 };
     for k in 1..15 {
         let (tilt, rate) = (0.1 * f64::from(k), 0.5);
@@ -131,7 +131,7 @@ fn a_rod_slides_where_no_paradox_is() {
 /// (`p = −0.8`). An impact without a collision stops the tip with the impulses (0.3, 0.4) N·s, and the rod
 /// then rotates about it, with both methods of simulating contacts.
 #[test]
-fn a_rod_in_the_paradox_stops() {
+fn rod_in_painleves_paradox_stops_by_an_impact() {
     let m = Rod { friction: 2.0 };
     let tilt = 2.0_f64.atan();
     let (q, v) = Rod::sliding_state(tilt, 0.0);
@@ -170,7 +170,7 @@ struct Ladder {
 /// A sliding ladder separates from the wall when its top has descended by a third, and then keeps its
 /// velocity along the floor.
 #[test]
-fn a_ladder_leaves_the_wall() {
+fn sliding_ladder_separates_from_the_wall() {
     let (m, half, start) = (Ladder {}, 2.0, 1.2_f64);
     let q = [half * start.cos(), half * start.sin(), core::f64::consts::PI - start];
     let leaves = 2.0 / 3.0 * start.sin();
@@ -211,7 +211,7 @@ struct Valve {
 /// The valve chatters: flights last `2/ω atan(v/(ω d))` for a preload of `k d`, each impact reduces the speed
 /// by the factor `e`, and after infinitely many impacts the valve is closed.
 #[test]
-fn a_valve_chatters() {
+fn valve_chatters_with_closed_form_flights() {
     let (omega, preload, restitution) = ((800.0_f64 / 0.02).sqrt(), 0.004, 0.6);
     let m = Valve { restitution };
     let simulate_valve =
@@ -261,7 +261,7 @@ struct Clutch {
 /// slide in one direction against any load, and drags with `μ τ / (L (sin α + μ cos α))` in the other. With
 /// less friction it slips in both.
 #[test]
-fn a_strut_is_a_one_way_clutch() {
+fn leaning_strut_acts_as_a_one_way_clutch() {
     let simulate_clutch = |m: &Clutch, load: f64, speed: f64, t: f64| {
         let steps = simulate(m).from([0.0, -m.lean], [speed, 0.0]).inputs(move |_, _, _| [load].into());
         steps.method(TimeStepping::step(1e-4)).duration(t).finish().unwrap()
@@ -328,7 +328,7 @@ struct Belt {
 /// `(T + T') sin δ/2`, and friction balances `(T' − T) cos δ/2`. The limit is higher than the `e^{μ n δ}` of
 /// a belt with continuous contact (Eytelwein's or Euler's formula).
 #[test]
-fn a_belt_holds_up_to_its_limit() {
+fn belt_holds_up_to_the_capstan_limit() {
     let (friction, radius, slack) = (0.3_f64, 0.1, 10.0);
     for turn in [0.3_f64, core::f64::consts::FRAC_PI_3] {
         let m = Belt { friction, length: 2.0 * radius * (turn / 2.0).sin(), radius };

@@ -1,6 +1,6 @@
 //! Convex hulls on planes and terrains, and spheres on hulls.
 
-use super::boxes::any_turn;
+use super::boxes::random_rotation;
 use super::laws::Random;
 use linkwork::contact;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
@@ -42,14 +42,14 @@ struct BlockHull {
 }
 
 /// Returns the configuration of a block with a face on the slope.
-fn on_slope(tilt: f64) -> [f64; 7] {
+fn block_on_slope(tilt: f64) -> [f64; 7] {
     let (sine, cosine) = (tilt / 2.0).sin_cos();
     [0.05 * tilt.sin(), 0.0, 0.05 * tilt.cos(), 0.0, sine, 0.0, cosine]
 }
 
 /// A block tumbles down a slope in the same way as the hull of its corners.
 #[test]
-fn the_hull_of_a_box_moves_like_the_box() {
+fn hull_of_a_box_tumbles_like_the_box() {
     assert_eq!(BlockHull::CONTACTS.len(), 8);
     let (tilt, friction) = (0.3, 0.4);
     let turn = UnitQuaternion::from_euler_angles(0.5, -0.3, 0.2).coords;
@@ -63,10 +63,10 @@ fn the_hull_of_a_box_moves_like_the_box() {
 
 /// A hull slides down a slope with `g (sin α − μ cos α)`.
 #[test]
-fn a_hull_slides_down_a_slope() {
+fn hull_slides_down_a_slope() {
     let (tilt, friction, t) = (0.5_f64, 0.3, 0.4);
     let m = BlockHull { tilt, friction };
-    let run = simulate(&m).from(on_slope(tilt), [0.0; 6]);
+    let run = simulate(&m).from(block_on_slope(tilt), [0.0; 6]);
     let end = run.method(TimeStepping::step(1e-3)).duration(t).finish().unwrap();
     let path = 0.5 * G * (tilt.sin() - friction * tilt.cos()) * t * t;
     assert!((end.q[0] - 0.05 * tilt.sin() - path * tilt.cos()).abs() < 1e-6, "{}", end.q[0]);
@@ -113,18 +113,18 @@ struct Tripod {
 /// At rest the normal forces of a prism equal its weight and balance its moment. Those of a tetrahedron are
 /// determined: they are proportional to the barycentric coordinates of the centre of mass.
 #[test]
-fn hulls_at_rest_carry_their_weight() {
+fn hull_contact_forces_balance_its_weight() {
     let m = Nut { radius: 0.1, height: 0.08 };
     let q = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
     let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-    let normal = |k: usize| found[Nut::CONTACT_ROWS[k].first];
+    let normal_force = |k: usize| found[Nut::CONTACT_ROWS[k].first];
     let weight = 2.0 * G;
-    let total: f64 = (0..6).map(normal).sum();
+    let total: f64 = (0..6).map(normal_force).sum();
     let moment = (0..6).fold([0.0; 2], |sum, k| {
         let angle = k as f64 * core::f64::consts::FRAC_PI_3;
-        [sum[0] + 0.1 * angle.cos() * normal(k), sum[1] + 0.1 * angle.sin() * normal(k)]
+        [sum[0] + 0.1 * angle.cos() * normal_force(k), sum[1] + 0.1 * angle.sin() * normal_force(k)]
     });
-    assert!((total - weight).abs() < 1e-6 && (6..12).all(|k| normal(k) == 0.0), "{found}");
+    assert!((total - weight).abs() < 1e-6 && (6..12).all(|k| normal_force(k) == 0.0), "{found}");
     assert!(
         (moment[0] - 0.0125 * weight).abs() < 1e-6 && (moment[1] - 0.02 * weight).abs() < 1e-6,
         "{moment:?}"
@@ -174,9 +174,9 @@ struct BallAndBlock {
 /// The distances of a ball and of a terrain from a hull are those from the box with the same corners. If the
 /// centre of the ball is inside of the hull, the distance is the depth below the nearest face.
 #[test]
-fn distances_from_a_hull_are_those_from_a_box() {
+fn hull_distances_equal_box_distances() {
     let (m, mut random) = (BallAndBlock {}, Random(5));
-    let sorted = |gaps: &[f64]| {
+    let sorted_gaps = |gaps: &[f64]| {
         let mut gaps = gaps.to_vec();
         gaps.sort_by(f64::total_cmp);
         gaps
@@ -185,7 +185,7 @@ fn distances_from_a_hull_are_those_from_a_box() {
         let (ball, block, turn) = (
             random.random_vector::<3>(1.0).normalize() * 0.5,
             random.random_vector::<3>(0.2),
-            any_turn(&mut random).coords,
+            random_rotation(&mut random).coords,
         );
         let ball = ball * (1.0 + random.next() * 0.5);
         let q: SVector<f64, 14> = [
@@ -209,7 +209,7 @@ fn distances_from_a_hull_are_those_from_a_box() {
         let (gaps, rates) = (m.contact_gaps(&q), m.contact_rates(&q, &v));
         assert!((gaps[0] - gaps[1]).abs() < 1e-12, "{gaps}");
         assert!((rates[0] - rates[1]).abs() < 1e-10, "{rates}");
-        let (boxes, hulls) = (sorted(&gaps.as_slice()[2..10]), sorted(&gaps.as_slice()[10..18]));
+        let (boxes, hulls) = (sorted_gaps(&gaps.as_slice()[2..10]), sorted_gaps(&gaps.as_slice()[10..18]));
         assert!(boxes.iter().zip(&hulls).all(|(a, b)| (a - b).abs() < 1e-12), "{gaps}");
     }
     let inside =
@@ -232,12 +232,15 @@ struct BallOnOctahedron {
 /// The distance of a ball from an octahedron is its distance from a face, an edge or a vertex. On a face it
 /// rolls with `5/7 g sin α`.
 #[test]
-fn a_ball_rolls_on_a_face() {
+fn ball_rolls_on_a_face_of_an_octahedron() {
     let m = BallOnOctahedron {};
-    let gap = |p: [f64; 3]| m.contact_gaps(&[p[0], p[1], p[2], 0.0, 0.0, 0.0, 1.0].into())[0];
-    assert!((gap([1.0; 3]) - (2.0 / 3_f64.sqrt() - 0.1)).abs() < 1e-12);
-    assert!((gap([0.0, 1.0, -1.0]) - (0.5 * 2_f64.sqrt() - 0.1)).abs() < 1e-12);
-    assert!((gap([0.1, -0.2, 3.0]) - (Vector3::<f64>::new(0.1, -0.2, 2.0).norm() - 0.1)).abs() < 1e-12);
+    let gap_at_position = |p: [f64; 3]| m.contact_gaps(&[p[0], p[1], p[2], 0.0, 0.0, 0.0, 1.0].into())[0];
+    assert!((gap_at_position([1.0; 3]) - (2.0 / 3_f64.sqrt() - 0.1)).abs() < 1e-12);
+    assert!((gap_at_position([0.0, 1.0, -1.0]) - (0.5 * 2_f64.sqrt() - 0.1)).abs() < 1e-12);
+    assert!(
+        (gap_at_position([0.1, -0.2, 3.0]) - (Vector3::<f64>::new(0.1, -0.2, 2.0).norm() - 0.1)).abs()
+            < 1e-12
+    );
     let (normal, down) = (Vector3::repeat(1.0).normalize(), Vector3::new(1.0, 1.0, -2.0).normalize());
     let start = Vector3::repeat(1.0 / 3.0) + normal * 0.1;
     let q = [start[0], start[1], start[2], 0.0, 0.0, 0.0, 1.0];
@@ -262,7 +265,7 @@ struct Stone {
 /// Meshes of files collide as their hulls. Bodies come to rest as in MuJoCo 4.0.0, whose soft contacts sink
 /// in by 0.2 mm: the vertical axis relative to the body, and the height of its origin.
 #[test]
-fn meshes_rest_as_in_mujoco() {
+fn meshes_come_to_rest_as_in_mujoco() {
     assert_eq!((Stones::CONTACTS.len(), Stones::CONTACTS[0]), (8 + 6, "stone_geom0_contact.0"));
     for (axis, angle, up, height) in [
         ([1.0, 0.0, 0.0], 0.2, [0.13106, -0.00145, 0.99137], 0.00259),
@@ -278,22 +281,22 @@ fn meshes_rest_as_in_mujoco() {
         q.fixed_rows_mut::<4>(10).copy_from(&wedge);
         let run = simulate(&Stones).from(q, [0.0; 12]).method(TimeStepping::step(2e-3)).duration(2.5);
         let end = run.finish().unwrap();
-        let upright = |k: usize| {
+        let upright_direction = |k: usize| {
             let turn = UnitQuaternion::new_normalize(linkwork::nalgebra::Quaternion::from(
                 end.q.fixed_rows::<4>(k).into_owned(),
             ));
             turn.inverse() * Vector3::z()
         };
         assert!(end.v.amax() < 1e-6, "{}", end.v);
-        assert!((upright(3) - Vector3::from(up)).amax() < 3e-3, "{} {up:?}", upright(3));
+        assert!((upright_direction(3) - Vector3::from(up)).amax() < 3e-3, "{} {up:?}", upright_direction(3));
         assert!((end.q[2] - height).abs() < 4e-4, "{} {height}", end.q[2]);
-        assert!((upright(10) - Vector3::z()).amax() < 1e-6 && end.q[9].abs() < 1e-6, "{}", end.q);
+        assert!((upright_direction(10) - Vector3::z()).amax() < 1e-6 && end.q[9].abs() < 1e-6, "{}", end.q);
     }
 }
 
 /// The vertices of a mesh are those of its file, scaled and placed by the URDF file.
 #[test]
-fn vertices_are_those_of_the_mesh() {
+fn mesh_vertices_are_scaled_and_placed_by_the_urdf() {
     const VERTICES: [[f64; 3]; 8] = [
         [-6.0, -4.0, 0.0],
         [5.0, -5.0, 1.0],
@@ -309,14 +312,14 @@ fn vertices_are_those_of_the_mesh() {
     let c = turn.coords;
     let gaps = Stone {}.contact_gaps(&[0.0, 0.0, 0.5, c[0], c[1], c[2], c[3]].into());
     let placed = UnitQuaternion::from_euler_angles(0.0, 0.0, core::f64::consts::FRAC_PI_6);
-    let height = |p: Vector3<f64>| 0.5 + (turn * (Vector3::new(0.01, 0.0, 0.0) + p))[2];
-    let check = |range: core::ops::Range<usize>, vertex: &dyn Fn([f64; 3]) -> Vector3<f64>| {
-        let mut expected = VERTICES.map(|p| height(vertex(p)));
+    let height_of_vertex = |p: Vector3<f64>| 0.5 + (turn * (Vector3::new(0.01, 0.0, 0.0) + p))[2];
+    let check_vertices = |range: core::ops::Range<usize>, vertex: &dyn Fn([f64; 3]) -> Vector3<f64>| {
+        let mut expected = VERTICES.map(|p| height_of_vertex(vertex(p)));
         let mut found = gaps.as_slice()[range].to_vec();
         expected.sort_by(f64::total_cmp);
         found.sort_by(f64::total_cmp);
         assert!(expected.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-9), "{expected:?} {found:?}");
     };
-    check(0..8, &|p| placed * (Vector3::from(p) * 0.01));
-    check(8..16, &|p| Vector3::from(p));
+    check_vertices(0..8, &|p| placed * (Vector3::from(p) * 0.01));
+    check_vertices(8..16, &|p| Vector3::from(p));
 }

@@ -280,7 +280,7 @@ fn check_order(name: &str, h: f64, largest: f64, error: fn(Stepping) -> f64) {
 }
 
 #[test]
-fn the_order_is_two_where_surfaces_stay_together() {
+fn lasting_contacts_are_integrated_with_order_two() {
     check_order("bob in a bowl", 4e-3, 2e-4, error_in_bowl);
     check_order("bead in a tube", 4e-3, 4e-5, error_in_tube);
     check_order("wheel", 4e-3, 2e-4, error_of_wheel);
@@ -293,7 +293,7 @@ fn the_order_is_two_where_surfaces_stay_together() {
 /// The energy of an unbalanced rolling ball changes by the fraction `8e-6` in a second with steps of 2 ms,
 /// and by less with shorter steps.
 #[test]
-fn an_unbalanced_ball_keeps_its_energy() {
+fn unbalanced_rolling_ball_conserves_energy() {
     for (h, largest) in [(2e-3, 8e-6), (1e-3, 1e-6), (5e-4, 2.5e-7)] {
         assert!(error_of_rolling_ball(TimeStepping::step(h)) < largest);
         assert!(error_of_rolling_ball(TimeStepping::step(h).midpoint()) < largest);
@@ -303,7 +303,7 @@ fn an_unbalanced_ball_keeps_its_energy() {
 /// Checks that time stepping is exact for motions with constant accelerations: a sliding block and a rolling
 /// hoop.
 #[test]
-fn straight_slides_and_rolls_are_exact() {
+fn constant_accelerations_in_contact_are_integrated_exactly() {
     for method in [TimeStepping::step(1e-2), TimeStepping::step(1e-2).midpoint()] {
         assert!(
             error_of_sliding_block(method) < 1e-12 && error_of_hoop(method) < 1e-12,
@@ -316,7 +316,7 @@ fn straight_slides_and_rolls_are_exact() {
 
 /// A sticking block does not move under a growing, oscillating or jumping load.
 #[test]
-fn contacts_that_stick_do_not_creep() {
+fn sticking_contacts_do_not_creep() {
     for method in [TimeStepping::step(1e-3), TimeStepping::step(1e-3).midpoint()] {
         assert!(creep_on_ramp(method) < 1e-14, "{}", creep_on_ramp(method));
         let m = Slope { slope: 0.1, friction: 0.6 };
@@ -333,7 +333,7 @@ fn contacts_that_stick_do_not_creep() {
 /// Checks that a ball which moves and spins on a smooth level floor keeps its velocity, because no horizontal
 /// force acts on it. Steps through the midpoint are exact; steps with four stages have order 4.
 #[test]
-fn a_spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
+fn spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
     for spin in [[0.0, 20.0, 0.0], [0.0, 0.0, 20.0], [12.0, -9.0, 7.0]] {
         let method = TimeStepping::step(1e-3);
         for (method, largest) in [(method, 2e-6), (method.midpoint(), 1e-12), (method.leapfrog(), 1e-12)] {
@@ -348,7 +348,7 @@ fn a_spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
 /// The apices of a bouncing ball follow from the coefficient of restitution. The error has order 1, since
 /// impacts are not located.
 #[test]
-fn bounces_have_order_one() {
+fn bounces_are_integrated_with_order_one() {
     let fall = (2.0 / 9.81_f64).sqrt();
     for h in [4e-3, 2e-3, 1e-3, 5e-4] {
         for method in [TimeStepping::step(h), TimeStepping::step(h).midpoint()] {
@@ -361,7 +361,7 @@ fn bounces_have_order_one() {
 /// Random bobs in a bowl, rolling balls and blocks on slopes: the error against [`EventDriven`] with tight
 /// tolerances decreases on average with the square of the step.
 #[test]
-fn random_motions_have_order_two() {
+fn random_contact_motions_have_order_two() {
     let mut random = Random(11);
     let count = 60;
     let mut sums = [[0.0_f64; 2]; 3];

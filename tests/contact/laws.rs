@@ -16,7 +16,7 @@ impl Random {
         SVector::from_fn(|_, _| self.next() * size)
     }
 
-    pub fn one_of<const N: usize>(&mut self, list: [f64; N]) -> f64 {
+    pub fn random_choice<const N: usize>(&mut self, list: [f64; N]) -> f64 {
         list[((self.next() + 1.0) / 2.0 * N as f64) as usize % N]
     }
 }

@@ -24,7 +24,7 @@ struct Walker {
 /// The leg is an inverted pendulum, whose foot also supports its own weight. A touchdown preserves the
 /// velocity of the hip normal to the leg.
 #[test]
-fn light_feet_lose_no_digits() {
+fn light_feet_lose_no_accuracy_in_touchdown() {
     let mut random = Random(8);
     for k in 0..1000 {
         let m = Walker { foot: 10.0_f64.powi(-(k % 15)) };

@@ -21,7 +21,7 @@ struct Elbow {
 
 /// A constant torque presses the elbow onto its stop, where it stays until the torque is reversed.
 #[test]
-fn an_elbow_rests_at_its_stop() {
+fn elbow_rests_at_its_stop_under_torque() {
     let m = Elbow {};
     let applied_push = |t: f64| if t < 1.0 { 2.0 } else { -2.0 };
     let run = simulate(&m)
@@ -44,7 +44,7 @@ fn an_elbow_rests_at_its_stop() {
 
 /// The velocity after the impact at the stop is v − M⁻¹ e (1 + r) vₑ / (M⁻¹)ₑₑ.
 #[test]
-fn an_impact_at_a_stop_is_that_of_the_closed_form() {
+fn impact_at_a_stop_has_the_closed_form_velocity() {
     let m = Elbow {};
     let (q, v) = ([0.4, 0.5].into(), SVector::from([0.7, 1.3]));
     let found = contact::impact(&m, 0.0, &q, &v).unwrap();
@@ -80,7 +80,7 @@ struct Striking {
 /// velocity of restitution. The energy loss is ½ (1 − e²) v² over the inverse mass of the piston under the
 /// constraints.
 #[test]
-fn a_piston_strikes_a_stop() {
+fn piston_of_a_loop_rebounds_from_a_stop() {
     for e in [0.0, 0.3, 1.0] {
         let m = Striking { restitution: e };
         let place = 0.165;
@@ -111,7 +111,7 @@ struct Tethered {
 
 /// The bob falls until the rope is taut. The impact removes the velocity along the rope; then the bob swings.
 #[test]
-fn a_rope_becomes_taut() {
+fn rope_becomes_taut_and_removes_radial_velocity() {
     let m = Tethered { length: 1.0 };
     assert_eq!(Tethered::CONTACTS, ["rope.to"]);
     let run = simulate(&m)
@@ -156,7 +156,7 @@ struct Atwood {
 /// The rope is slack by 0.1 m, and both weights fall. When it is taut, momentum along the rope determines
 /// their common speed, and the heavy weight descends with `(m₁ − m₂) g / (m₁ + m₂)`.
 #[test]
-fn weights_on_a_rope_over_a_wheel() {
+fn taut_rope_over_a_wheel_equalises_speeds() {
     let fall = (0.1 / 9.81_f64).sqrt();
     let run = simulate(&Atwood {}).from([1.0, 0.9], [0.0; 2]).method(EventDriven::new());
     let end = run.duration(fall + 0.2).finish().unwrap();
@@ -190,7 +190,7 @@ struct Gears {
 /// coefficient of restitution, while `I₁ ω₁ / r₁ − I₂ ω₂ / r₂` is constant. Without restitution the teeth
 /// stay in contact.
 #[test]
-fn gears_rattle_in_their_play() {
+fn gear_backlash_impacts_follow_restitution() {
     let conserved_momentum = |v: &SVector<f64, 2>| 0.02 * v[0] / 0.1 - 0.03 * v[1] / 0.05;
     let approach_speed_of_teeth = |v: &SVector<f64, 2>| 0.1 * v[0] + 0.05 * v[1];
     let start = SVector::from([3.0, 1.0]);

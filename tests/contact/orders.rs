@@ -1,7 +1,7 @@
 //! Dropped boxes and balls: the order in which contacts and their surfaces are declared has no effect, and
 //! contacts add no energy.
 
-use super::boxes::{Swapped, Two, any_turn, configuration_of_boxes};
+use super::boxes::{Swapped, Two, configuration_of_boxes, random_rotation};
 use super::laws::Random;
 use linkwork::contact::Contacts;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
@@ -44,7 +44,7 @@ heap!(Backwards:
 
 /// Returns the maximum difference between the motions of two mechanisms in one step of `h` seconds, m/s and
 /// rad/s, over `steps` states along the motion of the first one.
-fn difference<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
+fn motion_difference<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
     (one, other): (&A, &B),
     (mut q, mut v): (SVector<f64, N>, SVector<f64, NV>),
     (h, steps): (f64, usize),
@@ -71,19 +71,19 @@ where
 /// impulses that were found; where several sliding contacts do not determine them, it differs by less than
 /// the error of the step.
 #[test]
-fn orders_of_declaration_make_no_difference() {
+fn declaration_order_of_contacts_has_no_effect() {
     let (mut random, run) = (Random(5), (2e-3, 60));
     let mut most = [0.0_f64; 2];
     for k in 0..8 {
         let (friction, restitution) = ([0.0, 0.3, 0.8][k % 3], [0.0, 0.5][k % 2]);
         let m = Two { gravity: 9.81, friction, restitution };
-        let turn = if k == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
+        let turn = if k == 0 { UnitQuaternion::identity() } else { random_rotation(&mut random) };
         let at: [f64; 3] = random.random_vector::<3>(0.1).into();
         let q = configuration_of_boxes(&m, [at[0], at[1], 0.26], turn);
         let mut v = SVector::<f64, 12>::zeros();
         v.fixed_rows_mut::<3>(6).copy_from(&(turn.inverse() * Vector3::new(0.0, 0.0, -1.0)));
         let other = Swapped { gravity: 9.81, friction, restitution };
-        most[0] = most[0].max(difference((&m, &other), (q, v), run));
+        most[0] = most[0].max(motion_difference((&m, &other), (q, v), run));
 
         let m = Heap { friction, restitution };
         let mut q = m.neutral();
@@ -91,7 +91,7 @@ fn orders_of_declaration_make_no_difference() {
         (0..4).for_each(|i| q[3 + i] = turn.coords[i]);
         let mut v = SVector::<f64, 12>::zeros();
         (v[0], v[3], v[8]) = (-1.0, random.next(), -1.0);
-        most[1] = most[1].max(difference((&m, &Backwards { friction, restitution }), (q, v), run));
+        most[1] = most[1].max(motion_difference((&m, &Backwards { friction, restitution }), (q, v), run));
     }
     assert!(most[0] < 1e-4 && most[1] < 1e-8, "{most:?}");
 }
@@ -99,7 +99,7 @@ fn orders_of_declaration_make_no_difference() {
 /// Checks that a box which lands flat on another one stays level, whichever box is named first. Contradictory
 /// gaps of corners and of an edge do not tilt it.
 #[test]
-fn flat_landings_stay_level() {
+fn flat_landing_boxes_stay_level() {
     let mut random = Random(5);
     for k in 0..30 {
         let friction = [0.0, 0.3][k % 2];
@@ -109,7 +109,7 @@ fn flat_landings_stay_level() {
         let q = configuration_of_boxes(&m, [at[0], at[1], 0.1261], UnitQuaternion::identity());
         let mut v = SVector::<f64, 12>::zeros();
         v[8] = -1.9;
-        let most = difference((&m, &other), (q, v), (2e-3, 2));
+        let most = motion_difference((&m, &other), (q, v), (2e-3, 2));
         assert!(most < 1e-8, "{most} at {at:?}");
         let step = TimeStepping::step(2e-3);
         let end = simulate(&m).from(q, v).method(step).duration(2e-3).finish().unwrap();
@@ -121,12 +121,12 @@ fn flat_landings_stay_level() {
 /// contact may have one if slipping contacts share impulses: `Two` and `Swapped` differ by more than `1e-8`
 /// in about 1 of 3000 steps.)
 #[test]
-fn orders_with_strong_friction_make_no_difference() {
+fn contact_order_has_no_effect_with_strong_friction() {
     let mut random = Random(2);
     let mut most = 0.0_f64;
     for k in 0..100 {
         let (friction, restitution) = ([2.0, 0.3, 2.0, 0.8][k % 4], [0.0, 0.5][k / 4 % 2]);
-        let turn = any_turn(&mut random);
+        let turn = random_rotation(&mut random);
         let at: [f64; 3] = random.random_vector::<3>(0.1).into();
         let m = Heap { friction, restitution };
         let mut q = m.neutral();
@@ -134,7 +134,7 @@ fn orders_with_strong_friction_make_no_difference() {
         (0..4).for_each(|i| q[3 + i] = turn.coords[i]);
         let mut v = SVector::<f64, 12>::zeros();
         (v[0], v[3], v[8]) = (-1.0, random.next(), -1.0);
-        most = most.max(difference((&m, &Backwards { friction, restitution }), (q, v), (2e-3, 60)));
+        most = most.max(motion_difference((&m, &Backwards { friction, restitution }), (q, v), (2e-3, 60)));
     }
     assert!(most < 1e-8, "{most}");
 }
@@ -144,7 +144,7 @@ fn orders_with_strong_friction_make_no_difference() {
 fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     let mut random = Random(seed);
     let m = Two { gravity: 9.81, friction: 0.5, restitution };
-    let turn = any_turn(&mut random);
+    let turn = random_rotation(&mut random);
     let at: [f64; 3] = random.random_vector::<3>(0.1).into();
     let q = configuration_of_boxes(&m, [at[0], at[1], 0.3], turn);
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
@@ -165,7 +165,7 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
 /// the error of a second-order step for rotation about edges, `½ m g r ω² h²` with about 3 kg, 0.15 m and 3
 /// rad/s. Corners that collide at 4 m/s overlap by at most their approach in one step.
 #[test]
-fn drops_gain_no_energy() {
+fn dropped_bodies_gain_no_energy() {
     let h = 2e-3;
     for (k, restitution) in [0.0, 0.5, 1.0, 0.0, 1.0].into_iter().enumerate() {
         let (gain, least) = drop(restitution, 20 + k as u64, h);

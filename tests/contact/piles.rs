@@ -1,4 +1,4 @@
-//! Bodies that lie, lean and collide on each other.
+//! Tests of bodies that lie, lean and collide on each other.
 
 use linkwork::prelude::*;
 use std::thread;
@@ -31,7 +31,7 @@ fn check_stack_at_rest() {
 }
 
 #[test]
-fn boxes_stand_on_boxes() {
+fn stacked_boxes_remain_standing() {
     thread::Builder::new().stack_size(32 << 20).spawn(check_stack_at_rest).unwrap().join().unwrap();
 }
 
@@ -60,7 +60,7 @@ struct Cards {
 /// carries `m g` and needs a coefficient of at least `tan φ / 2`. The face, to whose normal the force is
 /// inclined by `φ`, needs at least `tan φ`.
 #[test]
-fn cards_lean_on_each_other() {
+fn leaning_cards_have_closed_form_forces() {
     let lean = 0.35_f64;
     let q = SVector::from([
         -0.05 * lean.sin(),
@@ -115,7 +115,7 @@ struct House {
 /// Eleven contacts have 22 forces for 21 velocities. With strong friction no card moves by a nanometre under
 /// the ten millinewtons of the upper pair and the roof; with weak friction the house falls.
 #[test]
-fn a_house_of_cards_stands() {
+fn house_of_cards_remains_standing() {
     let lean = 0.35_f64;
     let (sine, cosine) = lean.sin_cos();
     let mut q = SVector::<f64, 21>::zeros();
@@ -150,7 +150,7 @@ struct Cradle {
 /// Checks that successive impacts transfer the velocity from ball to ball in Newton's cradle. The last ball
 /// rises to the initial height of the first one; the others stay at rest.
 #[test]
-fn a_cradle_hands_the_velocity_on() {
+fn newtons_cradle_transfers_the_velocity() {
     let m = Cradle { gap: 1e-6 };
     let start = [-0.3, 0.0, 0.0, 0.0, 0.0];
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
@@ -193,7 +193,7 @@ tumbling!(LeftFirst, left = -0.15 * x - 0.1 * y, right = 0.15 * x - 0.1 * y);
 tumbling!(RightFirst, right = 0.15 * x - 0.1 * y, left = -0.15 * x - 0.1 * y);
 
 #[test]
-fn the_order_of_declaration_does_not_matter() {
+fn declaration_order_of_stacked_bodies_has_no_effect() {
     let (q, v) = ([0.0, 0.12, 0.05], [1.0, 0.0, 0.5]);
     let step = TimeStepping::step(1e-3);
     let one = simulate(&LeftFirst {}).from(q, v).method(step).duration(0.5).finish().unwrap();
@@ -216,7 +216,7 @@ struct Small {
 }
 
 #[test]
-fn single_precision_sticks_too() {
+fn stacked_bodies_stick_in_single_precision() {
     let m = Small { tilt: 0.35 };
     let (sine, cosine) = (m.tilt / 2.0).sin_cos();
     let q = [0.05 * m.tilt.sin(), 0.0, 0.05 * m.tilt.cos(), 0.0, sine, 0.0, cosine];

@@ -49,7 +49,7 @@ where
 /// `−e uₙ` by Newton's. For a rod of mass `m` and length `2 l` at an angle `θ`, `m Wₙₙ = 1 + 3 cos² θ`,
 /// `m Wₜₜ = 1 + 3 sin² θ` and `m |Wₙₜ| = 3 sin θ cos θ`.
 #[test]
-fn an_oblique_rod_leaves_faster_than_by_newton() {
+fn poisson_rebound_of_an_oblique_rod_exceeds_newtons() {
     let (friction, e, gravity) = (2.0, 0.6, 0.0);
     let (poisson, newton) = (Impulses { gravity, friction, e }, Velocities { gravity, friction, e });
     for angle in [0.6, 0.8, 1.0_f64] {
@@ -79,7 +79,7 @@ fn an_oblique_rod_leaves_faster_than_by_newton() {
 /// Poisson's and Newton's laws agree while the slip continues: the end leaves with `−e uₙ`, and the slip is
 /// reduced by `μ` times the impulse.
 #[test]
-fn while_a_rod_slips_both_laws_are_one() {
+fn poisson_and_newton_restitution_agree_during_slip() {
     let (friction, e, gravity) = (0.1, 0.6, 0.0);
     for angle in [0.6, 0.8, 1.0] {
         for slip in [-3.0, 3.0] {
@@ -96,7 +96,7 @@ fn while_a_rod_slips_both_laws_are_one() {
 
 /// Time stepping through the oblique impact converges to the velocity of the impact as the steps get shorter.
 #[test]
-fn steps_strike_as_impacts_do() {
+fn time_steps_converge_to_the_poisson_impact() {
     let m = Impulses { gravity: 9.81, friction: 1.0, e: 0.6 };
     let angle: f64 = 0.8;
     let (sine, cosine) = angle.sin_cos();
@@ -142,7 +142,7 @@ struct Ball {
 }
 
 #[test]
-fn a_ball_bounces_and_rests() {
+fn ball_bounces_and_rests_with_poisson_restitution() {
     let m = Ball {};
     let mut q = m.neutral();
     q[2] = 0.6;
@@ -231,11 +231,11 @@ fn check_impact_conditions<M, const NQ: usize, const NV: usize, const NK: usize,
 /// approach. The cases have many simultaneous contacts, contacts with Newton's law at the same time, and
 /// impacts in which Newton's law alone would add energy.
 #[test]
-fn impacts_obey_the_laws() {
+fn poisson_impacts_satisfy_contact_conditions() {
     let mut random = Random(31);
     for _ in 0..300 {
-        let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
-        let m = Block { friction, restitution: random.one_of([0.2, 0.6, 1.0]) };
+        let friction = random.random_choice([0.0, 0.05, 0.3, 0.8, 2.0]);
+        let m = Block { friction, restitution: random.random_choice([0.2, 0.6, 1.0]) };
         let mut q = m.neutral();
         q[2] = 0.05;
         if random.next() > 0.3 {
@@ -246,8 +246,8 @@ fn impacts_obey_the_laws() {
     for _ in 0..2000 {
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
         let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
-        let friction = random.one_of([0.0, 0.3, 0.7, 3.0]);
-        let m = Pendulum { friction, restitution: random.one_of([0.5, 0.9, 1.0]), height };
+        let friction = random.random_choice([0.0, 0.3, 0.7, 3.0]);
+        let m = Pendulum { friction, restitution: random.random_choice([0.5, 0.9, 1.0]), height };
         check_impact_conditions(&m, &[a, b].into(), &random.random_vector(3.0));
     }
 }
@@ -277,7 +277,7 @@ struct Crank {
 /// Checks an impact in a closed loop with Poisson's restitution: the slide leaves with the fraction `e` of
 /// its speed, the energy decreases by the fraction `1 − e²`, and velocities satisfy the constraints.
 #[test]
-fn loops_stay_closed() {
+fn poisson_impacts_keep_loops_closed() {
     let m = Crank { e: 0.7 };
     let cosine: f64 = (0.37 * 0.37 + 0.01 - 0.09) / (2.0 * 0.37 * 0.1);
     let angle = cosine.acos();

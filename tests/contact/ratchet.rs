@@ -41,7 +41,7 @@ fn displacement_of_rack(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
 /// The pawl climbs a flank of slope `s = tan α` under a load of `m g tan(α + φ) = m g (s + μ) / (1 − s μ)`
 /// with `μ = tan φ`. For `s μ > 1` no load moves the rack. A locked rack does not creep.
 #[test]
-fn a_pawl_holds_one_way() {
+fn pawl_holds_its_load_in_one_direction() {
     let climbing_force = |s: f64, friction: f64| WEIGHT * (s + friction) / (1.0 - s * friction);
     let (gentle, steep) = ([0.03, 0.015], [0.19, 0.02]);
     for friction in [0.3, 0.6] {
@@ -64,7 +64,7 @@ fn a_pawl_holds_one_way() {
 /// Checks that the rack, pulled in its free direction, moves under the pawl, which falls into one tooth gap
 /// after another.
 #[test]
-fn a_rack_runs_one_way() {
+fn rack_moves_only_in_its_free_direction() {
     // The load is slightly above the limit of the gentle flanks.
     let m = Ratchet { friction: 0.3, load: -1.1 * WEIGHT };
     let run = simulate(&m).from([-0.03, 0.015], [0.0; 2]).method(TimeStepping::step(2e-4)).duration(3.0);

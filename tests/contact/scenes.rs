@@ -1,6 +1,6 @@
 //! Bodies that fall on each other and on the ground: a step always exists, and takes no energy in.
 
-use super::boxes::any_turn;
+use super::boxes::random_rotation;
 use super::laws::Random;
 use linkwork::nalgebra::UnitQuaternion;
 use linkwork::prelude::*;
@@ -68,7 +68,7 @@ impl Bricks {
 /// Checks random scenes of two bricks: in the air, stacked, or one falling against the other. The environment
 /// variable `LINKWORK_SCENES` is the number of scenes.
 #[test]
-fn random_scenes_of_two_bricks_go_on() {
+fn random_scenes_of_two_bricks_complete() {
     let count = std::env::var("LINKWORK_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(12);
     for seed in 0..count {
         let mut random = Random(seed);
@@ -81,8 +81,8 @@ fn random_scenes_of_two_bricks_go_on() {
             a,
             b,
             c,
-            friction: random.one_of([0.0, 0.1, 0.3, 0.5, 1.0, 2.0]),
-            restitution: random.one_of([0.0, 0.0, 0.3, 1.0]),
+            friction: random.random_choice([0.0, 0.1, 0.3, 0.5, 1.0, 2.0]),
+            restitution: random.random_choice([0.0, 0.0, 0.3, 1.0]),
         };
         let far = (a * a + b * b + c * c).sqrt() / 2.0;
         let level = UnitQuaternion::identity();
@@ -91,8 +91,8 @@ fn random_scenes_of_two_bricks_go_on() {
             0 => {
                 v = random.random_vector(2.0);
                 [
-                    ([0.0, 0.0, far], any_turn(&mut random)),
-                    ([0.3 * far, 0.0, 3.1 * far], any_turn(&mut random)),
+                    ([0.0, 0.0, far], random_rotation(&mut random)),
+                    ([0.3 * far, 0.0, 3.1 * far], random_rotation(&mut random)),
                 ]
             }
             1 => [([0.0, 0.0, c / 2.0], level), ([0.3 * a, 0.2 * b, 1.5 * c], level)],
@@ -116,7 +116,7 @@ fn random_scenes_of_two_bricks_go_on() {
 
 /// Checks that a thin brick which falls against another one knocks it over.
 #[test]
-fn a_brick_knocks_another_over() {
+fn falling_brick_knocks_over_another() {
     let m = Bricks { mass: 0.02, ratio: 1.0, a: 0.008, b: 0.025, c: 0.05, friction: 0.3, restitution: 0.0 };
     let level = UnitQuaternion::identity();
     for h in [2e-3, 1e-3] {

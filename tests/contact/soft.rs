@@ -1,4 +1,4 @@
-//! Checks of compliant contacts, in which surfaces indent.
+//! Tests of compliant contacts, in which surfaces indent.
 
 use linkwork::prelude::*;
 
@@ -34,7 +34,7 @@ struct Round {
 
 /// At rest the penetration follows from the weight, and the contact force is the weight.
 #[test]
-fn bodies_stand_as_deep_as_they_are_heavy() {
+fn compliant_penetration_is_proportional_to_weight() {
     let m = Ball { g: 9.81, mass: 2.0, stiffness: 5e4, dissipation: 0.3 };
     let depth = m.mass * m.g / m.stiffness;
     assert!(m.forward_dynamics(&[-depth].into(), &[0.0].into(), &[0.0].into())[0].abs() < 1e-12);
@@ -61,19 +61,19 @@ fn rebound_time_and_velocity(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: 
 /// An impact lasts half a period of the spring, and 2.9432 times the depth over the speed for round bodies
 /// (Johnson, *Contact Mechanics*, 1985, § 11.4). Without dissipation it is elastic.
 #[test]
-fn impacts_last_as_long_as_closed_forms_say() {
+fn compliant_impacts_have_closed_form_durations() {
     let precise_method = || DormandPrince::new().tolerance(1e-12, 1e-14);
     let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation: 0.0 };
-    let state_at =
+    let state_after =
         |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let half = core::f64::consts::PI * (m.mass / m.stiffness).sqrt();
-    let (time, speed) = rebound_time_and_velocity(state_at, half * 1.5);
+    let (time, speed) = rebound_time_and_velocity(state_after, half * 1.5);
     assert!((time / half - 1.0).abs() < 1e-9 && (speed - 1.0).abs() < 1e-9, "{time} {half} {speed}");
     let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
-    let state_at =
+    let state_after =
         |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let depth = (5.0 * m.mass / (4.0 * m.stiffness)).powf(0.4);
-    let (time, speed) = rebound_time_and_velocity(state_at, 4.0 * depth);
+    let (time, speed) = rebound_time_and_velocity(state_after, 4.0 * depth);
     assert!(
         (time / depth - 2.943_274).abs() < 1e-5 && (speed - 1.0).abs() < 1e-8,
         "{} {speed}",
@@ -84,15 +84,15 @@ fn impacts_last_as_long_as_closed_forms_say() {
 /// The coefficient of restitution decreases with the speed, by two thirds of the dissipation to first order
 /// (Hunt and Crossley, 1975).
 #[test]
-fn restitution_falls_with_the_speed() {
+fn compliant_restitution_decreases_with_speed() {
     for dissipation in [0.003, 0.03] {
         let expected_restitution = |speed: f64| 1.0 - 2.0 / 3.0 * dissipation * speed;
         let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation };
-        let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, linear) = rebound_time_and_velocity(state_at, 0.05);
+        let state_after = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, linear) = rebound_time_and_velocity(state_after, 0.05);
         let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation };
-        let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, round) = rebound_time_and_velocity(state_at, 0.05);
+        let state_after = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, round) = rebound_time_and_velocity(state_after, 0.05);
         for found in [linear, round] {
             assert!(
                 (found - expected_restitution(1.0)).abs() < dissipation * dissipation,
@@ -118,7 +118,7 @@ struct Bowling {
 
 /// Checks that a ball which slides on a compliant contact begins to roll, with 5/7 of its speed.
 #[test]
-fn a_ball_begins_to_roll() {
+fn sliding_ball_begins_to_roll_on_compliant_contact() {
     let m = Bowling { friction: 0.2 };
     let depth = 6.0 * 9.81 / 1e6;
     let start = [0.0, 0.0, 0.11 - depth, 0.0, 0.0, 0.0, 1.0];
@@ -133,7 +133,7 @@ fn a_ball_begins_to_roll() {
 
 /// Derivatives of the accelerations agree with differences, in contact with the ground and above it.
 #[test]
-fn derivatives_see_what_yields() {
+fn compliant_contact_derivatives_agree_with_differences() {
     let m = Bowling { friction: 0.2 };
     let tau = SVector::<f64, 6>::zeros();
     for height in [0.1099, 0.2] {

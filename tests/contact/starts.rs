@@ -27,7 +27,7 @@ struct Channel {
 /// Balls that overlap by `d` separate by `d m₂ / (m₁ + m₂)` and `d m₁ / (m₁ + m₂)` along the line of their
 /// centres: their common centre of mass does not move.
 #[test]
-fn balls_part_in_proportion_to_their_masses() {
+fn overlapping_balls_separate_in_proportion_to_mass() {
     let m = Channel { gap: 1.0 };
     let mut q = m.neutral();
     (q[7], q[8]) = (0.12, 0.09);
@@ -49,7 +49,7 @@ fn balls_part_in_proportion_to_their_masses() {
 /// If the distance of the walls is less than the ball's diameter, no configuration is free of overlaps, and
 /// the error names a wall.
 #[test]
-fn what_has_no_room_is_refused() {
+fn overlaps_without_free_space_are_rejected() {
     let m = Channel { gap: 0.18 };
     let mut q = m.neutral();
     (q[2], q[7]) = (0.003, 1.0);
@@ -63,7 +63,7 @@ fn what_has_no_room_is_refused() {
 /// contact. With the option to project they start from the result of [`contact::project`]; with the option to
 /// keep overlaps they start unchanged.
 #[test]
-fn simulations_look_at_their_start() {
+fn simulations_reject_overlapping_starts() {
     let m = Channel { gap: 1.0 };
     let mut q = m.neutral();
     (q[7], q[8]) = (0.12, 0.09);
@@ -112,7 +112,7 @@ struct Crank {
 /// The projection moves the slide to the stop, and the loop stays closed: `cos θ` of the crank's angle
 /// follows from the law of cosines.
 #[test]
-fn loops_stay_closed() {
+fn overlap_removal_keeps_loops_closed() {
     let m = Crank {};
     let crank_configuration = |angle: f64| {
         let rod = -(angle.sin() / 3.0).asin();
@@ -143,7 +143,7 @@ struct Corner {
 }
 
 #[test]
-fn a_box_leaves_a_corner() {
+fn overlapping_box_is_moved_out_of_a_corner() {
     let m = Corner {};
     let mut q = m.neutral();
     (q[0], q[1], q[2]) = (0.13, 0.08, 0.03);
@@ -177,7 +177,7 @@ struct Ball {
 /// Negative or infinite friction, and restitution outside its range, are reported by all functions of
 /// contacts.
 #[test]
-fn coefficients_that_are_none_are_named() {
+fn invalid_contact_coefficients_are_reported() {
     let wrong = [(-0.1, 0.0, -0.1), (f64::INFINITY, 0.0, f64::INFINITY), (0.5, -0.2, -0.2), (0.5, 1.1, 1.1)];
     for (friction, restitution, value) in wrong {
         let m = Ball { friction, restitution };

@@ -97,7 +97,7 @@ struct Stack {
 }
 
 /// Returns the methods with steps of `h` seconds. A single step of leapfrog is one through the midpoint.
-fn methods(h: f64) -> [TimeStepping<f64>; 2] {
+fn stepping_methods(h: f64) -> [TimeStepping<f64>; 2] {
     let method = TimeStepping::step(h);
     [method, method.midpoint()]
 }
@@ -117,12 +117,12 @@ fn check_columns<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let (end, after) = discrete::step(m, method, 0.0, q, v, u).unwrap();
     assert!((end - found.q).amax() < 1e-14 && (after - found.v).amax() < 1e-13, "{}", after - found.v);
     for k in (0..2 * NV + NU).filter(|k| !skipped.contains(k)) {
-        let unit =
+        let unit_displacement =
             |s: f64, first: usize| SVector::<f64, NV>::from_fn(|i, _| if i + first == k { s } else { 0.0 });
         let end_of_step = |s: f64| {
             let u = SVector::from_fn(|i, _| if i + 2 * NV == k { u[i] + s } else { u[i] });
-            let q = m.integrate(q, &unit(s, 0));
-            let (q, v) = discrete::step(m, method, 0.0, &q, &(v + unit(s, NV)), &u).unwrap();
+            let q = m.integrate(q, &unit_displacement(s, 0));
+            let (q, v) = discrete::step(m, method, 0.0, &q, &(v + unit_displacement(s, NV)), &u).unwrap();
             [m.difference(&found.q, &q), v]
         };
         // Noise of the search for impulses is divided by `h`.
@@ -136,9 +136,11 @@ fn check_columns<M, S, const NQ: usize, const NV: usize, const NU: usize>(
             column([found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()]),
         ];
         for (what, column) in columns.into_iter().enumerate() {
-            let pair =
+            let difference_of_pair =
                 |(after, before): &([SVector<f64, NV>; 2], [SVector<f64, NV>; 2])| after[what] - before[what];
-            let expected = (pair(&one) * 45.0 - pair(&two) * 9.0 + pair(&three)) / (60.0 * h);
+            let expected = (difference_of_pair(&one) * 45.0 - difference_of_pair(&two) * 9.0
+                + difference_of_pair(&three))
+                / (60.0 * h);
             let off = (column - expected).amax();
             assert!(off < 2e-8 * (1.0 + expected.amax()), "{k}, {what}: {off:e} {expected} {column}");
         }
@@ -147,23 +149,27 @@ fn check_columns<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 
 /// A ball bounces with −e times its velocity, falls freely before, and stays at rest without restitution.
 #[test]
-fn a_ball_on_the_ground() {
+fn contact_step_jacobian_of_a_bouncing_ball() {
     let h = 0.01;
-    for method in methods(h).into_iter().chain([TimeStepping::step(h).leapfrog()]) {
-        let step = |restitution: f64, q: f64, v: f64| {
+    for method in stepping_methods(h).into_iter().chain([TimeStepping::step(h).leapfrog()]) {
+        let ball_transition = |restitution: f64, q: f64, v: f64| {
             let u = [0.2].into();
             discrete::transition(&Ball { restitution }, &method, 0.0, &[q].into(), &[v].into(), &u).unwrap()
         };
-        let falls = step(0.6, 1.0, 0.3);
+        let falls = ball_transition(0.6, 1.0, 0.3);
         assert!((falls.a::<2>() - SMatrix::from([[1.0, 0.0], [h, 1.0]])).amax() < 1e-14);
         assert!((falls.v_by_u[0] - h / 0.5).abs() < 1e-15);
         // The step ends on the ground, and the velocity is −e times that before the step.
-        for bounces in [step(0.6, 0.01, -2.0), step(0.6, 0.0, -2.0)] {
+        for bounces in [ball_transition(0.6, 0.01, -2.0), ball_transition(0.6, 0.0, -2.0)] {
             assert!((bounces.v[0] - 1.2).abs() < 1e-14 && (bounces.v_by_v[0] + 0.6).abs() < 1e-14);
             assert!(bounces.v_by_q[0].abs() + bounces.v_by_u[0].abs() < 1e-14);
         }
         // At rest no displacement towards the open side remains after a step.
-        for rests in [step(0.0, 0.01, -2.0), step(0.0, 0.0, 0.0), step(0.0, 1e-9, 0.0)] {
+        for rests in [
+            ball_transition(0.0, 0.01, -2.0),
+            ball_transition(0.0, 0.0, 0.0),
+            ball_transition(0.0, 1e-9, 0.0),
+        ] {
             assert!(rests.q[0].abs() < 1e-10 && rests.a::<2>().amax() + rests.b::<2>().amax() < 1e-14);
         }
         check_columns(
@@ -178,14 +184,14 @@ fn a_ball_on_the_ground() {
 /// Along its slip a block has the derivative 1, across it the ratio of the speeds after and before the step,
 /// since friction turns with the slip. A block that sticks does not answer to forces.
 #[test]
-fn a_block_slides_or_sticks() {
+fn contact_step_jacobian_of_a_sliding_or_sticking_block() {
     let (m, h) = (Block { friction: 0.5 }, 0.01);
-    for method in methods(h) {
-        let step = |speed: f64| {
+    for method in stepping_methods(h) {
+        let block_transition = |speed: f64| {
             let (v, u) = ([speed, 0.0, 0.0].into(), [0.2].into());
             discrete::transition(&m, &method, 0.0, &SVector::zeros(), &v, &u).unwrap()
         };
-        let slides = step(1.0);
+        let slides = block_transition(1.0);
         let after = 1.0 + h * (0.2 - 0.5 * 9.81) / 3.0;
         assert!((slides.v[0] - after).abs() < 1e-14);
         assert!(
@@ -198,7 +204,7 @@ fn a_block_slides_or_sticks() {
             (&SVector::zeros(), &[1.0, 0.5, 0.0].into(), &[0.2].into()),
             (1e-6, &[2, 5]),
         );
-        let sticks = step(0.0);
+        let sticks = block_transition(0.0);
         assert!(sticks.v_by_v.amax() + sticks.v_by_u.amax() + sticks.q_by_u.amax() < 1e-14);
         assert_eq!(sticks.q_by_q[(0, 0)], 1.0);
     }
@@ -208,42 +214,44 @@ fn a_block_slides_or_sticks() {
 const FLAT: [usize; 6] = [2, 3, 4, 8, 9, 10];
 
 #[test]
-fn a_crate_in_every_contact_mode() {
-    for (friction, method) in
-        methods(0.01).map(|method| (0.5, method)).into_iter().chain([(0.0, methods(0.01)[0])])
+fn contact_step_jacobian_of_a_crate_in_every_mode() {
+    for (friction, method) in stepping_methods(0.01)
+        .map(|method| (0.5, method))
+        .into_iter()
+        .chain([(0.0, stepping_methods(0.01)[0])])
     {
         let m = Crate { friction };
         let (rest, u) =
             (m.integrate(&m.neutral(), &[0.0, 0.0, 0.05, 0.0, 0.0, 0.0].into()), [3.0, 1.0].into());
-        let check = |q: &SVector<f64, 7>, v: [f64; 6], h: f64, skipped: &[usize]| {
+        let check_crate_columns = |q: &SVector<f64, 7>, v: [f64; 6], h: f64, skipped: &[usize]| {
             check_columns(&m, &method, (q, &v.into(), &u), (h, skipped));
         };
-        check(&rest, [0.0; 6], 1e-6, &FLAT);
+        check_crate_columns(&rest, [0.0; 6], 1e-6, &FLAT);
         let turned = m.integrate(&rest, &[0.0, 0.0, 0.2, 0.3, 0.4, 0.2].into());
-        check(&turned, [0.1, 0.5, 0.4, 1.0, 2.0, 3.0], 1e-5, &[]);
+        check_crate_columns(&turned, [0.1, 0.5, 0.4, 1.0, 2.0, 3.0], 1e-5, &[]);
         // A corner that lands, and one on which the crate slides and tips over.
         let mut corner = turned;
         corner[2] -= m.contact_gaps(&turned).min() - 0.01;
-        check(&corner, [0.6, 0.3, -2.0, 0.3, 0.4, 0.5], 1e-6, &[]);
+        check_crate_columns(&corner, [0.6, 0.3, -2.0, 0.3, 0.4, 0.5], 1e-6, &[]);
         corner[2] -= 0.01;
-        check(&corner, [0.6, 0.3, -0.2, 1.3, 0.4, 0.5], 1e-6, &[0, 1, 2, 3, 4, 5]);
+        check_crate_columns(&corner, [0.6, 0.3, -0.2, 1.3, 0.4, 0.5], 1e-6, &[0, 1, 2, 3, 4, 5]);
     }
 }
 
 #[test]
-fn balls_with_friction_moments_and_on_terrain() {
-    for method in methods(0.01) {
+fn contact_step_jacobian_with_friction_moments_and_terrain() {
+    for method in stepping_methods(0.01) {
         let mut q = Bowl { restitution: 0.0 }.neutral();
         q[2] = 0.05;
-        let check = |restitution: f64, q: &SVector<f64, 7>, v: [f64; 6], skipped: &[usize]| {
+        let check_bowl_columns = |restitution: f64, q: &SVector<f64, 7>, v: [f64; 6], skipped: &[usize]| {
             let m = Bowl { restitution };
             check_columns(&m, &method, (q, &v.into(), &SVector::zeros()), (1e-5, skipped));
         };
-        check(0.0, &q, [1.0, 0.0, 0.0, 0.0, 20.0, 0.3], &[2, 8]);
-        check(0.0, &q, [1.0, 0.0, 0.0, 0.0, 2.0, 0.3], &[2, 8]);
+        check_bowl_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 20.0, 0.3], &[2, 8]);
+        check_bowl_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 2.0, 0.3], &[2, 8]);
         q[2] = 0.055;
-        check(0.0, &q, [0.1, 0.3, -1.0, -20.0, 2.0, 0.3], &[]);
-        check(0.4, &q, [1.0, 0.3, -2.0, -2.0, 2.0, 0.3], &[]);
+        check_bowl_columns(0.0, &q, [0.1, 0.3, -1.0, -20.0, 2.0, 0.3], &[]);
+        check_bowl_columns(0.4, &q, [1.0, 0.3, -2.0, -2.0, 2.0, 0.3], &[]);
         let m = Hollow {};
         (q[0], q[1], q[2]) = (0.3, 0.2, 0.2);
         q[2] -= m.contact_gaps(0.0, &q)[0] - 1e-3;
@@ -253,12 +261,12 @@ fn balls_with_friction_moments_and_on_terrain() {
 }
 
 #[test]
-fn a_quadruped_falls_and_lands() {
+fn contact_step_jacobian_of_a_landing_quadruped() {
     let (m, (mut q, mut v, _)) = (Solo {}, quadruped_stance());
     let u = SVector::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());
     q[2] -= m.contact_gaps(&q).min() - 0.01;
     v[2] = -2.0;
-    check_columns(&m, &methods(0.01)[0], (&q, &v, &u), (1e-5, &[]));
+    check_columns(&m, &stepping_methods(0.01)[0], (&q, &v, &u), (1e-5, &[]));
     // On four feet, of which one slides.
     let mut q = m.neutral();
     for leg in 0..4 {
@@ -267,18 +275,18 @@ fn a_quadruped_falls_and_lands() {
     q[2] -= m.contact_gaps(&q).min() - 1e-3;
     v = SVector::zeros();
     (v[0], v[2]) = (0.2, -1.0);
-    check_columns(&m, &methods(0.01)[1], (&q, &v, &u), (1e-5, &[]));
+    check_columns(&m, &stepping_methods(0.01)[1], (&q, &v, &u), (1e-5, &[]));
 }
 
 /// A ball rolls on a crate, which sticks to the ground or slides.
 #[test]
-fn a_stack_of_two_bodies() {
+fn contact_step_jacobian_of_stacked_bodies() {
     let m = Stack {};
     let (mut q, v) = (m.neutral(), SVector::<f64, 12>::zeros());
     (q[2], q[7], q[9]) = (0.05, 0.03, 0.2);
     // Displacements and velocities that open or close a contact.
     let closed = [2, 3, 4, 8, 14, 15, 16, 20];
-    for (method, push) in methods(0.01).into_iter().flat_map(|method| [(method, 2.0), (method, 20.0)]) {
+    for (method, push) in stepping_methods(0.01).into_iter().flat_map(|method| [(method, 2.0), (method, 20.0)]) {
         check_columns(&m, &method, (&q, &v, &[push].into()), (1e-6, &closed));
     }
 }
@@ -286,7 +294,7 @@ fn a_stack_of_two_bodies() {
 /// Returns the gradient of a function of the state after `n` steps under constant inputs, with respect to the
 /// initial state and the inputs, by adjoint products backwards in time.
 #[allow(clippy::type_complexity, reason = "three gradients")]
-fn gradient<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn rollout_gradient<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     method: &TimeStepping<f64>,
     (mut q, mut v, u): (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NU>),
@@ -313,15 +321,15 @@ where
 
 /// Gradients through a hundred steps in which bodies fall, bounce, slide, roll and come to rest.
 #[test]
-fn gradients_of_rollouts() {
-    for method in [methods(5e-3)[0], methods(5e-3)[1]] {
+fn gradients_through_contact_rollouts_agree_with_differences() {
+    for method in [stepping_methods(5e-3)[0], stepping_methods(5e-3)[1]] {
         // The crate lands on its face, slides and stops.
         let (m, u) = (Crate { friction: 0.5 }, SVector::from([2.0, 0.0]));
         let start = [0.0, 0.0, 0.07, 0.0, 0.0, 0.0, 1.0].into();
         let v = SVector::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let along = SVector::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let found = gradient(&m, &method, (start, v, u), 100, (along, SVector::zeros()));
-        let place = |height: f64, speed: f64, push: f64| {
+        let found = rollout_gradient(&m, &method, (start, v, u), 100, (along, SVector::zeros()));
+        let final_position = |height: f64, speed: f64, push: f64| {
             let (mut q, mut v, u) = (start, v, [2.0 + push, 0.0].into());
             (q[2], v[0]) = (q[2] + height, v[0] + speed);
             for _ in 0..100 {
@@ -333,9 +341,9 @@ fn gradients_of_rollouts() {
         // Smaller displacements show the tolerance of the search for impulses.
         let h = 3e-5;
         for (found, expected) in [
-            (found.0[2], place(h, 0.0, 0.0) - place(-h, 0.0, 0.0)),
-            (found.1[0], place(0.0, h, 0.0) - place(0.0, -h, 0.0)),
-            (found.2[0], place(0.0, 0.0, h) - place(0.0, 0.0, -h)),
+            (found.0[2], final_position(h, 0.0, 0.0) - final_position(-h, 0.0, 0.0)),
+            (found.1[0], final_position(0.0, h, 0.0) - final_position(0.0, -h, 0.0)),
+            (found.2[0], final_position(0.0, 0.0, h) - final_position(0.0, 0.0, -h)),
         ] {
             let expected = expected / (2.0 * h);
             assert!((found - expected).abs() < 1e-7 * (1.0 + expected.abs()), "{found} {expected}");
@@ -345,7 +353,7 @@ fn gradients_of_rollouts() {
 
 /// Poisson's restitution has no derivatives; the error names the contact.
 #[test]
-fn impulses_without_derivatives() {
+fn poisson_restitution_has_no_derivatives() {
     #[mechanism(gravity = -9.81 * z, derivatives)]
     struct Poisson {
         #[particle(mass = 0.5)]

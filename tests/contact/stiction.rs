@@ -39,7 +39,7 @@ fn pulled_block_motion(ramp: f64, t: f64) -> [f64; 2] {
 }
 
 #[test]
-fn a_pulled_block_breaks_away_at_the_static_force() {
+fn pulled_block_breaks_away_at_the_static_force() {
     let ramp = 20.0;
     for direction in [[1.0, 0.0], [0.6, -0.8]] {
         let simulate_pulled_block = |duration: f64| {
@@ -65,7 +65,7 @@ fn a_pulled_block_breaks_away_at_the_static_force() {
 /// Checks a block on a slope between the angles of kinetic and static friction: it stays at rest, continues
 /// to slide downwards once it does, and comes to rest after sliding upwards.
 #[test]
-fn a_block_on_a_slope_rests_or_slides() {
+fn block_on_a_slope_depends_on_static_and_kinetic_friction() {
     let tilt = 0.5_f64.atan();
     let slope = Block { tilt, ..LEVEL };
     let simulate_on_slope = |v: f64| simulate(&slope).from([0.0; 3], [v, 0.0, 0.0]).duration(1.0);
@@ -84,7 +84,7 @@ fn a_block_on_a_slope_rests_or_slides() {
 /// A spring of stiffness `k` whose end moves at a constant speed `V` pulls a block: stick-slip with the
 /// period `2 Δ / V + (π + 2 φ) / ω` where `Δ = (μₛ − μ) m g / k` and `tan φ = V / (ω Δ)`.
 #[test]
-fn a_block_on_a_spring_sticks_and_slips() {
+fn spring_driven_block_has_the_stick_slip_period() {
     let (k, speed, mass): (f64, f64, f64) = (50.0, 0.1, 2.0);
     let spring_pull = move |t: f64, q: &SVector<f64, 3>| [k * (speed * t - q[0]), 0.0].into();
     let omega = (k / mass).sqrt();
@@ -105,7 +105,7 @@ fn a_block_on_a_spring_sticks_and_slips() {
 }
 
 #[test]
-fn contact_forces_know_both_coefficients() {
+fn contact_forces_use_static_and_kinetic_coefficients() {
     let weight = 2.0 * G;
     let contact_force_of_block = |v: f64, push: f64| {
         let (q, v) = (SVector::zeros(), [v, 0.0, 0.0].into());
@@ -137,7 +137,7 @@ struct Crate {
 
 /// A crate on four corners, which share its weight, sticks below the static force and slides above it.
 #[test]
-fn corners_slide_together() {
+fn corners_of_a_crate_break_away_together() {
     let mut q = Crate {}.neutral();
     let height = Crate::CONFIGURATION.iter().position(|name| *name == "pose.z").unwrap();
     q[height] = 0.05;

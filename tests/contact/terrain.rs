@@ -1,4 +1,4 @@
-//! Terrain whose height is an expression or a table.
+//! Tests of contacts with terrain whose height is an expression or a table.
 
 use linkwork::prelude::*;
 
@@ -41,7 +41,7 @@ fn searched_distance_to_hills(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
 /// Near the ground the distance of a ball is the global minimum; far above the ground it is at least a
 /// fraction of the height.
 #[test]
-fn distances_from_hills_are_the_least() {
+fn distances_from_hills_are_global_minima() {
     let m = BallOnHills { g: 9.81, radius: 0.1, height: 0.15, length: 0.4 };
     for k in 0..200 {
         let (x, y) = ((f64::from(k) * 0.37).sin(), (f64::from(k) * 0.73).cos());
@@ -80,7 +80,7 @@ struct BallInHollow {
 /// Checks that a ball at the bottom of a hollow swings as a pendulum. Its length is the difference of the
 /// radii, times 7/5 if the ball rolls.
 #[test]
-fn a_ball_swings_in_a_hollow() {
+fn ball_in_a_hollow_swings_as_a_pendulum() {
     for (friction, share) in [(0.0, 1.0), (0.5, 1.4)] {
         let m = BallInHollow { g: 9.81, radius: 0.05, curvature: 1.25, friction };
         let length = 1.0 / m.curvature - m.radius;
@@ -108,7 +108,7 @@ struct BoxOnSteps {
 
 /// A box that falls on a height field comes to rest on at least three corners.
 #[test]
-fn a_box_rests_on_a_field_of_heights() -> Result<(), Box<dyn core::error::Error>> {
+fn box_rests_on_a_height_field() -> Result<(), Box<dyn core::error::Error>> {
     const AXIS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
     static HEIGHTS: [f64; 25] = {
         let mut heights = [0.0; 25];

@@ -29,7 +29,7 @@ struct Ball {
 const LEVEL: Ball = Ball { tilt: 0.0, friction: 0.5, torsional: 0.002, rolling: 0.001 };
 
 impl Ball {
-    fn lying_configuration(&self) -> SVector<f64, 7> {
+    fn ball_on_ground(&self) -> SVector<f64, 7> {
         let mut q = self.neutral();
         q[2] = RADIUS;
         q
@@ -41,7 +41,7 @@ fn exact_method() -> EventDriven<f64> {
 }
 
 #[test]
-fn moments_follow_their_contact() {
+fn friction_moments_have_rows_after_their_contact() {
     assert_eq!(Ball::CONTACTS, ["floor", "floor.spin", "floor.roll"]);
     assert_eq!(<Ball as Contacts<7, 6, 0, 3, 6>>::PRESSED_BY, [0; 3]);
     let counts = Ball::CONTACT_ROWS.map(|contact::Rows { first, count }| [first, count]);
@@ -51,8 +51,8 @@ fn moments_follow_their_contact() {
 /// A spinning ball stops after the time ω I / (a m g), having rotated by half of ω times that time, and stays
 /// at rest.
 #[test]
-fn a_spinning_ball_stops() {
-    let (m, q) = (LEVEL, LEVEL.lying_configuration());
+fn spinning_ball_stops_by_the_friction_moment() {
+    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
     let v = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 20.0]);
     let inertia = 0.4 * MASS * RADIUS * RADIUS;
     let stops = 20.0 * inertia / (0.002 * MASS * G);
@@ -73,8 +73,8 @@ fn a_spinning_ball_stops() {
 /// A rolling ball is decelerated by 5/7 ρ g / r, stops after half of v² over this deceleration, and stays at
 /// rest for an hour.
 #[test]
-fn a_rolling_ball_stops() {
-    let (m, q) = (LEVEL, LEVEL.lying_configuration());
+fn rolling_ball_stops_by_rolling_friction() {
+    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
     let v = SVector::from([1.0, 0.0, 0.0, 0.0, 20.0, 0.0]);
     let brakes = 5.0 / 7.0 * 0.001 * G / RADIUS;
     let way = 0.5 / brakes;
@@ -93,14 +93,14 @@ fn a_rolling_ball_stops() {
 /// Checks that a ball with rolling friction ρ stays at rest on a slope if tan α is less than ρ / r. On
 /// steeper slopes it rolls down with 5/7 g (sin α − ρ / r cos α).
 #[test]
-fn a_ball_stays_on_a_gentle_slope() {
+fn ball_rests_on_slopes_below_the_rolling_limit() {
     let rolling = 0.1 * RADIUS;
     for tilt in [0.099_f64, 0.12] {
         let m = Ball { tilt: tilt.atan(), rolling, ..LEVEL };
         let (sin, cos) = m.tilt.sin_cos();
         let a = 5.0 / 7.0 * G * (sin - 0.1 * cos).max(0.0);
         for t in [1.0, 3.0] {
-            let run = simulate(&m).from(m.lying_configuration(), [0.0; 6]);
+            let run = simulate(&m).from(m.ball_on_ground(), [0.0; 6]);
             let events = run.clone().method(exact_method()).duration(t).finish().unwrap();
             let steps = run.method(TimeStepping::step(1e-3)).duration(t).finish().unwrap();
             assert!((events.q[0] + a * t * t / 2.0).abs() < 1e-9, "{tilt}: {events:?}");
@@ -110,8 +110,8 @@ fn a_ball_stays_on_a_gentle_slope() {
 }
 
 #[test]
-fn moments_act_against_what_turns() {
-    let (m, q) = (LEVEL, LEVEL.lying_configuration());
+fn friction_moments_oppose_the_angular_velocity() {
+    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
     let (u, none) = (SVector::<f64, 0>::zeros(), SVector::<f64, 6>::zeros());
     let weight = MASS * G;
     let spins = contact::acting(&m, 0.0, &q, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0].into(), &u).unwrap();
@@ -134,11 +134,11 @@ fn moments_act_against_what_turns() {
 }
 
 #[test]
-fn derivatives_know_moments() {
+fn contact_derivatives_include_friction_moments() {
     use Touch::{Open, Slips, Sticks};
     let m = Ball { tilt: 0.2, ..LEVEL };
     let mut random = Random(11);
-    let q = m.integrate(&m.lying_configuration(), &random.random_vector(1.0));
+    let q = m.integrate(&m.ball_on_ground(), &random.random_vector(1.0));
     let (v, tau) = (random.random_vector(1.0), random.random_vector(1.0));
     for touches in [
         [Sticks, Slips, Slips],
@@ -154,17 +154,16 @@ fn derivatives_know_moments() {
 /// Impacts on a ball that spins and rolls: moments stay within their bounds, oppose the rotation, and no
 /// energy is gained.
 #[test]
-fn impacts_obey_the_laws() {
+fn impacts_with_friction_moments_gain_no_energy() {
     let mut random = Random(12);
     for _ in 0..2000 {
         let m = Ball {
             tilt: 0.0,
-            friction: random.one_of([0.0, 0.1, 1.0]),
-            torsional: random.one_of([0.0, 1e-3, 0.1]),
-            rolling: random.one_of([0.0, 1e-3, 0.1]),
+            friction: random.random_choice([0.0, 0.1, 1.0]),
+            torsional: random.random_choice([0.0, 1e-3, 0.1]),
+            rolling: random.random_choice([0.0, 1e-3, 0.1]),
         };
-        let q =
-            m.integrate(&m.lying_configuration(), &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]));
+        let q = m.integrate(&m.ball_on_ground(), &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]));
         let v =
             random.random_vector::<6>(3.0).component_mul(&SVector::from([1.0, 1.0, 1.0, 20.0, 20.0, 20.0]));
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
@@ -198,7 +197,7 @@ struct OnFelt {
 
 /// Compliant surfaces have the same decelerations: spin by a m g / I, and rolling by 5/7 ρ g / r.
 #[test]
-fn surfaces_that_yield_brake_what_turns() {
+fn compliant_friction_moments_have_equal_decelerations() {
     let m = OnFelt {};
     let mut q = m.neutral();
     q[2] = RADIUS - MASS * G / 1e6;
@@ -250,11 +249,11 @@ struct Soft {
 /// and dissipates these times its angular velocities. The output is the moment on the first surface of the
 /// contact.
 #[test]
-fn outputs_read_moments() {
+fn outputs_include_friction_moments() {
     let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();
     let moments = SVector::<f64, 3>::from([0.0, -0.001, 0.002]) * (MASS * G);
     let lost = -(0.001 * 20.0 + 0.002 * 15.0) * MASS * G;
-    let q = LEVEL.lying_configuration();
+    let q = LEVEL.ball_on_ground();
     let m = Felt {};
     assert!((m.couple(&q, &v).unwrap() + moments).amax() < 1e-8);
     assert!((m.taken(&q, &v).unwrap() - lost).abs() < 1e-6, "{:?} {lost}", m.taken(&q, &v));

@@ -75,7 +75,7 @@ struct FourBar {
 }
 
 #[test]
-fn implicit_steps_change_as_their_jacobians_say() {
+fn implicit_step_jacobians_agree_with_differences() {
     for h in [0.01, 0.03] {
         check_steps(&format!("carrier, {h}"), &Carrier {}, &ImplicitMidpoint::step(h), 2.0, 5.0);
         check_steps(&format!("driven, {h}"), &Driven { rate: 30.0 }, &ImplicitMidpoint::step(h), 2.0, 1.0);
@@ -133,7 +133,7 @@ fn check_multipliers<M, const NQ: usize, const NV: usize, const NU: usize, const
 }
 
 #[test]
-fn constrained_steps_change_as_their_jacobians_say() {
+fn constrained_step_jacobians_agree_with_differences() {
     let mut random = Random::new(17);
     let linkage = Linkage {};
     let closed = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
@@ -155,7 +155,7 @@ fn constrained_steps_change_as_their_jacobians_say() {
 /// The projection at the end of a step removes changes that violate the constraints: the end satisfies them
 /// to first order for any change of the start.
 #[test]
-fn ends_stay_on_constraints_to_first_order() {
+fn steps_project_onto_constraints_to_first_order() {
     let linkage = Linkage {};
     let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");

@@ -48,7 +48,7 @@ struct Driven {
 )]
 struct Panda;
 
-/// Closed loop, whose derivatives include the constraint forces.
+/// Closed loop whose derivatives include the constraint forces.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct Linkage {
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
@@ -179,7 +179,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 }
 
 #[test]
-fn steps_change_as_their_jacobians_say() {
+fn step_jacobians_agree_with_differences() {
     let carrier = Carrier {};
     check_steps("carrier, Rk4", &carrier, &Rk4::step(0.02), 2.0, 5.0);
     check_steps("carrier, a long step of Rk4", &carrier, &Rk4::step(0.15), 4.0, 5.0);
@@ -215,7 +215,7 @@ fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
 }
 
 #[test]
-fn motions_change_as_the_linear_system_says() {
+fn linear_system_predicts_perturbed_motions() {
     let mut random = Random::new(7);
     let carrier = Carrier {};
     let q =
@@ -242,7 +242,7 @@ fn motions_change_as_the_linear_system_says() {
 
 /// A single step equals a simulation of that duration, for every method and with constraints.
 #[test]
-fn single_steps_are_those_of_simulations() {
+fn single_steps_equal_simulations() {
     fn check_method<M, S, const NQ: usize, const NV: usize>(
         m: &M,
         method: S,
@@ -271,7 +271,7 @@ fn single_steps_are_those_of_simulations() {
 }
 
 #[test]
-fn bad_periods_are_errors() {
+fn invalid_sample_periods_are_errors() {
     let driven = Driven { rate: 1.0 };
     let (q, v, u) = ([0.4].into(), [1.0].into(), [0.0].into());
     for h in [0.0, -0.1, f64::NAN, f64::INFINITY] {
@@ -286,7 +286,7 @@ fn bad_periods_are_errors() {
 
 /// Checks that the placement of a frame found by index equals that of the frame found by name.
 #[test]
-fn frames_are_found_by_number() {
+fn frame_placements_by_index_equal_those_by_name() {
     let mut random = Random::new(3);
     let carrier = Carrier {};
     let q =

@@ -130,14 +130,14 @@ struct FourBar {
 }
 
 #[test]
-fn steps_in_speeds_change_as_their_jacobians_say() {
+fn step_jacobians_in_speeds_agree_with_differences() {
     check_steps("gimbal, Rk4", &Gimbal {}, &Rk4::step(0.02), 1.0, 1.0);
     check_steps("gimbal, Euler", &Gimbal {}, &SemiImplicitEuler::step(0.02), 1.0, 1.0);
     check_steps("gimbal, midpoint", &Gimbal {}, &ImplicitMidpoint::step(0.02), 1.0, 1.0);
 }
 
 #[test]
-fn constrained_steps_in_speeds_change_as_their_jacobians_say() {
+fn constrained_step_jacobians_in_speeds_agree_with_differences() {
     let mut random = Random::new(23);
     for k in 0..2 {
         let mut near = |x: f64| x * (1.0 + random.uniform_number(0.15));

@@ -74,7 +74,7 @@ fn wrapped_angle(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
-/// Returns the largest difference of angles modulo whole turns.
+/// Returns the largest difference of joint angles, modulo whole turns.
 fn largest_angle_difference(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
     (a - b).iter().fold(0.0, |most, off| most.max(wrapped_angle(*off).abs()))
 }
@@ -82,7 +82,7 @@ fn largest_angle_difference(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
 /// Checks that assembly from a guess of the crank angle alone, with or without additional turns, yields one
 /// of the two intersections of circles, within half a turn of the guess.
 #[test]
-fn partial_guesses_stay_within_half_a_turn() {
+fn partial_guesses_assemble_within_half_a_revolution() {
     let mut source = Random::new(5);
     for case in 0..1000 {
         let (bars, side, angle) = random_linkage(&mut source, 0.02);
@@ -110,7 +110,7 @@ fn partial_guesses_stay_within_half_a_turn() {
 /// Davidenko's homotopy reduces the residuals of a guess linearly to zero, in small steps. Its end equals the
 /// result of the assembly, unless the assembly finds a nearer configuration.
 #[test]
-fn guesses_near_a_mode_lead_to_it() {
+fn homotopy_reaches_the_assembly_mode_of_the_guess() {
     let mut source = Random::new(6);
     let mut same = 0;
     for _ in 0..1000 {
@@ -166,7 +166,7 @@ struct Gears {
 
 /// Gears rotate by more than half a turn if necessary; an assembly mode that does not exist is an error.
 #[test]
-fn gears_turn_as_far_as_they_must() {
+fn assembled_gears_rotate_as_far_as_necessary() {
     let gears = Gears {};
     let q = gears.assemble(&[3.0, 0.0].into(), &[0]).unwrap();
     assert!((q[1] + 12.0).abs() < 1e-12 && q[0] == 3.0);
@@ -178,7 +178,7 @@ fn gears_turn_as_far_as_they_must() {
 /// Checks that the assembly mode is undefined where all bars of a parallelogram are in line, because the two
 /// modes coincide there.
 #[test]
-fn singular_positions_have_no_mode() {
+fn singular_configurations_have_no_assembly_mode() {
     let m = FourBar { base: 1.0, first: 0.5, second: 1.0, third: 0.5 };
     assert_eq!(m.assembly_mode(&[0.0, 0.0, 0.0].into(), &[0]), None);
     let (open, crossed) = (m.joint_angles(1.0, 0.8), m.joint_angles(-1.0, 0.8));

@@ -28,7 +28,7 @@ struct Cam {
 /// Checks a cam with the lift `s = 0.05 + e sin φ`: the normal force of the follower is `m s̈ + k s + m g`.
 /// The torque of the cam is this force times `e cos φ`, plus the moment of the weight of the cam.
 #[test]
-fn the_cam_carries_spring_weight_and_inertia() {
+fn cam_carries_spring_weight_and_inertia_forces() {
     let (speed, e, mass) = (40.0, 0.02, 0.4);
     let m = Cam { speed };
     for k in 0..20 {

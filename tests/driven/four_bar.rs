@@ -67,7 +67,7 @@ fn crank_torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) 
 }
 
 #[test]
-fn drives_of_random_four_bars_follow_dalembert() {
+fn random_four_bar_drives_obey_dalemberts_principle() {
     let (mut source, mut checked) = (Random::new(31), 0);
     for _ in 0..300 {
         let (bars, side, angle) = random_linkage(&mut source, 0.4);

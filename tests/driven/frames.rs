@@ -35,7 +35,7 @@ struct Robot {
 }
 
 #[test]
-fn arms_on_frames_tell_their_torques() {
+fn arms_on_frames_output_their_drive_torques() {
     let (w1, w2) = (3.0, -2.0);
     let m = Robot { first_speed: w1, second_speed: w2 };
     assert_eq!((Robot::NQ, Robot::NV), (0, 0));

@@ -126,7 +126,7 @@ fn energy_at_time(speed: f64, t: f64) -> f64 {
 /// The power of the crank equals the rate of the energy over a whole turn in which the leg stays in its
 /// assembly mode.
 #[test]
-fn the_power_of_the_crank_is_the_rate_of_energy() {
+fn crank_power_equals_the_rate_of_energy() {
     assert_eq!((Leg::NV, Leg::NC, Leg::NS), (6, 6, 0));
     let speed = 2.0;
     let m = Leg { speed };

@@ -40,7 +40,7 @@ struct Lagged {
 }
 
 #[test]
-fn wrapped_mechanisms_need_no_other_trait() {
+fn wrapped_driven_mechanisms_need_no_other_trait() {
     let bead = Bead {};
     let (q, v, tau) = ([0.0, 0.0].into(), [1.0, 0.0].into(), SVector::from([4.0, 6.0]));
     let held = hold(&bead, [Touch::Sticks]);

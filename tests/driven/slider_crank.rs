@@ -215,7 +215,7 @@ macro_rules! check {
 }
 
 #[test]
-fn drives_over_a_turn_balance_inertia() {
+fn drive_torques_balance_inertia_over_a_revolution() {
     for t in instants_of_revolution() {
         check!(Positioned { omega: OMEGA }, t);
         check!(Independent { omega: OMEGA }, t);
@@ -224,7 +224,7 @@ fn drives_over_a_turn_balance_inertia() {
 
 /// A rate that a parameter prescribes needs no time: functions have no time argument.
 #[test]
-fn a_given_rate_drives() {
+fn rates_prescribed_by_parameters_need_no_time() {
     assert_eq!((Rated::NP, Rated::NS, Rated::NC), (1, 0, 3));
     let m = Rated { omega: OMEGA };
     for t in instants_of_revolution() {
@@ -241,7 +241,7 @@ fn a_given_rate_drives() {
 /// Checks that inverse dynamics of a slider-crank with one degree of freedom returns the torque of its crank
 /// for the motion.
 #[test]
-fn inverse_dynamics_find_the_torque_of_a_motion() {
+fn inverse_dynamics_returns_the_crank_torque() {
     let m = Motorised {};
     for t in instants_of_revolution() {
         let hand = ByHand::new(OMEGA * t, OMEGA);
@@ -278,7 +278,7 @@ fn inverse_dynamics_find_the_torque_of_a_motion() {
 }
 
 #[test]
-fn frames_drive_loops() {
+fn prescribed_frames_drive_loops() {
     assert_eq!((Framed::NV, Framed::NS), (2, 0));
     let m = Framed { omega: OMEGA };
     let closed = ClosedForm { omega: OMEGA };
@@ -306,7 +306,7 @@ fn frames_drive_loops() {
 
 /// Simulations follow the prescribed motion, also without any coordinate to integrate.
 #[test]
-fn simulations_follow_the_drive() {
+fn simulations_follow_the_prescribed_motion() {
     let end = 2.2 * std::f64::consts::TAU / OMEGA;
     let hand = ByHand::new(OMEGA * end, OMEGA);
     let (start, m) = (ByHand::new(0.0, OMEGA), Positioned { omega: OMEGA });
@@ -326,7 +326,7 @@ fn simulations_follow_the_drive() {
 /// A mechanism without degrees of freedom has no independent states: its linear system has only inputs and
 /// outputs.
 #[test]
-fn linear_systems_are_empty() {
+fn driven_mechanisms_have_linear_systems_without_states() {
     let m = Positioned { omega: OMEGA };
     let hand = ByHand::new(0.6, OMEGA);
     let t = 0.6 / OMEGA;
@@ -339,7 +339,7 @@ fn linear_systems_are_empty() {
 /// Checks two contradictory drives of one coordinate. They have a common configuration only at the time zero;
 /// at other times an error reports them.
 #[test]
-fn drives_that_disagree_are_reported() {
+fn contradictory_drives_are_reported() {
     assert_eq!((Twice::NC, Twice::NS), (4, 0));
     let m = Twice { omega: 3.0 };
     assert!(m.assemble(0.0, &[0.0, 0.0, 0.17].into(), &[]).is_ok());
@@ -350,7 +350,7 @@ fn drives_that_disagree_are_reported() {
 /// Checks that all options of generated functions work for a mechanism without degrees of freedom:
 /// derivatives along a prescribed motion, and the force of a drive against a gas.
 #[test]
-fn functions_that_are_asked_for_hold_without_a_degree_of_freedom() {
+fn optional_functions_work_without_degrees_of_freedom() {
     let m = Whole { omega: OMEGA, stiffness: 250.0 };
     let (t, hand) = (0.9 / OMEGA, ByHand::new(0.9, OMEGA));
     let q = m.assemble(t, &[0.9, hand.rod[0], hand.piston[0]].into(), &[]).unwrap();

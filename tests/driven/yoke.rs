@@ -24,7 +24,7 @@ struct ScotchYoke {
 /// Checks a Scotch yoke with `x = r cos φ`: the force of the slot is `m ẍ`, and the torque is
 /// `m r² ω² sin φ cos φ`, at twice the frequency of the rotation.
 #[test]
-fn the_yoke_follows_a_cosine() {
+fn scotch_yoke_follows_a_cosine() {
     assert_eq!((ScotchYoke::NS, ScotchYoke::NP), (0, 0));
     let (omega, start) = (12.0, 0.3);
     let m = ScotchYoke { omega, start };

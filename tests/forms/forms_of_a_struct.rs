@@ -1,11 +1,11 @@
-//! Forms of a struct that the macro accepts.
+//! Forms of the struct that the attribute `#[mechanism]` accepts.
 
 #![deny(warnings)]
 #![deny(missing_docs)]
 
 use linkwork::prelude::*;
 
-/// Mechanism whose struct has no parameters.
+/// Mechanism without parameters, whose struct has no fields left.
 #[mechanism]
 pub struct Plain {
     #[body(mass = 1)]
@@ -61,7 +61,7 @@ where
 }
 
 #[test]
-fn all_of_them_compile() {
+fn all_struct_forms_compile() {
     let adorned = Adorned { mass: 2.0, _serial: 7.0 };
     assert_eq!(adorned.total_mass() + adorned._serial, 9.0);
     assert_eq!(Plain.total_mass(), 1.0);

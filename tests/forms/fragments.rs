@@ -1,4 +1,4 @@
-//! Types that a macro substitutes into a mechanism.
+//! Mechanisms into which a user's macro substitutes types.
 
 macro_rules! cart {
     ($number:ty, $body:path, $joint:ty) => {
@@ -15,7 +15,7 @@ macro_rules! cart {
 cart!(f64, Body, Sleeve);
 
 #[test]
-fn a_macro_may_put_them_in() {
+fn macro_fragments_are_accepted_in_attributes() {
     use linkwork::nalgebra::SVector;
     let cart = Cart { mass: 2.0 };
     assert_eq!(cart.mass_matrix(&SVector::zeros())[0], 2.0);

@@ -68,7 +68,7 @@ pub struct Generic<T> {
 }
 
 #[test]
-fn none_is_in_the_way() {
+fn generated_variable_names_do_not_clash_with_user_names() {
     let names = Names {
         q: 1.0,
         v: 1.0,

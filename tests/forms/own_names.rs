@@ -21,7 +21,7 @@ mod both {
         along: Scalar,
     }
 
-    fn sum<T: Scalar + Real>(v: Vector<T, U3, ArrayStorage<T, 3, 1>>) -> T {
+    fn sum_of_entries<T: Scalar + Real>(v: Vector<T, U3, ArrayStorage<T, 3, 1>>) -> T {
         v.sum()
     }
 
@@ -29,7 +29,7 @@ mod both {
         let end = simulate(&Cart).from([0.0], [1.0]).duration(2.0).finish()?;
         let place: Point<f64, 3> = Cart.place(&end.q).into();
         let _: Result = Ok(());
-        Ok(sum(place.coords) + Cart.along(&end.q) + distance(&place, &Point3::origin()))
+        Ok(sum_of_entries(place.coords) + Cart.along(&end.q) + distance(&place, &Point3::origin()))
     }
 }
 
@@ -123,7 +123,7 @@ mod far {
 }
 
 #[test]
-fn none_is_hidden() {
+fn user_items_are_not_shadowed_by_generated_names() {
     assert!((both::run().unwrap() - 5.0 - 5_f64.sqrt()).abs() < 1e-9);
     assert_eq!(own::run(), 1);
     assert_eq!(far::run(), 6.0);

@@ -5,7 +5,7 @@ use linkwork::mechanism;
 use linkwork::nalgebra::{SMatrix, SVector};
 use support::random::Random;
 
-/// Free body that an inerter connects to the ground.
+/// Free rigid body that an inerter connects to the ground.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
 struct Moored {
     inertance: f64,

@@ -47,7 +47,7 @@ struct Walker {
 /// Under the forces of prescribed contact modes (sticking, sliding, separated), the diagrams equal the rates
 /// of the momenta.
 #[test]
-fn given_forces_of_contacts_change_momenta() {
+fn prescribed_contact_forces_balance_momentum_rates() {
     use Touch::{Open, Slips, Sticks};
     let m = Walker {};
     let mut random = Random::new(8);
@@ -76,7 +76,7 @@ fn given_forces_of_contacts_change_momenta() {
 
 /// The contacts of a body at rest carry its weight, with forces at their contact points.
 #[test]
-fn contacts_carry_what_stands() {
+fn contact_forces_carry_resting_bodies() {
     let m = Walker {};
     let mut q = m.neutral();
     q[2] = 0.42;

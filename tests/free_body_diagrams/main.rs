@@ -138,7 +138,7 @@ struct Arm {
 }
 
 #[test]
-fn what_acts_on_a_body_changes_its_momenta() {
+fn free_body_forces_equal_momentum_rates() {
     let m = Arm { stiffness: 60.0 };
     let mut random = Random::new(23);
     for _ in 0..4 {
@@ -158,7 +158,7 @@ fn what_acts_on_a_body_changes_its_momenta() {
 }
 
 #[test]
-fn each_action_is_what_its_element_says() {
+fn free_body_actions_equal_their_force_laws() {
     let m = Arm { stiffness: 60.0 };
     let q = m.neutral();
     let (v, u) = (SVector::zeros(), SVector::from_fn(|k, _| 1.0 + k as f64));
@@ -266,7 +266,7 @@ struct Machine {
 }
 
 #[test]
-fn constraints_and_loops_act_on_their_bodies() {
+fn constraint_and_loop_forces_act_on_their_bodies() {
     let m = Machine { slope: 0.3 };
     let (s, c) = 0.3_f64.sin_cos();
     for crank in [0.3_f64, 1.2, -1.0] {
@@ -320,7 +320,7 @@ struct Driven {
 }
 
 #[test]
-fn friction_acts_with_the_normal_force() {
+fn friction_acts_at_the_point_of_the_normal_force() {
     let m = Driven {};
     let size = 1.04_f64.sqrt();
     let q = SVector::from([0.15 * 0.2 / size, 0.15 / size, 0.3]);

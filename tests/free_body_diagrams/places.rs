@@ -63,7 +63,7 @@ struct Places {
 }
 
 #[test]
-fn places_hold_what_moves_on_them() {
+fn places_carry_the_reactions_of_bodies_on_them() {
     let m = Places {};
     let mut random = Random::new(12);
     for t in [0.0, 0.4, 1.3] {

@@ -8,7 +8,7 @@ use support::mechanisms::*;
 use support::random::Random;
 
 #[test]
-fn names_of_coordinates() {
+fn coordinate_names_follow_their_joints() {
     assert_eq!(OnPin::CONFIGURATION, ["pivot", "joint"]);
     assert_eq!(OnSlot::CONFIGURATION, ["pivot", "joint.slide", "joint.turn"]);
     assert_eq!(OnCollar::VELOCITIES, ["pivot", "joint.slide", "joint.turn"]);
@@ -86,7 +86,7 @@ fn joints_may_be_declared_in_any_order() {
 
 /// A free joint moves by the exponential map of SE(3), for small and for large motions.
 #[test]
-fn free_joint_moves_on_a_screw() {
+fn free_joint_moves_by_the_se3_exponential() {
     let mut random = Random::new(16);
     let frame = frame!(Spacecraft, "hub");
     for size in [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.4, 0.6, 3.0, 10.0] {
@@ -113,7 +113,7 @@ fn free_joint_moves_on_a_screw() {
 /// Joints with several coordinates are equivalent to chains of pins and sleeves with massless bodies between
 /// them.
 #[test]
-fn joints_are_chains_of_pins_and_sleeves() {
+fn composite_joints_equal_chains_of_pins_and_sleeves() {
     assert_same_dynamics(&OnCollar {}, &ChainedCollar {}, 10, IDENTITY);
     assert_same_dynamics(&OnSlot {}, &ChainedSlot {}, 10, IDENTITY);
     assert_same_dynamics(&OnUniversal {}, &ChainedUniversal {}, 10, IDENTITY);
@@ -151,7 +151,7 @@ macro_rules! check_screw {
 }
 
 #[test]
-fn screw_is_a_collar_with_a_pitch() {
+fn screw_joint_is_a_collar_with_a_pitch() {
     check_screw!(OnScrew {}, 0.05);
     check_screw!(OnScrewWithLead {}, 0.3 / std::f64::consts::TAU);
 }
@@ -209,19 +209,19 @@ macro_rules! check_against_chain {
 }
 
 #[test]
-fn ball_is_three_pins() {
+fn ball_joint_equals_three_pins() {
     check_against_chain!(OnBall, ChainedBall, 1);
 }
 
 #[test]
-fn free_is_a_stage_and_three_pins() {
+fn free_joint_equals_a_stage_and_three_pins() {
     check_against_chain!(OnFree, ChainedFree, 4);
 }
 
 /// Checks that bodies welded together equal one rigid body, with its mass in three particles at the corners
 /// of a triangle.
 #[test]
-fn welded_bodies_are_one() {
+fn welded_bodies_equal_one_rigid_body() {
     #[mechanism(gravity = -9.81 * y)]
     struct Welded {
         #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.02, 0.03, 0.04))]

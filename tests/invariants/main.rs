@@ -171,10 +171,10 @@ undamped! {
     spacecraft: Spacecraft {},
 }
 
-/// Checks that dashpots dissipate the power `c v²`.
+/// Dashpots dissipate the power `c v²`.
 #[test]
-fn dashpots() {
-    let m = workshop();
+fn dashpots_dissipate_quadratic_power() {
+    let m = sample_workshop();
     check_trait_consequences(&m, |v| {
         m.shoulder_damping * v[0] * v[0] + m.slide_damping * v[1] * v[1] + m.turn_damping * v[2] * v[2]
     });
@@ -227,7 +227,7 @@ macro_rules! check_kinematics {
 }
 
 #[test]
-fn frames_move_as_they_say() {
+fn frame_velocities_are_rates_of_placements() {
     check_kinematics!(Panda, Panda, "panda_hand_tcp");
     check_kinematics!(Solo12, Solo12, "HR_FOOT");
     check_kinematics!(OnScrew {}, OnScrew, "carried");
@@ -236,12 +236,12 @@ fn frames_move_as_they_say() {
     check_kinematics!(OnPlanar {}, OnPlanar, "carried");
     check_kinematics!(OnFree {}, OnFree, "carried");
     check_kinematics!(OnWeld {}, OnWeld, "carried");
-    check_kinematics!(workshop(), Workshop, "tip");
+    check_kinematics!(sample_workshop(), Workshop, "tip");
 }
 
 /// Motors do not change the momentum of a robot in the air: it changes only by the robot's weight.
 #[test]
-fn motors_do_not_change_the_momentum() {
+fn motors_preserve_the_momentum_of_flying_robots() {
     let mut random = Random::new(6);
     for _ in 0..4 {
         let q = random.random_configuration(&Solo12);
@@ -258,8 +258,8 @@ fn motors_do_not_change_the_momentum() {
 
 /// Checks that the power of each input is its force times the velocity of the point on which it acts.
 #[test]
-fn inputs_work_where_they_act() {
-    let m = workshop();
+fn input_power_is_force_times_point_velocity() {
+    let m = sample_workshop();
     assert_eq!(Workshop::INPUTS, ["motor", "drive", "spin", "thrust", "lift", "wheel", "gust"]);
     assert_eq!(Workshop::VELOCITIES, ["shoulder", "track.slide", "track.turn"]);
     let mut random = Random::new(7);
@@ -297,7 +297,7 @@ fn inputs_work_where_they_act() {
 /// Without external forces, a mechanism conserves its momentum and its energy, and its centre of mass moves
 /// uniformly.
 #[test]
-fn spacecraft_keeps_momentum_and_energy() {
+fn spacecraft_conserves_momentum_and_energy() {
     let m = Spacecraft {};
     let mut random = Random::new(17);
     let q = random.random_configuration(&m);
@@ -318,8 +318,8 @@ fn spacecraft_keeps_momentum_and_energy() {
 /// Along a driven and damped motion, the energy changes by the work of the inputs minus the energy that the
 /// dashpots dissipate.
 #[test]
-fn workshop_balances_its_energy() {
-    let m = workshop();
+fn workshop_energy_changes_by_work_minus_dissipation() {
+    let m = sample_workshop();
     let input_at_time = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
     let net_power = |t: f64, q: &_, v: &SVector<f64, 3>| {
         v.dot(&m.generalized_forces(q, &input_at_time(t)))
@@ -335,20 +335,20 @@ fn workshop_balances_its_energy() {
         .method(Rk4::step(1e-3));
     let samples: Vec<_> = run.map(|sample| sample.expect("the integrator goes on")).collect();
     assert_eq!(samples.len(), 2001);
-    let energy =
+    let total_energy =
         |k: usize| m.kinetic_energy(&samples[k].q, &samples[k].v) + m.potential_energy(&samples[k].q);
     // Integration by Simpson's rule.
     let simpson_weight = |k: usize| [1.0, 4.0, 2.0][if k == 0 || k == 2000 { 0 } else { 2 - k % 2 }];
     let work: f64 =
         samples.iter().enumerate().map(|(k, s)| simpson_weight(k) * net_power(s.t, &s.q, &s.v)).sum::<f64>()
             / 3e3;
-    assert_close("energy", &[energy(2000) - energy(0)], &[work], 1e-9);
+    assert_close("energy", &[total_energy(2000) - total_energy(0)], &[work], 1e-9);
 }
 
 // ----
 // Scalars ---------------------------------------------------------------------------------------------------
 
-/// Mechanism that is generic over the scalar type.
+/// Robot that is generic over the scalar type.
 #[mechanism(gravity = -g * y)]
 struct Robot<T> {
     g: T,
@@ -378,7 +378,7 @@ fn sample_robot<T: Real>() -> Robot<T> {
 }
 
 #[test]
-fn scalar_types_agree() {
+fn dynamics_agree_for_all_scalar_types() {
     let (single, double) = (sample_robot::<f32>(), sample_robot::<f64>());
     check_trait_consequences(&double, |v| 0.2 * v[0] * v[0]);
     let mut random = Random::new(10);
@@ -440,7 +440,7 @@ struct Loaded {
 /// an elimination with successive pivots is that of a matrix with a perturbation of the magnitude of rounding
 /// (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, th. 10.4).
 #[test]
-fn heavy_loads_on_light_arms_leave_the_digits() {
+fn heavy_loads_on_light_arms_lose_no_accuracy() {
     let (v, tau) = (Vector3::zeros(), Vector3::new(0.3, -0.2, 0.7));
     for load in [1.0, 1e2, 1e4, 1e6, 1e8] {
         let m = Loaded { load };

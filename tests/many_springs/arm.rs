@@ -75,7 +75,7 @@ fn run_function(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Ve
 /// Checks that the forces of springs add up. With few springs every function contains their forces; with many
 /// springs all functions call a shared one.
 #[test]
-fn many_springs_are_the_sum_of_few() {
+fn forces_of_many_springs_equal_sums_of_few() {
     const EACH: usize = 20;
     let (whole, none) =
         (compile_mechanism(arm_with_springs(0..5 * EACH)), compile_mechanism(arm_with_springs(0..0)));
@@ -104,7 +104,7 @@ fn many_springs_are_the_sum_of_few() {
 /// Checks that the numbers of operations and the length of generated code are linear in the number of
 /// springs, which occur once in the forces, once in their derivatives and once in the energy.
 #[test]
-fn what_is_written_grows_as_springs_do() {
+fn code_length_is_linear_in_the_number_of_springs() {
     let size_of_generated_code = |springs: usize| {
         let output = compile_mechanism(arm_with_springs(0..springs));
         let operation_count = |name: &str| {

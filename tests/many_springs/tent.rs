@@ -480,7 +480,7 @@ struct Tent {
 }
 
 #[test]
-fn constraints_hold_against_many_springs_at_any_time() {
+fn constraints_hold_under_many_springs_at_any_time() {
     let tent = Tent { k: 20.0 };
     let mut random = Random::new(35);
     for t in [0.0, 0.4, 2.0] {

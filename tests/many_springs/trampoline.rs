@@ -297,13 +297,13 @@ struct Trampoline<T> {
     spring53: Spring,
 }
 
-fn trampoline() -> Trampoline<f64> {
+fn sample_trampoline() -> Trampoline<f64> {
     Trampoline { k: 30.0, c: 0.7 }
 }
 
 #[test]
-fn springs_pull_against_the_energy_that_they_store() {
-    let m = trampoline();
+fn spring_forces_are_gradients_of_the_stored_energy() {
+    let m = sample_trampoline();
     let mut random = Random::new(31);
     for _ in 0..5 {
         let q = random.random_configuration(&m);
@@ -324,8 +324,8 @@ fn springs_pull_against_the_energy_that_they_store() {
 }
 
 #[test]
-fn the_motion_of_many_springs_is_one_motion() {
-    let m = trampoline();
+fn all_functions_agree_for_many_springs() {
+    let m = sample_trampoline();
     let mut random = Random::new(32);
     for _ in 0..5 {
         let q = random.random_configuration(&m);
@@ -341,8 +341,8 @@ fn the_motion_of_many_springs_is_one_motion() {
 }
 
 #[test]
-fn derivatives_know_what_given_forces_depend_on() {
-    let m = trampoline();
+fn derivatives_include_the_dependencies_of_passive_forces() {
+    let m = sample_trampoline();
     let mut random = Random::new(33);
     for _ in 0..3 {
         let q = random.random_configuration(&m);
@@ -398,10 +398,10 @@ fn derivatives_know_what_given_forces_depend_on() {
 }
 
 #[test]
-fn a_prepared_trampoline_is_the_trampoline() {
-    assert_same_dynamics(&trampoline().prepare(), &trampoline(), 5, 1e-10);
+fn prepared_trampoline_equals_the_trampoline() {
+    assert_same_dynamics(&sample_trampoline().prepare(), &sample_trampoline(), 5, 1e-10);
     let single = Trampoline::<f32> { k: 30.0, c: 0.7 };
     let h = single.bias_forces(&single.neutral(), &SVector::from_element(0.1));
-    let exact = trampoline().bias_forces(&trampoline().neutral(), &SVector::from_element(0.1));
+    let exact = sample_trampoline().bias_forces(&sample_trampoline().neutral(), &SVector::from_element(0.1));
     assert_similar("single precision", h.cast::<f64>().as_slice(), exact.as_slice(), 1e-5);
 }

@@ -1,4 +1,4 @@
-//! Shared function of spring forces in SIMD lanes.
+//! Tests of the shared function of spring forces in SIMD lanes.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -469,7 +469,7 @@ struct Web {
 }
 
 #[test]
-fn several_states_call_the_function_in_lanes() {
+fn batches_evaluate_passive_forces_in_lanes() {
     let m = Web { k: 20.0 };
     let mut random = Random::new(34);
     let states: [[SVector<f64, 2>; 3]; 4] =

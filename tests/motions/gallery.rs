@@ -31,9 +31,9 @@ pub fn check_constraint_drift<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let energy =
+    let total_energy =
         |q: &_, v: &_| Mechanism::kinetic_energy(m, 0.0, q, v) + Mechanism::potential_energy(m, 0.0, q);
-    let start = energy(q, v);
+    let start = total_energy(q, v);
     let run = simulate(m).from(*q, *v).method(Rk4::step(h)).duration(h * steps as f64).sample_every(h);
     let (mut changes, mut count) = ([0.0_f64; 2], 0);
     for sample in run {
@@ -42,7 +42,7 @@ where
         let (residual, rate) = (m.constraint_residuals(t, &q).amax(), m.constraint_rates(t, &q, &v).amax());
         assert!(residual <= rounding * q.amax().max(1.0), "{residual:e} in step {count}");
         assert!(rate <= rounding * v.amax().max(1.0), "{rate:e} in step {count}");
-        let change = (energy(&q, &v) - start).abs();
+        let change = (total_energy(&q, &v) - start).abs();
         changes[1] = changes[1].max(change);
         if 10 * count <= steps {
             changes[0] = changes[0].max(change);
@@ -56,7 +56,7 @@ where
 /// Checks that the loop of a linkage is closed after a million steps as accurately as after the first. The
 /// energy drifts linearly in time, and less with smaller steps, as the order of the method predicts.
 #[test]
-fn a_linkage() -> Result<(), Error> {
+fn linkage_stays_closed_for_a_million_steps() -> Result<(), Error> {
     let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
     let q = m.assemble(&[0.7, 0.2, 1.8].into(), &[0]).expect("the crank goes all the way round");
     let still = SVector::zeros();
@@ -73,7 +73,7 @@ fn a_linkage() -> Result<(), Error> {
 /// A disk that nods about its steady circle keeps its contact with the table and does not slip for a million
 /// steps.
 #[test]
-fn a_disk() -> Result<(), Error> {
+fn rolling_disk_does_not_slip_for_a_million_steps() -> Result<(), Error> {
     let m = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
     // The angular velocity in the axes that lean but do not roll.
     let ((s, c), r, u) = (0.35_f64.sin_cos(), m.radius, [0.4, -1.5, 2.4]);

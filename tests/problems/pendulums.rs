@@ -1,4 +1,4 @@
-//! Checks of pendulums, some of them on a cart.
+//! Tests of pendulums, some of them on a cart, against references.
 
 use linkwork::nalgebra::{SMatrix, SVector, Vector2};
 use linkwork::{frame, mechanism};
@@ -28,7 +28,7 @@ struct Pendulum {
 }
 
 #[test]
-fn iftomm_a01_pendulum() {
+fn iftomm_a01_pendulum_agrees_with_the_reference() {
     let table = Record::load("problems/pendulums.json");
     let (mut time, mut q, mut v) = (0.0, SVector::from([-FRAC_PI_2]), SVector::from([0.0]));
     for [t, x, y] in table.rows_with_key("position") {
@@ -80,12 +80,12 @@ fn check_two_pendulums<const N: usize>(name: &str, errors: [f64; N]) {
 }
 
 #[test]
-fn double_pendulum_is_chaotic_and_still_right() {
+fn chaotic_double_pendulum_agrees_with_its_reference() {
     check_two_pendulums("double", [4.7e-14, 6.7e-14, 1.6e-12, 1.1e-11, 6.1e-8]);
 }
 
 #[test]
-fn double_pendulum_with_small_angles() {
+fn double_pendulum_of_small_angles_agrees_with_its_reference() {
     check_two_pendulums("double_small", [4.7e-14, 2.8e-14, 2.2e-14, 2.2e-13]);
 }
 
@@ -128,7 +128,7 @@ struct FivePendulums {
 /// `h_i = Σ_j n_ij sin(θi − θj) θ̇j² + n_ii g sin θi`, where `n_ij` is the number of masses beyond both
 /// joints.
 #[test]
-fn chain_of_pendulums_by_its_closed_form() {
+fn chain_of_pendulums_has_its_closed_form() {
     let to_absolute = SMatrix::<f64, 5, 5>::from_fn(|i, j| if j <= i { 1.0 } else { 0.0 });
     let q = SVector::from([0.4, -1.1, 2.0, 0.3, -0.7]);
     let v = SVector::from([1.0, 2.0, -1.5, 0.5, 3.0]);
@@ -187,7 +187,7 @@ struct CartWithPole {
 }
 
 #[test]
-fn cart_pole_trajectory() {
+fn cart_pole_trajectory_agrees_with_the_reference() {
     let table = Record::load("problems/cart_pole.json");
     let rows = table.rows_with_key::<5>("trajectory");
     let [_, x, angle, speed, turning] = rows[0];

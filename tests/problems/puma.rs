@@ -43,7 +43,7 @@ struct Puma560 {
 }
 
 #[test]
-fn puma560() {
+fn puma560_agrees_with_the_published_dynamics() {
     let robot = Puma560 { i1: 0.35, i3x: 0.066, i3y: 0.086, i3z: 0.0125, right: FRAC_PI_2 };
     let table = Record::load("problems/puma560.json");
     let q = SVector::from(table.rows_with_key::<6>("configuration")[0]);

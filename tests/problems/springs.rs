@@ -1,4 +1,4 @@
-//! Checks of springs, dashpots, screw joints and impulses.
+//! Tests of springs, dashpots, screw joints and impulses against closed forms.
 
 use linkwork::nalgebra::{Matrix2, SVector, Vector2, Vector3};
 use linkwork::{frame, mechanism};
@@ -44,7 +44,7 @@ fn damped_oscillation(m: f64, c: f64, k: f64, [x0, v0]: [f64; 2], t: f64) -> [f6
 }
 
 #[test]
-fn mass_spring_dashpot() {
+fn mass_spring_dashpot_has_its_closed_form() {
     // An inerter of 0.5 kg to the ground acts as another half kilogram: the published value includes both.
     for (m, published) in [(2.5, Some(-0.223_423_268_884_342_75)), (2.0, None)] {
         let oscillators = Oscillators { m, j: 0.3, k: 50.0, c: 3.0, k_turn: 8.0, c_turn: 0.1 };
@@ -60,7 +60,7 @@ fn mass_spring_dashpot() {
 
 /// A dashpot alone gives `v = v0 exp(−c t / m)`; the stopping distance is `m v0 / c`.
 #[test]
-fn dashpot_alone() {
+fn dashpot_alone_stops_exponentially() {
     let oscillators = Oscillators { m: 2.0, j: 0.3, k: 0.0, c: 3.0, k_turn: 0.0, c_turn: 0.4 };
     let (q, v) = state_after_duration(&oscillators, &Vector2::zeros(), &Vector2::new(4.0, 5.0), 2.0);
     let (slowed, turned) = ((-3.0_f64 * 2.0 / 2.0).exp(), (-0.4_f64 * 2.0 / 0.3).exp());
@@ -88,7 +88,7 @@ struct TwoMasses {
 }
 
 #[test]
-fn natural_frequencies_of_two_masses() {
+fn two_masses_have_their_natural_frequencies() {
     let at_rest = Vector2::new(0.3, 0.2);
     let spring_force = |q: Vector2<f64>| TwoMasses {}.bias_forces(&(at_rest + q), &Vector2::zeros());
     assert_close("at rest", spring_force(Vector2::zeros()).as_slice(), &[0.0, 0.0], 1e-14);
@@ -119,7 +119,7 @@ struct StruckRod {
 /// Checks the centre of percussion: the rod starts to rotate about a point at `l² / (12 d)` on the other side
 /// of its centre.
 #[test]
-fn centre_of_percussion() {
+fn struck_rod_rotates_about_the_centre_of_percussion() {
     let rod = StruckRod { m: 1.2, l: 0.9, distance: 0.25 };
     let start = rod.neutral();
     let change = rod.forward_dynamics(
@@ -136,7 +136,7 @@ fn centre_of_percussion() {
 /// `m v (1 + e) / 4`; afterwards the rod rotates at `1.5 (1 + e) v / l` and its centre falls at
 /// `v (3 − e) / 4`.
 #[test]
-fn falling_rod_strikes_a_stop() {
+fn falling_rod_impacts_a_stop_by_closed_form() {
     let (m, l, speed, restitution) = (1.2, 0.9, 2.0, 0.6);
     let rod = StruckRod { m, l, distance: -l / 2.0 };
     let start = rod.neutral();
@@ -164,7 +164,7 @@ struct Nut {
 
 /// The acceleration is `θ̈ = −m g p / (J + m p²)`.
 #[test]
-fn nut_on_a_screw() {
+fn nut_on_a_screw_has_the_closed_form_acceleration() {
     let nut = Nut { m: 0.8, j: 0.002, p: 0.01 };
     let acceleration = -nut.m * 9.81 * nut.p / (nut.j + nut.m * nut.p * nut.p);
     let (q, v) = state_after_duration(&nut, &SVector::from([1.0]), &SVector::from([3.0]), 0.5);

@@ -26,7 +26,7 @@ fn assert_same_rotation(what: &str, actual: &[f64], [w, x, y, z]: [f64; 4], tole
 }
 
 #[test]
-fn heavy_top() {
+fn heavy_top_agrees_with_the_reference() {
     let table = Record::load("problems/heavy_top.json");
     let rows = table.rows_with_key::<11>("trajectory");
     let start = rows[0];
@@ -51,7 +51,7 @@ fn heavy_top() {
     }
 }
 
-/// Top in gimbals with Euler angles: precession, nutation, spin.
+/// Top in gimbals with Euler angles: precession, nutation and spin.
 #[mechanism(gravity = -10 * z)]
 struct TopOnGimbals {
     #[body]
@@ -79,7 +79,7 @@ struct TopOnBall {
 /// Steady precession satisfies `I1 Ω² cos θ − I3 ω3 Ω + m g l = 0` with I1 = 5 (about the tip), I3 = 1, m g l
 /// = 20, θ = 0.3, ω3 = 50.
 #[test]
-fn steady_precession() {
+fn steady_precession_satisfies_the_textbook_equation() {
     let (i1, i3, mgl, angle, w3) = (5.0, 1.0, 20.0, 0.3_f64, 50.0);
     let root = (i3 * i3 * w3 * w3 - 4.0 * i1 * angle.cos() * mgl).sqrt();
     let fast = (i3 * w3 + root) / (2.0 * i1 * angle.cos());
@@ -118,7 +118,7 @@ struct RigidBody {
 /// Checks the unstable rotation of a free rigid body about its intermediate axis (Dzhanibekov effect) against
 /// a reference trajectory.
 #[test]
-fn dzhanibekov() {
+fn rotation_about_the_intermediate_axis_is_unstable() {
     let table = Record::load("problems/dzhanibekov.json");
     let (mut time, mut q, mut v) = (0.0, RigidBody {}.neutral(), Vector3::new(0.01, 3.0, 0.01));
     for [t, qw, qx, qy, qz, wx, wy, wz] in table.rows_with_key("trajectory") {
@@ -143,7 +143,7 @@ struct ThrownBody {
 }
 
 #[test]
-fn thrown_body_flies_on_a_parabola() {
+fn centre_of_mass_of_a_thrown_body_follows_a_parabola() {
     let q = ThrownBody {}.neutral();
     let v = Vector6::new(3.0, 1.0, 4.0, 1.0, 5.0, -2.0);
     let (center, momentum) = (ThrownBody {}.center_of_mass(&q), ThrownBody {}.momentum(&q, &v));

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 #[test]
-fn a_program_in_c_balances_two_poles() {
+fn c_program_balances_two_poles() {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let output = run_cargo(&["build"], "../models/examples/controller_for_c", env!("CARGO_TARGET_TMPDIR"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

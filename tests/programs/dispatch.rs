@@ -5,7 +5,7 @@
 use linkwork_programs::run_cargo;
 
 #[test]
-fn both_selections_agree() {
+fn both_dispatch_selections_agree() {
     let output = run_cargo(&["run"], "dispatch", env!("CARGO_TARGET_TMPDIR"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

@@ -6,13 +6,13 @@ use linkwork_programs::run_cargo;
 use std::path::Path;
 use std::process::{Command, Output};
 
-fn build(program: &str) -> Output {
+fn build_program(program: &str) -> Output {
     run_cargo(&["build", "--bin", program], "no_std", env!("CARGO_TARGET_TMPDIR"))
 }
 
 #[test]
-fn control_step_has_no_way_to_panic() {
-    let output = build("linkwork-no-std");
+fn control_step_contains_no_panic_path() {
+    let output = build_program("linkwork-no-std");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("packages/release/linkwork-no-std");
     let status = Command::new(program).status().expect("the program starts");
@@ -20,8 +20,8 @@ fn control_step_has_no_way_to_panic() {
 }
 
 #[test]
-fn a_way_to_panic_would_be_seen() {
-    let output = build("panics");
+fn panic_path_in_a_control_step_is_detected() {
+    let output = build_program("panics");
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success(), "a program that can panic was linked");
     assert!(text.contains("linkwork_panic_path_reached"), "{text}");

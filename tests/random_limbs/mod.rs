@@ -29,7 +29,7 @@ pub struct Creature {
 /// Element that connects points or coordinates of two limbs, or of a limb and the trunk or the ground.
 #[derive(Clone, Debug)]
 struct Interaction {
-    /// Index of the declaration in `INTERACTIONS`.
+    /// Index of the interaction's declaration in `INTERACTIONS`.
     kind: usize,
     /// Limb and joint at the first end of the element; the joint also determines the body.
     first: (usize, usize),
@@ -55,7 +55,7 @@ const INTERACTIONS: [&str; 13] = [
     "#[constraint(norm(r(@a / @b)) = 1.3)] #: Holonomic,",
 ];
 
-/// Range of the elements that act on coordinates.
+/// Range of indices of the interactions that act on coordinates.
 const ON_COORDINATES: std::ops::Range<usize> = 8..12;
 
 const TRUNKS: [&str; 4] = ["ground", "free body", "pinned body", "arm on a free body"];

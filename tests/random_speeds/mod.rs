@@ -24,7 +24,7 @@ const DIFFERENCES: f64 = 1e-7;
 
 type Vector = Vec<f64>;
 
-/// State with all other arguments of the functions.
+/// State of a mechanism with all other arguments of the generated functions.
 #[derive(Clone, Default)]
 struct State {
     q: Vector,
@@ -50,13 +50,16 @@ impl State {
 }
 
 /// Compiled mechanism: its model and its generated functions.
-struct Compiled<'g> {
+struct CompiledMechanism<'g> {
     model: Model<'g>,
     output: Output,
 }
 
-impl<'g> Compiled<'g> {
-    fn compile((arguments, item): &(String, String), graph: &'g Graph) -> Result<Compiled<'g>, Vec<String>> {
+impl<'g> CompiledMechanism<'g> {
+    fn compile_source(
+        (arguments, item): &(String, String),
+        graph: &'g Graph,
+    ) -> Result<CompiledMechanism<'g>, Vec<String>> {
         let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
         let mut cx = Diagnostics::new();
         let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
@@ -64,7 +67,7 @@ impl<'g> Compiled<'g> {
         match found {
             Some((model, output)) => {
                 let _ = cx.messages();
-                Ok(Compiled { model, output })
+                Ok(CompiledMechanism { model, output })
             }
             None => Err(cx.messages()),
         }
@@ -183,7 +186,7 @@ fn check_tree(tree: &Tree, seed: u64) -> bool {
     let (arguments, item) = tree.tree_source();
     let arguments = format!("{arguments}, {WORDS}");
     let graph = Graph::new();
-    let plain = Compiled::compile(&(arguments.clone(), item.clone()), &graph);
+    let plain = CompiledMechanism::compile_source(&(arguments.clone(), item.clone()), &graph);
     // Other tests cover trees that the compiler rejects.
     let Ok(plain) = plain else { return false };
     let mut random = Random::new(seed);
@@ -192,13 +195,18 @@ fn check_tree(tree: &Tree, seed: u64) -> bool {
         return false;
     }
     let item = item.trim_end().trim_end_matches('}').to_string() + &speeds + "}";
-    let with = Compiled::compile(&(arguments, item.clone()), &graph);
+    let with = CompiledMechanism::compile_source(&(arguments, item.clone()), &graph);
     let with = with.unwrap_or_else(|messages| panic!("{}\n{item}", messages.join("\n")));
     check_functions(&plain, &with, &mut random, seed);
     true
 }
 
-fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Random, seed: u64) {
+fn check_functions(
+    plain: &CompiledMechanism<'_>,
+    with: &CompiledMechanism<'_>,
+    random: &mut Random,
+    seed: u64,
+) {
     let n = plain.model.nv();
     let mut some = |count: usize| -> Vector { (0..count).map(|_| random.uniform_number(1.0)).collect() };
     let q = random_configuration(&plain.model, seed);
@@ -286,8 +294,8 @@ fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Rando
     check_derivatives(plain, with, &ours, &z);
 }
 
-/// Checks the functions that are rates along the motion.
-fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: &State) {
+/// Checks generated functions that are rates along the motion, with and without declared speeds.
+fn check_rates(plain: &CompiledMechanism<'_>, with: &CompiledMechanism<'_>, ours: &State, theirs: &State) {
     let n = plain.model.nv();
     let way = plain.configuration_rates(&ours.q, &theirs.v);
     let state_after = |e: f64| State {
@@ -326,7 +334,12 @@ fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: 
 
 /// Checks the derivatives with respect to the configuration (along unit generalized speeds) and to the
 /// speeds.
-fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z: &[Vector]) {
+fn check_derivatives(
+    plain: &CompiledMechanism<'_>,
+    with: &CompiledMechanism<'_>,
+    ours: &State,
+    z: &[Vector],
+) {
     let n = plain.model.nv();
     let column_of_rate_matrix = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
     let derivative_by_coordinate = |name: &str, i: usize| {
@@ -373,7 +386,7 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
 proptest! {
     #![proptest_config(property_test_config(12))]
     #[test]
-    fn random_speeds_are_exchanged_in_all_functions(tree in random_trees(4), seed in 0..50_u64) {
+    fn random_speeds_transform_all_functions(tree in random_trees(4), seed in 0..50_u64) {
         prop_assume!(check_tree(&tree, seed));
     }
 }
@@ -382,8 +395,8 @@ proptest! {
 fn printed_equations(arguments: &str, fields: &str) -> String {
     let graph = Graph::new();
     let source = (arguments.to_string(), format!("pub struct Printed {{ {fields} }}"));
-    let found =
-        Compiled::compile(&source, &graph).unwrap_or_else(|messages| panic!("{}", messages.join("\n")));
+    let found = CompiledMechanism::compile_source(&source, &graph)
+        .unwrap_or_else(|messages| panic!("{}", messages.join("\n")));
     found.output.equations.plain
 }
 
@@ -397,7 +410,7 @@ const BODY: &str = "a: f64, b: f64, c: f64,
 
 /// The printed equations are Euler's, in the form of Kane and Levinson (1985) and other textbooks.
 #[test]
-fn a_rigid_body_in_body_axes_prints_eulers_equations() {
+fn rigid_body_in_body_axes_prints_eulers_equations() {
     let speeds = "#[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))] wx: Speed,
         #[speed(rate(psi) * sin(theta) * cos(phi) - rate(theta) * sin(phi))] wy: Speed,
         #[speed(dot(omega(rotor / ground), rotor.z))] wz: Speed,";
@@ -413,9 +426,9 @@ fn a_rigid_body_in_body_axes_prints_eulers_equations() {
     assert!(!text.contains("psi''"), "{text}");
 }
 
-/// The printed equations of a rolling disk are Kane's.
+/// Printed equations of a rolling disk are Kane's equations.
 #[test]
-fn a_rolling_disk_prints_kanes_equations() {
+fn rolling_disk_prints_kanes_equations() {
     let fields = "m: f64, g: f64, radius: f64,
         #[body(mass = 0, inertia = 0)] upright: Body, #[body(mass = 0, inertia = 0)] turned: Body,
         #[body(mass = 0, inertia = 0)] leaning: Body,

@@ -1,4 +1,4 @@
-//! Random mechanisms in the language of the macro.
+//! Random mechanisms as source text of the attribute `#[mechanism]`.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -9,11 +9,11 @@ use std::fmt::Write;
 struct Limb {
     kind: usize,
     parent: usize,
-    /// Random numbers that determine axes, positions and masses.
+    /// Random numbers from which axes, positions and masses are computed.
     numbers: Vec<f64>,
     /// Whether axes are coordinate axes, as in most machines, instead of general directions.
     plain_axes: bool,
-    /// Whether masses and lengths are parameters instead of numbers.
+    /// Whether masses and lengths are parameters of the struct instead of numbers.
     symbolic: bool,
 }
 

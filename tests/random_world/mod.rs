@@ -74,7 +74,7 @@ const PLACES: &str = "
     #[define(dot(drift, drift) + # * first)] measure: Scalar,
 ";
 
-/// Force elements, each of which may be absent.
+/// Declarations of force elements, each of which a random mechanism may contain.
 const ACTIONS: [&str; 21] = [
     "#[acts(between = (bead, base.at([#, #, 0.3])), stiffness = 3, free_length = 0.4)] e0: Spring,",
     "#[acts(between = (hook, pendant), force = 3 * stretch + 2 * pow(stretch, 3) + 0.4, free_length = 0.2)] \

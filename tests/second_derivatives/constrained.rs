@@ -149,7 +149,7 @@ fn acceleration_hessian(
 }
 
 #[test]
-fn equations_by_hand_have_the_second_derivatives_of_generated_ones() {
+fn hand_derived_equations_have_the_generated_second_derivatives() {
     let (m, t) = (Driven { sway: 2.0 }, 0.4);
     for seed in 0..8 {
         let mut random = Random::new(seed);
@@ -178,7 +178,7 @@ fn equations_by_hand_have_the_second_derivatives_of_generated_ones() {
 }
 
 #[test]
-fn constrained_first_derivatives_change_as_second_ones_say() {
+fn constrained_second_derivatives_agree_with_differences() {
     check_second_derivatives("four-bar linkage", &FourBar {}, 2.0);
     check_second_derivatives("tied bodies", &Tied {}, 3.0);
     check_second_derivatives("marble", &Marble {}, 1.0);
@@ -186,7 +186,7 @@ fn constrained_first_derivatives_change_as_second_ones_say() {
 }
 
 #[test]
-fn jacobians_of_constrained_steps_change_as_second_derivatives_say() {
+fn constrained_step_second_derivatives_agree_with_differences() {
     let m = FourBar {};
     let q = m.assemble(&[0.9, -0.5, 1.6].into(), &[0]).expect("it can be assembled");
     let v = m.project_velocity(&q, &[1.5, 0.0, 0.0].into()).expect("it moves");
@@ -202,7 +202,7 @@ fn jacobians_of_constrained_steps_change_as_second_derivatives_say() {
 
 /// A bead on a circular wire is a pendulum: `v̇ = −g / l sin q`.
 #[test]
-fn a_bead_on_a_wire_is_a_pendulum() {
+fn bead_on_a_wire_has_pendulum_second_derivatives() {
     #[mechanism(gravity = -9.81 * y, second_derivatives)]
     struct Bead {
         #[particle(mass = 2)]

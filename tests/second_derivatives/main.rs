@@ -56,11 +56,11 @@ struct Driven {
     motor: Torque,
 }
 
-/// Panda arm with seven axes and a gripper.
+/// Panda robot arm with seven axes and a gripper.
 #[mechanism(urdf = "../models/urdf/panda.urdf", second_derivatives)]
 struct Panda;
 
-/// Quadruped Solo12 with a free base.
+/// Solo12 quadruped robot with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, second_derivatives)]
 struct Solo;
 
@@ -207,7 +207,7 @@ impl<const N: usize, const NV: usize> ConcatSlices for [SMatrix<f64, NV, NV>; N]
 }
 
 #[test]
-fn first_derivatives_change_as_second_ones_say() {
+fn second_derivatives_agree_with_differences() {
     check_second_derivatives("driven", &Driven { rate: 3.0 }, 1.0);
     check_second_derivatives("carrier", &Carrier {}, 3.0);
     check_second_derivatives("arm", &Panda, 5.0);
@@ -245,23 +245,24 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     let gradient_of_step = |q: &_, v: &_, u: &_| {
         discrete::transition(m, method, t, q, v, u).expect("it moves").adjoint(&factors.0, &factors.1)
     };
-    let transposed =
+    let transposed_columns =
         |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NV>::from_fn(|i, j| columns[j][i]);
-    let by_q =
-        transposed(derivatives_along_directions(|d: &SVector<f64, NV>| gradient_of_step(&(q + d), &v, &u).0));
+    let by_q = transposed_columns(derivatives_along_directions(|d: &SVector<f64, NV>| {
+        gradient_of_step(&(q + d), &v, &u).0
+    }));
     let size = by_q.amax().max(1.0);
     assert_block(&format!("{name}: qq"), &qq, &by_q, size);
     let gradient_at_velocity_step = |d: &SVector<f64, NV>| gradient_of_step(&q, &(v + d), &u);
     assert_block(
         &format!("{name}: qv"),
         &qv,
-        &transposed(derivatives_along_directions(|d| gradient_at_velocity_step(d).0)),
+        &transposed_columns(derivatives_along_directions(|d| gradient_at_velocity_step(d).0)),
         size,
     );
     assert_block(
         &format!("{name}: vv"),
         &vv,
-        &transposed(derivatives_along_directions(|d| gradient_at_velocity_step(d).1)),
+        &transposed_columns(derivatives_along_directions(|d| gradient_at_velocity_step(d).1)),
         size,
     );
     let gradient_at_input_step = |d: &SVector<f64, NU>| gradient_of_step(&q, &v, &(u + d));
@@ -284,7 +285,7 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
 }
 
 #[test]
-fn jacobians_of_steps_change_as_second_derivatives_say() {
+fn step_second_derivatives_agree_with_differences() {
     check_steps("driven, Rk4", &Driven { rate: 3.0 }, &Rk4::step(0.05), 1.0);
     check_steps("driven, Euler", &Driven { rate: 3.0 }, &SemiImplicitEuler::step(0.05), 1.0);
     check_steps("arm, Rk4", &Panda, &Rk4::step(0.01), 5.0);
@@ -309,7 +310,7 @@ fn derivative_operation_counts(arguments: &str) -> [usize; 2] {
 /// Second derivatives follow from a recursion, so that their cost is a small multiple of that of the first
 /// derivatives.
 #[test]
-fn second_derivatives_cost_about_twice_the_first() {
+fn second_derivatives_cost_twice_the_first() {
     let fingers = "lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     for (robot, options, most) in [
         ("ur5", "base = fixed", 1450),

@@ -37,7 +37,7 @@ macro_rules! robot {
 }
 
 #[test]
-fn second_derivatives_of_robots_are_those_of_pinocchio() {
+fn robot_second_derivatives_agree_with_pinocchio() {
     robot!(Ur5, "ur5");
     robot!(Gen3, "gen3");
     robot!(Solo, "solo12");

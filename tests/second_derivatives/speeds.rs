@@ -1,4 +1,4 @@
-//! Second derivatives of mechanisms with declared generalized speeds.
+//! Tests of second derivatives of mechanisms with declared generalized speeds.
 
 use super::check_second_derivatives;
 use linkwork::prelude::*;
@@ -79,7 +79,7 @@ struct Sleigh {
 }
 
 #[test]
-fn first_derivatives_in_speeds_change_as_second_ones_say() {
+fn second_derivatives_in_speeds_agree_with_differences() {
     check_second_derivatives("gimbal", &Gimbal {}, 3.0);
     check_second_derivatives("satellite", &Satellite {}, 3.0);
     check_second_derivatives("sleigh", &Sleigh {}, 3.0);

@@ -14,7 +14,7 @@ const WEIGHTS: [f64; 5] = [5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1
 
 /// Compares quadratic forms of the second derivatives along random changes of state and inputs with
 /// differences.
-fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_second_derivatives_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     method: &S,
@@ -61,32 +61,37 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 }
 
 #[test]
-fn steps_of_turning_bodies_curve_as_second_derivatives_say() {
+fn rotating_body_step_second_derivatives_agree_with_differences() {
     let mut random = Random::new(3);
     let m = Carrier {};
     let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
     // Fast rotations, so that displacements rotate considerably within a step.
     let v = random.random_vector(4.0);
-    check_along("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
-    check_along("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
-    check_along("carrier from rest", &m, &Rk4::step(0.1), (&q, &SVector::zeros()));
+    check_second_derivatives_along("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
+    check_second_derivatives_along("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
+    check_second_derivatives_along("carrier from rest", &m, &Rk4::step(0.1), (&q, &SVector::zeros()));
     let q = Solo.integrate(&Solo.neutral(), &random.random_vector(0.8));
-    check_along("quadruped, Euler", &Solo, &SemiImplicitEuler::step(0.02), (&q, &random.random_vector(2.0)));
+    check_second_derivatives_along(
+        "quadruped, Euler",
+        &Solo,
+        &SemiImplicitEuler::step(0.02),
+        (&q, &random.random_vector(2.0)),
+    );
 }
 
 #[test]
-fn constrained_steps_of_turning_bodies_curve_as_second_derivatives_say() {
+fn constrained_rotating_body_step_second_derivatives_agree() {
     let m = Tied {};
     let start = m.integrate(&m.neutral(), &(SVector::from_element(0.2)));
     let q = m.assemble(&start, &[]).expect("it can be assembled");
     let v = m.project_velocity(&q, &SVector::from_fn(|k, _| 0.4 + 0.1 * k as f64)).expect("it moves");
-    check_along("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
+    check_second_derivatives_along("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
     // The state violates the constraints, so that the projection has a larger effect.
     let torn = m.integrate(&q, &SVector::from_element(0.03));
-    check_along("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
+    check_second_derivatives_along("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
 
     let m = Marble {};
     let q = m.integrate(&m.neutral(), &SVector::from([0.1, 0.0, 0.3, 0.2, -0.3, 0.4]));
     let v = m.project_velocity(&q, &SVector::from([0.3, 0.1, 0.0, 1.0, 2.0, 0.5])).expect("it rolls");
-    check_along("marble", &m, &Rk4::step(0.02), (&q, &v));
+    check_second_derivatives_along("marble", &m, &Rk4::step(0.02), (&q, &v));
 }

@@ -104,8 +104,8 @@ fn tripod_start() -> (SVector<f64, 7>, SVector<f64, 6>) {
     (q, [0.6, -0.3, -0.8, 0.5, -1.2, 2.0].into())
 }
 
-/// Returns `Z(q)`, which maps generalized speeds to joint velocities.
-fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
+/// Returns the matrix `Z(q)`, which maps generalized speeds to joint velocities.
+fn velocity_map(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
     let unit_vector = |i: usize| SVector::<f64, 6>::from_fn(|j, _| if i == j { 1.0 } else { 0.0 });
     SMatrix::from_columns(&std::array::from_fn::<_, 6, _>(|i| {
         TripodInSpeeds {}.rates_of_speeds(q, &unit_vector(i))
@@ -113,9 +113,9 @@ fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
 }
 
 #[test]
-fn contacts_are_the_same_in_speeds() {
+fn contacts_in_speeds_equal_contacts_in_velocities() {
     let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod_start());
-    let (u, z) = (m.speeds_of_rates(&q, &rates), rates_of(&q));
+    let (u, z) = (m.speeds_of_rates(&q, &rates), velocity_map(&q));
     assert_close("gaps", m.contact_gaps(&q).as_slice(), plain.contact_gaps(&q).as_slice(), 1e-14);
     assert_close(
         "rates",
@@ -157,12 +157,12 @@ fn contacts_are_the_same_in_speeds() {
     let expected = contact::impact(&plain, 0.0, &down, &rates).unwrap();
     assert!(expected.impulses.amax() > 0.1, "{expected:?}");
     assert_close("impulses", struck.impulses.as_slice(), expected.impulses.as_slice(), 1e-11);
-    assert_close("struck", (rates_of(&down) * struck.v).as_slice(), expected.v.as_slice(), 1e-11);
+    assert_close("struck", (velocity_map(&down) * struck.v).as_slice(), expected.v.as_slice(), 1e-11);
 }
 
 /// Motions with located events are equal; time stepping converges to the same motion as the step decreases.
 #[test]
-fn a_tripod_falls_and_slides_alike_in_speeds() {
+fn tripod_falls_and_slides_equally_in_speeds() {
     let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod_start());
     let u = m.speeds_of_rates(&q, &rates);
     let events = EventDriven::new().tolerance(1e-12, 1e-12);
@@ -184,7 +184,7 @@ fn a_tripod_falls_and_slides_alike_in_speeds() {
 }
 
 #[test]
-fn motions_with_contacts_have_derivatives_in_speeds() {
+fn contact_motions_in_speeds_have_derivatives() {
     let (m, (q, rates)) = (TripodInSpeeds {}, tripod_start());
     let u = m.speeds_of_rates(&q, &rates);
     let tau: SVector<f64, 6> = Random::new(6).random_vector(3.0);
@@ -265,7 +265,7 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
 
 /// Limits of a coordinate whose rate is not a generalized speed cause the same impacts.
 #[test]
-fn a_leg_strikes_its_stops_alike_in_speeds() {
+fn leg_stop_impacts_are_equal_in_speeds() {
     let (plain, m) = (Leg {}, LegInSpeeds {});
     let (q, rates): (SVector<f64, 2>, SVector<f64, 2>) = ([0.4, 1.1].into(), [-1.0, 4.0].into());
     let u = m.speeds_of_rates(&q, &rates);
@@ -282,7 +282,7 @@ fn a_leg_strikes_its_stops_alike_in_speeds() {
 
 /// Limits of coordinates apply for any choice of generalized speeds, and inverse kinematics respects them.
 #[test]
-fn limits_of_coordinates_stay_with_speeds() {
+fn coordinate_limits_are_independent_of_speeds() {
     let m = LegInSpeeds {};
     assert_eq!(m.lower_limits().as_slice(), [f64::NEG_INFINITY, 0.0]);
     assert_eq!(m.upper_limits().as_slice(), Leg {}.upper_limits().as_slice());
@@ -303,7 +303,7 @@ fn limits_of_coordinates_stay_with_speeds() {
 
 /// A mechanism without its contacts moves in generalized speeds as in joint velocities.
 #[test]
-fn a_mechanism_without_its_contacts_keeps_its_speeds() {
+fn mechanism_without_contacts_keeps_its_speeds() {
     let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod_start());
     let u = m.speeds_of_rates(&q, &rates);
     let method = ImplicitMidpoint::step(1e-3);

@@ -14,7 +14,7 @@ mod singular;
 /// Tolerance of derivatives against finite differences of order four.
 const DIFFERENCE: f64 = 1e-8;
 
-/// Rigid body about a fixed point, in Euler angles.
+/// Rigid body about a fixed point, with Euler angles as coordinates.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Angles {
     #[body(mass = 0, inertia = 0)]
@@ -183,40 +183,40 @@ where
             derivative_columns::<NV, 1>(|e| m.difference(&there, &m.integrate(q, &(dv + rate * e[0]))));
         assert_close("displacement rate", back.as_slice(), v.as_slice(), DIFFERENCE);
         let (by_q, by_dv) = m.integrate_derivatives_at(q, &dv);
-        let displacement =
+        let displacement_between =
             |q: &SVector<f64, NQ>, dv: &SVector<f64, NV>| m.difference(&there, &m.integrate(q, dv));
         assert_similar(
             "∂(q ⊕ dv)/∂q",
             by_q.as_slice(),
-            derivative_columns(|e| displacement(&m.integrate(q, &e), &dv)).as_slice(),
+            derivative_columns(|e| displacement_between(&m.integrate(q, &e), &dv)).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂(q ⊕ dv)/∂dv",
             by_dv.as_slice(),
-            derivative_columns(|e| displacement(q, &(dv + e))).as_slice(),
+            derivative_columns(|e| displacement_between(q, &(dv + e))).as_slice(),
             DIFFERENCE,
         );
         let (by_q, by_dv, by_v) = m.displacement_rate_derivatives(q, &dv, &v);
-        let rate =
+        let perturbed_rate =
             |e: [SVector<f64, NV>; 3]| m.displacement_rate(&m.integrate(q, &e[0]), &(dv + e[1]), &(v + e[2]));
         let o = SVector::zeros();
         assert_similar(
             "∂/∂q",
             by_q.as_slice(),
-            derivative_columns(|e| rate([e, o, o])).as_slice(),
+            derivative_columns(|e| perturbed_rate([e, o, o])).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂/∂dv",
             by_dv.as_slice(),
-            derivative_columns(|e| rate([o, e, o])).as_slice(),
+            derivative_columns(|e| perturbed_rate([o, e, o])).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂/∂v",
             by_v.as_slice(),
-            derivative_columns(|e| rate([o, o, e])).as_slice(),
+            derivative_columns(|e| perturbed_rate([o, o, e])).as_slice(),
             DIFFERENCE,
         );
     }
@@ -279,7 +279,7 @@ fn euler_start() -> (SVector<f64, 3>, SVector<f64, 3>) {
 }
 
 #[test]
-fn the_configuration_space_is_one_in_speeds() {
+fn configuration_space_is_independent_of_speeds() {
     let (q, v) = euler_start();
     check_space(&mechanism_with_speeds(), &q);
     check_steps(&mechanism_with_speeds(), &q, &(v * 0.3));
@@ -289,7 +289,7 @@ fn the_configuration_space_is_one_in_speeds() {
 }
 
 #[test]
-fn names_and_conversions() {
+fn speeds_have_names_and_conversions() {
     assert_eq!(Speeds::VELOCITIES, ["wx", "wy", "wz"]);
     assert_eq!(Satellite::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
     assert_eq!(Speeds::CONFIGURATION, ["psi", "theta", "phi"]);
@@ -306,7 +306,7 @@ fn names_and_conversions() {
 }
 
 #[test]
-fn frames_move_alike() {
+fn frame_velocities_are_equal_in_speeds() {
     let (q, rates) = euler_start();
     let (plain, m) = (Angles {}, mechanism_with_speeds());
     let u = m.speeds_of_rates(&q, &rates);
@@ -352,7 +352,7 @@ fn end_in_joint_velocities<S: linkwork::integrate::Method<f64>>(
 
 /// Halving the step divides the errors by 16 for order four, and by 4 for order two.
 #[test]
-fn methods_keep_their_orders() {
+fn integrators_in_speeds_have_their_orders() {
     let (q, rates) = euler_start();
     let exact = state_after_duration(&Angles {}, &q, &rates, 0.5);
     let error_of_end =
@@ -385,7 +385,7 @@ fn methods_keep_their_orders() {
 }
 
 #[test]
-fn batches_are_single_states() {
+fn batches_in_speeds_equal_single_states() {
     use linkwork::__private::{lane, lane_by_lane};
     let m = mechanism_with_speeds();
     let (q, rates) = euler_start();
@@ -408,7 +408,7 @@ fn batches_are_single_states() {
 }
 
 #[test]
-fn a_rolling_disk_moves_alike_in_kanes_speeds() {
+fn rolling_disk_moves_equally_in_kanes_speeds() {
     let (plain, m) = (Disk {}, DiskInSpeeds {});
     let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
     let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");
@@ -450,7 +450,7 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
 
 /// Implicit steps under constraints have their order of convergence, and the energy does not drift.
 #[test]
-fn constrained_methods_keep_their_orders() {
+fn constrained_integrators_in_speeds_have_their_orders() {
     let (plain, m) = (Disk {}, DiskInSpeeds {});
     let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
     let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");

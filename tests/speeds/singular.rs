@@ -13,7 +13,7 @@ fn gimbal_lock_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
 }
 
 #[test]
-fn rates_are_not_finite_where_speeds_do_not_determine_them() {
+fn singular_speeds_yield_nonfinite_coordinate_rates() {
     let (m, (q, u)) = (mechanism_with_speeds(), gimbal_lock_state());
     assert!(m.rates_of_speeds(&q, &u).iter().any(|x| !x.is_finite()));
     assert!(m.forward_dynamics(&q, &u, &SVector::zeros()).iter().any(|x| !x.is_finite()));
@@ -28,7 +28,7 @@ fn rates_are_not_finite_where_speeds_do_not_determine_them() {
 }
 
 #[test]
-fn motions_that_begin_there_are_errors() {
+fn motions_from_singular_speeds_are_errors() {
     let (m, (q, u)) = (mechanism_with_speeds(), gimbal_lock_state());
     fn start_error<S: linkwork::integrate::Method<f64>>(
         m: &Speeds,
@@ -57,7 +57,7 @@ fn motions_that_begin_there_are_errors() {
 /// Checks that a configuration in which generalized speeds do not determine the rates of coordinates is found
 /// under constraints, too: a rolling disk has one where it lies flat, a free body has none.
 #[test]
-fn constraints_do_not_hide_it() {
+fn constraints_do_not_hide_singular_speeds() {
     let flat: SVector<f64, 6> = [0.0, 0.0, 0.0, 0.2, std::f64::consts::FRAC_PI_2, 0.1].into();
     let run = simulate(&DiskInSpeeds {}).from(flat, [0.1, 0.0, 0.0, 0.3, 0.2, 0.1]).duration(0.1);
     // The cosine of a right angle is 6e-17 in floating point: rates are finite, but too large for any step.

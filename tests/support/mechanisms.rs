@@ -73,7 +73,7 @@ carried! {
     OnPin: Pin, about = x
 }
 carried! {
-    /// Body on a pin about a slanted axis.
+    /// Test body on a pin about a slanted axis.
     OnSlantedPin: Pin, about = [0.6, 0, -0.8]
 }
 carried! {
@@ -113,11 +113,11 @@ carried! {
     OnPlanarAlong: Planar, along = (x, y)
 }
 carried! {
-    /// Body on a stage, which translates along two axes.
+    /// Test body on a stage that translates along two axes.
     OnStage: Stage, along = (x, y)
 }
 carried! {
-    /// Body on a stage, which translates along three axes.
+    /// Test body on a stage that translates along three axes.
     OnStage3: Stage, along = (x, y, z)
 }
 carried! {
@@ -125,7 +125,7 @@ carried! {
     OnFree: Free
 }
 carried! {
-    /// Body that is welded to a moving carrier.
+    /// Test body that is welded to a moving carrier.
     OnWeld: Weld
 }
 
@@ -176,7 +176,7 @@ chained! {
     #[joint(slide2 -> last, along = z)] sz: Sleeve,
 }
 chained! {
-    /// Ball joint as a chain of three pins.
+    /// Ball joint modelled as a chain of three pins.
     ChainedBall:
     #[body] ring1: Body,
     #[body] ring2: Body,
@@ -259,8 +259,8 @@ pub struct Workshop {
     gust: Torque,
 }
 
-/// Returns a workshop all of whose parameters differ.
-pub fn workshop() -> Workshop {
+/// Returns a workshop in which all parameters have different values.
+pub fn sample_workshop() -> Workshop {
     Workshop {
         g: 9.7,
         m: 1.7,

@@ -5,7 +5,7 @@ use linkwork::mechanism;
 
 pub use linkwork_models::{AnymalB, Panda as PandaMimic, PandaArm, SimpleHumanoid as Humanoid, Solo12, Ur5};
 
-/// Cart on a rail with a slightly asymmetric pole.
+/// Cart on a rail with a slightly asymmetric pole, from a URDF file.
 #[mechanism(urdf = "../models/urdf/cartpole.urdf")]
 pub struct CartPole;
 
@@ -13,7 +13,7 @@ pub struct CartPole;
 #[mechanism(urdf = "../models/urdf/double_pendulum.urdf")]
 pub struct DoublePendulum;
 
-/// Kinova arm with six axes and continuous joints.
+/// Kinova robot arm with six axes, whose joints are continuous.
 #[mechanism(urdf = "../models/urdf/kinova.urdf")]
 pub struct Kinova;
 

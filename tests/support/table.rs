@@ -23,12 +23,12 @@ impl Record {
         self.0.get(key).is_some()
     }
 
-    /// Returns the list of objects with this key.
+    /// Returns the list of objects that has this key.
     pub fn records_with_key(&self, key: &str) -> Vec<Record> {
         list_of_value(self.entry_with_key(key)).iter().cloned().map(Record).collect()
     }
 
-    /// Returns the list of strings with this key.
+    /// Returns the list of strings that has this key.
     pub fn strings_with_key(&self, key: &str) -> Vec<String> {
         list_of_value(self.entry_with_key(key))
             .iter()
@@ -36,22 +36,22 @@ impl Record {
             .collect()
     }
 
-    /// Returns the string with this key.
+    /// Returns the string that has this key.
     pub fn string_with_key(&self, key: &str) -> &str {
         self.entry_with_key(key).as_str().unwrap_or_else(|| panic!("`{key}` is not a string"))
     }
 
-    /// Returns the number with this key.
+    /// Returns the number that has this key.
     pub fn number_with_key(&self, key: &str) -> f64 {
         number_of_value(self.entry_with_key(key))
     }
 
-    /// Returns the list of numbers with this key.
+    /// Returns the list of numbers that has this key.
     pub fn numbers_with_key(&self, key: &str) -> Vec<f64> {
         numbers_of_value(self.entry_with_key(key))
     }
 
-    /// Returns a list of rows of `N` numbers.
+    /// Returns the list with this key as rows of `N` numbers.
     pub fn rows_with_key<const N: usize>(&self, key: &str) -> Vec<[f64; N]> {
         list_of_value(self.entry_with_key(key))
             .iter()
@@ -59,7 +59,7 @@ impl Record {
             .collect()
     }
 
-    /// Returns a list of `N` numbers as a vector.
+    /// Returns the list with this key as a vector of `N` numbers.
     pub fn vector_with_key<const N: usize>(&self, key: &str) -> SVector<f64, N> {
         SVector::from(array_of_numbers(&self.numbers_with_key(key)))
     }

@@ -1,4 +1,4 @@
-//! Checks of particles in user-defined coordinates.
+//! Tests of particles in user-defined coordinates.
 
 use super::{EXACT, MOTION};
 use linkwork::mechanism;
@@ -23,7 +23,7 @@ struct ElasticPendulum {
 
 /// The equations of motion are `r̈ = r θ̇² + g cos θ − (k / m) (r − l)`, `θ̈ = −(g sin θ + 2 ṙ θ̇) / r`.
 #[test]
-fn elastic_pendulum() {
+fn elastic_pendulum_has_the_textbook_equations() {
     let (g, m, k, l) = (9.81, 0.8, 60.0, 0.7);
     let pendulum = ElasticPendulum { g, m, k, l };
     let (q, v) = (Vector2::new(0.5, 0.9), Vector2::new(1.2, -0.4));
@@ -57,7 +57,7 @@ struct BeadOnHelix {
 }
 
 #[test]
-fn beads_on_wires() {
+fn beads_on_wires_have_closed_forms() {
     let (g, m, p) = (9.81, 0.4, 0.6);
     let wire = BeadOnParabola { g, m, p };
     let (s, v) = (0.7, 1.3);
@@ -98,7 +98,7 @@ struct SphericalByAngles {
 }
 
 #[test]
-fn spherical_pendulum_in_two_charts() {
+fn spherical_pendulum_agrees_in_two_coordinate_charts() {
     let (one, other) = (SphericalByUniversal {}, SphericalByAngles {});
     let (q, v) = (Vector2::new(0.7, 0.4), Vector2::new(-0.5, 1.1));
     let (place, moving) = (one.place(&q), one.place_jacobian(&q) * v);
@@ -147,7 +147,7 @@ struct TwoPins {
 }
 
 #[test]
-fn double_pendulum_in_absolute_and_relative_angles() {
+fn double_pendulum_agrees_in_absolute_and_relative_angles() {
     let (absolute, relative) = (TwoParticles {}, TwoPins {});
     let to_relative = |a: &Vector2<f64>| Vector2::new(a[0], a[1] - a[0]);
     let (q, v) = (Vector2::new(0.8, -0.5), Vector2::new(0.3, 1.7));

@@ -5,7 +5,7 @@ use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// Bead that slides on a helical wire.
+/// Bead that slides on a helical wire, with its closed-form equation.
 #[mechanism(gravity = -9.81 * z)]
 struct Helix {
     a: f64,
@@ -33,7 +33,7 @@ struct Helix {
 /// `b / (a² + b²)`. The acceleration is `v̇` along the tangent and `κ v²` along the normal; the frame rotates
 /// with `v (τ T + κ B)` (Frenet and Serret).
 #[test]
-fn a_helix_has_constant_curvature_and_torsion() {
+fn helix_has_constant_curvature_and_torsion() {
     let (m, mut random) = (Helix { a: 0.5, b: 0.2 }, Random::new(4));
     let sum = 0.5 * 0.5 + 0.2 * 0.2;
     for _ in 0..4 {
@@ -79,7 +79,7 @@ struct Cubic {
 /// The twisted cubic has `κ² = 4 (9 s⁴ + 9 s² + 1) / (9 s⁴ + 4 s² + 1)³`, `τ = 3 / (9 s⁴ + 9 s² + 1)`; an
 /// ellipse has `κ = a b / (a² sin² e + b² cos² e)^(3/2)` (any table of differential geometry).
 #[test]
-fn cubics_and_ellipses_bend_as_geometry_says() {
+fn curvature_of_cubics_and_ellipses_has_closed_forms() {
     for (s, e) in [(0.3_f64, 0.4_f64), (-0.8, 2.0), (1.2, -1.0)] {
         let q = [0.7, s, e].into();
         let (a, b) = (9.0 * s.powi(4) + 9.0 * s * s + 1.0, 9.0 * s.powi(4) + 4.0 * s * s + 1.0);
@@ -115,7 +115,7 @@ struct Radar {
 
 /// Components of an acceleration in spherical and cylindrical coordinates have the textbook expressions.
 #[test]
-fn accelerations_in_spherical_and_cylindrical_frames() {
+fn spherical_and_cylindrical_accelerations_have_textbook_terms() {
     let mut random = Random::new(9);
     for _ in 0..5 {
         let q: SVector<f64, 3> = random.random_vector::<3>(1.0) + SVector::from([3.0, 0.0, 0.0]);
@@ -159,7 +159,7 @@ struct Field {
 }
 
 #[test]
-fn a_force_is_the_gradient_of_its_field() {
+fn force_of_a_field_is_its_gradient() {
     let (m, mut random) = (Field { mu: 3.0, k: 0.5 }, Random::new(2));
     for _ in 0..4 {
         let q: SVector<f64, 3> = random.random_vector(2.0);
@@ -198,7 +198,7 @@ struct Cables {
 
 /// Returns the length of the shortest path of two straight lines and a helix, by search over the points of
 /// contact with the cylinder that are visible from the ends.
-fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
+fn shortest_path_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
     let length_of_path = |[alpha, beta, za, zb]: [f64; 4]| {
         let point_on_cylinder = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
         let distance_between =
@@ -225,9 +225,9 @@ fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
 }
 
 #[test]
-fn cables_take_the_shortest_way_around() {
+fn cables_wrap_along_the_shortest_path() {
     let m = Cables { radius: 0.5 };
-    let configuration =
+    let ball_configuration =
         |a: [f64; 3], b: [f64; 3]| SVector::from([a[0] + 0.1, a[1], a[2], b[0] + 0.1, b[1], b[2]]);
     // The cable passes the far side from below to above, level and rising, with more than half a turn of
     // contact.
@@ -236,18 +236,22 @@ fn cables_take_the_shortest_way_around() {
         ([0.2, -0.9, 0.3], [-0.1, 1.2, 1.1]),
         ([0.1, 0.8, 0.0], [0.9, -0.6, -0.7]),
     ] {
-        let q = configuration(a, b);
+        let q = ball_configuration(a, b);
         let found = m.drum(&q);
-        assert!((found - shortest_around(a, b, 0.5)).abs() < 1e-7, "{found} {}", shortest_around(a, b, 0.5));
+        assert!(
+            (found - shortest_path_around(a, b, 0.5)).abs() < 1e-7,
+            "{found} {}",
+            shortest_path_around(a, b, 0.5)
+        );
         assert!((m.back(&q) - found).abs() < 1e-14);
         assert!(found > m.straight(&q));
     }
     // Half a turn of a level cable with ends that hang straight down: two weights over a pulley.
-    let q = configuration([0.5, -2.0, 0.0], [-0.5, -3.0, 0.0]);
+    let q = ball_configuration([0.5, -2.0, 0.0], [-0.5, -3.0, 0.0]);
     assert!((m.drum(&q) - (2.0 + 3.0 + 0.5 * PI)).abs() < 1e-14);
     // A cable without contact with the drum is straight; a cable without contact with the ball is straight,
     // too.
-    let free = configuration([0.7, -1.0, 0.2], [0.9, 1.0, 0.4]);
+    let free = ball_configuration([0.7, -1.0, 0.2], [0.9, 1.0, 0.4]);
     assert!((m.drum(&free) - m.straight(&free)).abs() < 1e-14);
     let q = SVector::from([1.0, 0.0, 0.0, 0.0, 0.8, 0.6]);
     assert!((m.ball(&q) - m.straight(&q)).abs() < 1e-14);
@@ -259,7 +263,7 @@ fn cables_take_the_shortest_way_around() {
 /// Checks that derivatives of a cable's length equal finite differences, with and without contact with the
 /// surface, and that the cable force has the directions of these derivatives.
 #[test]
-fn cables_have_exact_derivatives() {
+fn cable_lengths_have_exact_derivatives() {
     let (m, h) = (Cables { radius: 0.5 }, 1e-5);
     for q in [
         SVector::from([0.3, -0.9, 0.3, 0.0, 1.2, 1.1]),
@@ -315,7 +319,7 @@ struct Tackle {
 }
 
 #[test]
-fn elements_act_on_any_length() {
+fn elements_act_on_any_length_expression() {
     let m = Tackle { drum: 0.25, stiffness: 40.0, slack: 5.0 };
     // The lever arm of a cable wound on the drum is the drum's radius, for any angle. Without contact, it is
     // the lever arm of the straight line.

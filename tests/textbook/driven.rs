@@ -11,7 +11,7 @@ use support::simulate::{advance_from, state_after_duration};
 /// Checks Kapitza's pendulum with a vibrating pivot: `m l² θ̈ + m l (g + ÿ) sin θ = 0`. The upper equilibrium
 /// is stable if `a² γ² > 2 g l` (Landau and Lifshitz, *Mechanics*, §§ 5 and 30).
 #[test]
-fn kapitza_pendulum() {
+fn kapitza_pendulum_is_stable_upright() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.04, 160.0);
     let pendulum = KapitzaPendulum { g, mass: m, length: l, amplitude, frequency: speed };
     let (q, v) = (Vector1::new(0.9_f64), Vector1::new(2.0));
@@ -56,7 +56,7 @@ struct PendulumOnCrank {
 /// the pivot are those of the ground, so that the angle is measured from the vertical although the crank
 /// rotates.
 #[test]
-fn pendulum_on_crank() {
+fn pendulum_on_rotating_crank_has_the_textbook_equation() {
     let (g, m, l, radius, speed) = (9.81, 0.3, 0.5, 0.2, 3.0);
     let crank = PendulumOnCrank { g, m, l, radius, speed };
     let (q, v) = (Vector1::new(0.9_f64), Vector1::new(2.0));
@@ -104,7 +104,7 @@ struct Turntable {
 /// Checks an oscillator on a rotating table, as Foucault's pendulum at the pole. Coriolis and centrifugal
 /// forces appear in the rotating frame; in the ground frame the plane of oscillation is constant.
 #[test]
-fn foucault_pendulum_at_the_pole() {
+fn foucault_pendulum_precesses_at_the_pole() {
     let (m, k, spin) = (1.4, 20.0, 0.7);
     let table = Turntable { m, k, spin };
     let (t, q, v) = (0.6, Vector2::new(0.4, -0.3), Vector2::new(1.1, 0.5));
@@ -150,7 +150,7 @@ struct ForcedOscillator {
 }
 
 #[test]
-fn forced_oscillator() {
+fn forced_oscillator_has_the_closed_form_response() {
     let (m, k, f, speed) = (2.0, 18.0, 3.0, 2.0);
     let cart = ForcedOscillator { m, k, f, speed };
     let amplitude = f / (k - m * speed * speed);
@@ -191,7 +191,7 @@ struct ShakenBase {
 
 /// The base's acceleration acts as a change of gravity (Landau and Lifshitz, *Mechanics*, § 5, problem 3 c).
 #[test]
-fn massive_base() {
+fn accelerated_base_acts_like_gravity() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.02, 30.0);
     let base = ShakenBase { g, m, l, amplitude, speed };
     let tilt = 2.0 * 0.6_f64.atan2(0.8);

@@ -24,7 +24,7 @@ struct MassInerter {
 }
 
 #[test]
-fn mass_with_inerter() {
+fn mass_with_inerter_has_the_closed_form_motion() {
     let (q, _) = state_after_duration(&MassInerter {}, &Vector1::new(1.0), &Vector1::zeros(), 1.0);
     assert_close("displacement", q.as_slice(), &[-0.2234232688843427], 1e-12);
 }
@@ -61,21 +61,33 @@ struct Loudspeaker {
 }
 
 #[test]
-fn a_coil_is_the_inertia_of_its_charge() {
+fn inductance_is_the_inertia_of_the_charge() {
     let (m, k, c, l, r, bl) = (0.02, 900.0, 1.3, 0.5e-3, 6.0, 7.0);
     let (mass, stiffness, damping) = (m, k, c);
     let speaker = Loudspeaker { mass, stiffness, damping, inductance: l, resistance: r, coupling: bl };
     let order = Loudspeaker::VELOCITIES.map(|name| usize::from(name == "travel"));
-    let ordered =
+    let charge_and_travel_in_order =
         |charge: f64, travel: f64| Vector2::from(order.map(|is_travel| [charge, travel][is_travel]));
-    let (q, v, u) = (ordered(0.1, 2e-3), ordered(0.4, 0.3), Vector1::new(5.0));
+    let (q, v, u) =
+        (charge_and_travel_in_order(0.1, 2e-3), charge_and_travel_in_order(0.4, 0.3), Vector1::new(5.0));
     // L q̈ = u − R q̇ − B ẋ, m ẍ = B q̇ − c ẋ − k x.
-    let expected = ordered((5.0 - r * 0.4 - bl * 0.3) / l, (bl * 0.4 - c * 0.3 - k * 2e-3) / m);
+    let expected =
+        charge_and_travel_in_order((5.0 - r * 0.4 - bl * 0.3) / l, (bl * 0.4 - c * 0.3 - k * 2e-3) / m);
     let found = speaker.forward_dynamics(&q, &v, &speaker.generalized_forces(&q, &u));
     assert_close("accelerations", found.as_slice(), expected.as_slice(), EXACT);
-    assert_close("mass", speaker.mass_matrix(&q).diagonal().as_slice(), ordered(l, m).as_slice(), EXACT);
+    assert_close(
+        "mass",
+        speaker.mass_matrix(&q).diagonal().as_slice(),
+        charge_and_travel_in_order(l, m).as_slice(),
+        EXACT,
+    );
     let inverse = speaker.mass_matrix_inverse(&q);
-    assert_close("its inverse", inverse.diagonal().as_slice(), ordered(1.0 / l, 1.0 / m).as_slice(), EXACT);
+    assert_close(
+        "its inverse",
+        inverse.diagonal().as_slice(),
+        charge_and_travel_in_order(1.0 / l, 1.0 / m).as_slice(),
+        EXACT,
+    );
     let (by_q, by_v, _) = speaker.forward_dynamics_derivatives(&q, &v, &Vector2::zeros());
     let (charge, travel) = (usize::from(order[0] != 0), usize::from(order[0] == 0));
     assert_close("stiffness", &[by_q[(travel, travel)], by_q[(charge, charge)]], &[-k / m, 0.0], EXACT);
@@ -149,7 +161,7 @@ struct LinearByStiffness {
 }
 
 #[test]
-fn springs_by_force_and_by_energy() {
+fn springs_by_force_and_by_energy_agree() {
     let (k, c, stiff, hard) = (20.0, 300.0, 5.0, 2.0);
     let (force, energy) = (DuffingByForce { k, c, stiff, hard }, DuffingByEnergy { k, c, stiff, hard });
     assert_same_dynamics(&force, &energy, 4, 1e-12);
@@ -172,7 +184,7 @@ struct Buffers {
 }
 
 #[test]
-fn stops() {
+fn elastic_buffers_act_only_beyond_their_gap() {
     let (k, gap) = (1000.0, 0.5);
     let cart = Buffers { k, gap };
     let force_at = |x: f64| cart.bias_forces(&Vector1::new(x), &Vector1::zeros())[0];
@@ -209,7 +221,7 @@ struct StickingBlock {
 }
 
 #[test]
-fn friction() {
+fn friction_laws_have_their_closed_forms() {
     let (m, f) = (2.0, 3.0);
     let block = SlidingBlock { m, f };
     let (q, v) = state_after_duration(&block, &Vector1::zeros(), &Vector1::new(4.0), 2.0);
@@ -239,7 +251,7 @@ struct DraggedProjectile {
 }
 
 #[test]
-fn projectile_with_linear_drag() {
+fn projectile_with_linear_drag_has_the_closed_form() {
     let (m, c, t) = (0.4, 0.3, 1.7);
     let ball = DraggedProjectile { m, c };
     let (q, v) = state_after_duration(&ball, &Vector2::zeros(), &Vector2::new(7.0, 9.0), t);
@@ -286,7 +298,7 @@ struct PendulumByGravity {
 }
 
 #[test]
-fn potential() {
+fn potential_energy_replaces_gravity() {
     let (m, g, k) = (0.8, 9.81, 4.0);
     assert_same_dynamics(&PendulumByPotential { m, g, k }, &PendulumByGravity { m, g, k }, 4, 1e-13);
 }
@@ -311,7 +323,7 @@ struct Charges {
 }
 
 #[test]
-fn charged_particles() {
+fn charged_particles_have_coulomb_and_lorentz_forces() {
     let charges = Charges { field: 2.0, charge: 0.3 };
     let q = Vector6::new(0.1_f64, 0.2, 0.3, 1.1, -0.6, 0.9);
     let v = Vector6::new(1.0, 2.0, 3.0, 0.0, 0.0, 0.0);
@@ -351,7 +363,7 @@ struct Meeting {
 /// Elements between coincident points have no direction and exert no force there; an element of zero free
 /// length has the limit zero.
 #[test]
-fn points_that_coincide() {
+fn coincident_points_exert_no_force() {
     for l in [0.0, 0.3] {
         let meeting = Meeting { l };
         let origin = Vector2::zeros();
@@ -373,7 +385,7 @@ fn points_that_coincide() {
 /// Gravity between coincident particles has no limit: the forces are not finite, and an integrator reports
 /// it.
 #[test]
-fn particles_that_coincide() {
+fn gravity_of_coincident_particles_is_not_finite() {
     let bodies = TwoBodies { constant: 1.0, m1: 1.0, m2: 1.0 };
     let q = Vector6::zeros();
     assert_eq!(bodies.potential_energy(&q), f64::NEG_INFINITY);

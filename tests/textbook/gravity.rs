@@ -33,7 +33,7 @@ struct KeplerPolar {
 }
 
 #[test]
-fn kepler_orbit() {
+fn kepler_orbit_has_its_period_and_shape() {
     let rows = Record::load("problems/kepler.json").rows_with_key::<5>("trajectory");
     let [_, x, y, vx, vy] = rows[0];
     for [t, x1, y1, vx1, vy1] in &rows[1..] {
@@ -49,7 +49,7 @@ fn kepler_orbit() {
 
 /// The period of the relative motion is `2 π √(a³ / (G (m₁ + m₂)))`, for any motion of the centre of mass.
 #[test]
-fn two_bodies() {
+fn two_bodies_have_the_keplerian_period() {
     let (constant, m1, m2) = (0.8, 3.0, 1.2);
     let bodies = TwoBodies { constant, m1, m2 };
     let total = constant * (m1 + m2);
@@ -95,7 +95,7 @@ attracting! {
 }
 
 #[test]
-fn pleiades() {
+fn pleiades_problem_agrees_with_the_reference() {
     let rows = Record::load("problems/pleiades.json").rows_with_key::<29>("trajectory");
     let (mut q, mut v) =
         (SVector::<f64, 14>::from_row_slice(&rows[0][1..15]), SVector::from_row_slice(&rows[0][15..]));
@@ -130,7 +130,7 @@ struct Satellite {
 /// that small librations have the squared frequency `3 n² (B − A) / C` (Hughes, *Spacecraft Attitude
 /// Dynamics*, ch. 9).
 #[test]
-fn gravity_gradient_libration() {
+fn gravity_gradient_torque_of_a_satellite_has_the_closed_form() {
     let (n, radius, a, b, c) = (0.9, 50.0, 1.0, 1.7, 2.2);
     let satellite = Satellite { n, radius, a, b, c };
     for (t, pitch) in [(0.0, 0.3), (0.7, -0.8), (2.0, 1e-4)] {
@@ -175,7 +175,7 @@ struct PlanetAndSatellite {
 /// A sphere has no gravity-gradient torque, so that the potential is that of the satellite near a centre with
 /// `mu = G M`.
 #[test]
-fn gravity_gradient_between_bodies() {
+fn gravity_gradient_between_bodies_has_the_closed_form() {
     let (both, alone) = (PlanetAndSatellite {}, FreeSatellite {});
     let mut random = Random::new(6);
     let q = random.random_configuration(&both);
@@ -191,7 +191,7 @@ fn gravity_gradient_between_bodies() {
 }
 
 #[test]
-fn gravity_gradient_of_a_free_body() {
+fn gravity_gradient_of_a_free_body_has_the_closed_form() {
     let body = FreeSatellite {};
     let mut random = Random::new(5);
     let q = random.random_configuration(&body);

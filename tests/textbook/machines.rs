@@ -1,4 +1,4 @@
-//! Checks of complete machines against closed-form solutions.
+//! Tests of complete machines against closed-form solutions.
 
 use super::{EXACT, MOTION};
 use linkwork::nalgebra::{Matrix2, Matrix3, Rotation3, Vector1, Vector2, Vector3, Vector6};
@@ -10,7 +10,7 @@ use support::robots::PandaMimic;
 use support::simulate::state_after_duration;
 
 #[test]
-fn double_pendulum() {
+fn double_pendulum_has_the_textbook_equations() {
     let (g, m1, m2, l1, l2) = (9.81, 1.3, 0.7, 0.9, 1.1);
     let pendulum = DoublePendulum { g, m1, m2, l1, l2 };
     let (q, v) = (Vector2::new(0.4, -1.3_f64), Vector2::new(1.5, -0.8));
@@ -34,7 +34,7 @@ fn double_pendulum() {
 
 /// Beyond `Ω² = g / R` the bead leaves the bottom of the hoop (Goldstein, *Classical Mechanics*, ch. 2).
 #[test]
-fn bead_on_spinning_hoop() {
+fn bead_on_spinning_hoop_leaves_the_bottom() {
     let (g, m, radius, spin) = (9.81, 2.0, 0.5, 6.0);
     let hoop = BeadOnSpinningHoop { g, mass: m, radius, spin };
     for t in [0.0, 0.3] {
@@ -57,7 +57,7 @@ fn bead_on_spinning_hoop() {
 }
 
 #[test]
-fn tuned_suspension() {
+fn tuned_suspension_has_the_matrices_derived_by_hand() {
     let cart = TunedSuspension { m1: 2.0, m2: 1.0, k1: 100.0, k2: 40.0, damping: 0.3, inertance: 0.5 };
     let origin = Vector2::zeros();
     // The carts coincide at the origin, which is no singularity.
@@ -77,7 +77,7 @@ fn tuned_suspension() {
 }
 
 #[test]
-fn gyroscope() {
+fn gyroscope_has_the_textbook_mass_matrix() {
     let (axial, transverse) = (2.0, 3.0);
     let gyroscope = Gyroscope { g: 9.81, mass: 1.0, offset: 0.0, axial, transverse };
     let (q, v) = (Vector3::new(0.1, 0.6_f64, 0.3), Vector3::new(1.0, 2.0, 3.0));
@@ -93,7 +93,7 @@ fn gyroscope() {
 /// Checks a gyroscope in gimbal lock, with the axes of precession and spin in line. The mass matrix is
 /// singular and the acceleration is not finite instead of wrong; all other functions are correct.
 #[test]
-fn gimbal_lock() {
+fn gyroscope_in_gimbal_lock_has_a_singular_mass_matrix() {
     let gyroscope = Gyroscope { g: 9.81, mass: 1.0, offset: 0.0, axial: 2.0, transverse: 3.0 };
     let (q, v) = (Vector3::new(0.1, 0.0, 0.3), Vector3::new(1.0, 2.0, 3.0));
     assert_eq!(gyroscope.mass_matrix(&q).determinant(), 0.0);
@@ -141,7 +141,7 @@ struct Aircraft {
 }
 
 #[test]
-fn aircraft() {
+fn aircraft_has_the_textbook_equations() {
     let (m, rho, area, chord) = (600.0, 1.2, 12.0, 1.3);
     let plane = Aircraft {
         m,
@@ -185,7 +185,7 @@ struct PandaWithTool {
 }
 
 #[test]
-fn panda_with_tool() {
+fn tool_adds_its_inertia_and_spring_to_the_arm() {
     let (tool_mass, stiffness) = (0.7, 30.0);
     let (arm, held) = (PandaMimic, PandaWithTool { tool_mass, stiffness });
     let mut random = Random::new(7);

@@ -64,7 +64,7 @@ struct Carrier {
 }
 
 #[test]
-fn matrices_are_what_their_vectors_say() {
+fn matrix_expressions_equal_vector_expressions() {
     let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(31));
     for _ in 0..4 {
         let (q, v): (SVector<f64, 8>, SVector<f64, 7>) =
@@ -133,7 +133,7 @@ struct Oblique {
 }
 
 #[test]
-fn outputs_have_components_in_oblique_frames() {
+fn outputs_may_have_oblique_components() {
     let frame = Matrix3::new(1.0, 0.0, 0.2, 0.5, 1.0, 0.4, 0.0, -0.3, 1.0);
     let dual = reciprocal(&frame).unwrap();
     let (m, mut random) = (Oblique {}, Random::new(11));
@@ -151,7 +151,7 @@ fn outputs_have_components_in_oblique_frames() {
 /// Components along vectors that are not perpendicular follow from `g₁ = f₂ × f₃ / (f₁ · f₂ × f₃)` and so on,
 /// and from Cramer's rule.
 #[test]
-fn components_in_oblique_frames() {
+fn oblique_components_follow_from_reciprocal_vectors() {
     let mut random = Random::new(6);
     for _ in 0..5 {
         let f = [0, 1, 2].map(|_| random.random_vector::<3>(2.0));
@@ -171,7 +171,7 @@ fn components_in_oblique_frames() {
 /// `A X + X B = C` is `(1 ⊗ A + Bᵀ ⊗ 1) vec X = vec C`; a wedge product is the matrix of the cross product,
 /// `(a ∧ b) v = (a × b) × v`.
 #[test]
-fn kronecker_products_solve_sylvester_s_equation() {
+fn kronecker_products_solve_sylvesters_equation() {
     let mut random = Random::new(7);
     let mut matrix = || Matrix3::from_columns(&[0, 1, 2].map(|_| random.random_vector::<3>(1.0)));
     let (one, shift) = (Matrix3::<f64>::identity(), Matrix3::identity() * 4.0);

@@ -24,7 +24,7 @@ struct Ladder {
 /// The instantaneous centre of velocity is the intersection of the normals of wall and floor. At the instant
 /// of release it is also the centre of acceleration, whose acceleration is zero in any state.
 #[test]
-fn a_ladder_turns_about_its_instantaneous_centre() {
+fn ladder_rotates_about_its_instantaneous_centre() {
     let (m, mut random) = (Ladder { l: 3.0 }, Random::new(8));
     for _ in 0..5 {
         let (q, v, a): (SVector<f64, 1>, _, _) =
@@ -59,7 +59,7 @@ struct Wheel {
 }
 
 #[test]
-fn a_wheel_turns_about_its_contact_and_accelerates_about_its_hub() {
+fn wheel_rotates_about_its_contact_point() {
     let (m, q, v) = (Wheel { radius: 0.3 }, [2.0].into(), [5.0].into());
     assert!((m.rests(&q, &v) - SVector::from([0.6, 0.0, 0.0])).amax() < 1e-14);
     assert!(m.unmoved(&q, &v, &[0.0].into()).amax() < 1e-14);
@@ -88,7 +88,7 @@ struct Cylindroid {
 /// The screw axis of two rotations is on Plücker's conoid: at the height `d w₂² / (w₁² + w₂²)`, with the
 /// pitch `−d w₁ w₂ / (w₁² + w₂²)` (Ball, *A Treatise on the Theory of Screws*, 1900, § 13).
 #[test]
-fn two_turns_make_a_screw_of_the_cylindroid() {
+fn two_rotations_form_a_screw_of_the_cylindroid() {
     let (m, q) = (Cylindroid { d: 0.4 }, SVector::zeros());
     for (w1, w2) in [(1.0, 2.0), (-3.0, 0.5), (0.7, -0.7)] {
         let (v, square) = ([w1, w2].into(), w1 * w1 + w2 * w2);
@@ -112,7 +112,7 @@ struct Nut {
 }
 
 #[test]
-fn a_nut_has_the_pitch_and_the_axis_of_its_thread() {
+fn nut_motion_has_the_screw_axis_and_pitch_of_its_thread() {
     let (q, v) = ([0.8].into(), [3.0].into());
     assert!((Nut {}.pitch(&q, &v) - 0.03).abs() < 1e-16);
     assert!((Nut {}.axis(&q, &v) - SVector::from([0.5, 0.0, 0.03 * 0.8])).amax() < 1e-15);
@@ -139,7 +139,7 @@ struct Bat {
 /// The centre of percussion of a rod with respect to its end is at two thirds of the length: an impulse there
 /// leaves the end at rest.
 #[test]
-fn a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest() {
+fn impulse_at_the_centre_of_percussion_leaves_the_grip_at_rest() {
     let (m, q, v) = (Bat { l: 0.9 }, [0.3, 0.1, 0.7].into(), SVector::zeros());
     assert!((m.found(&q) - SVector::from([0.6, 0.0, 0.0])).amax() < 1e-15);
     let sweet = m.frame_placement(frame!(Bat, "sweet"), &q) * linkwork::nalgebra::Point3::origin();
@@ -198,7 +198,7 @@ struct Carrier {
 /// Checks Euler's laws for several bodies: momenta add up to those of the whole, and change only by external
 /// forces and torques. In a rotating frame, the rate of a vector is smaller by `ω × h` (transport theorem).
 #[test]
-fn euler_s_laws_hold_for_a_set_of_bodies() {
+fn eulers_laws_hold_for_a_set_of_bodies() {
     let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(3));
     for _ in 0..5 {
         let (q, v): (SVector<f64, 8>, SVector<f64, 7>) =
@@ -278,7 +278,7 @@ struct Written {
 }
 
 #[test]
-fn a_wheel_rolls_on_a_point_in_the_axes_of_its_fork() {
+fn wheel_rolls_on_a_point_in_fork_axes() {
     let (pair, written, mut random) = (Rolls { radius: 0.4 }, Written { radius: 0.4 }, Random::new(21));
     for _ in 0..4 {
         let mut q: SVector<f64, 6> = random.random_vector(0.8);
@@ -317,7 +317,7 @@ struct AboutPivot {
 }
 
 #[test]
-fn inertias_about_another_point_are_moved_to_the_centre_of_mass() {
+fn inertia_about_another_point_is_moved_to_the_centre_of_mass() {
     let m = AboutPivot { j: 0.7 };
     let mass = m.mass_matrix(&[0.3, 0.2].into());
     // The moment of inertia about the pivot is the given value.
@@ -345,7 +345,7 @@ struct Flywheel {
 
 /// Checks work as a first-order state, which integrates the power of a force.
 #[test]
-fn work_is_what_energy_gains_and_drag_takes() {
+fn work_state_integrates_the_power_of_a_force() {
     let m = Flywheel { work: 0.0, lost: 0.0 };
     let whole = m.extended();
     let run = simulate(&whole).from([0.2], [1.0, 0.0, 0.0]).inputs(|t, _, _| [2.0 * t].into());
@@ -386,7 +386,7 @@ struct Sliding {
 /// Friction dissipates `μ N s² / √(s² + s₀²)` at the slip velocity `s`, for any normal force, and completes
 /// the power balance.
 #[test]
-fn friction_of_a_slipping_contact_takes_power() {
+fn slipping_contact_friction_dissipates_closed_form_power() {
     let m = Sliding { mu: 0.3 };
     let (q, v, u) = (SVector::zeros(), [0.8, -0.6, 0.0].into(), SVector::from([-5.0]));
     let normal = 2.0 * 9.81 + 5.0;

@@ -36,7 +36,7 @@ macro_rules! sequences {
         )*
 
         #[test]
-        fn euler_angles() {
+        fn euler_angle_sequences_agree_with_their_reference() {
             let table = Record::load("problems/euler_sequences.json");
             let q: Vector3<f64> = table.vector_with_key("angles");
             let v: Vector3<f64> = table.vector_with_key("rates");
@@ -106,7 +106,7 @@ struct TopByBall {
 }
 
 #[test]
-fn heavy_top_in_two_charts() {
+fn heavy_top_agrees_in_two_coordinate_charts() {
     let (one, other) = (TopByFrame {}, TopByBall {});
     let (q, v) = (Vector3::new(0.2, 0.7, -0.1), Vector3::new(0.5, -0.3, 40.0));
     let rotation_about = |axis, angle| linkwork::nalgebra::UnitQuaternion::from_axis_angle(&axis, angle);
@@ -148,7 +148,7 @@ struct Words {
 }
 
 #[test]
-fn words_for_vectors() {
+fn vector_functions_have_their_documented_values() {
     let words = Words {};
     for angle in [-1.2, 0.4, FRAC_PI_2, 2.0_f64] {
         let (q, v) = (Vector1::new(angle), Vector1::new(0.7));

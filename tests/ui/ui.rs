@@ -10,7 +10,7 @@ use std::path::Path;
 const CRATE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/../tests/trybuild/", env!("CARGO_PKG_NAME"));
 
 #[test]
-fn messages() {
+fn compile_errors_have_the_expected_messages() {
     let robots = Path::new(CRATE).join("urdf");
     fs::create_dir_all(&robots).unwrap();
     for name in ["broken_xml.urdf", "slips.urdf"] {

@@ -30,7 +30,7 @@ impl Source {
             });
             let doc = doc.collect::<Vec<_>>().join(" ");
             let first = doc.trim_matches(['"', ' ']).split(['.', ':', ';']).next()?.to_string();
-            let unit = first.split(", ").map(str::trim).find(|part| is_unit(part))?;
+            let unit = first.split(", ").map(str::trim).find(|part| is_unit_text(part))?;
             Some((f.ident.as_ref()?.to_string(), unit.to_string()))
         };
         self.item.fields.iter().filter(|f| is_parameter(f)).filter_map(documented_unit).collect()
@@ -94,7 +94,7 @@ fn is_parameter(field: &syn::Field) -> bool {
     matches!(&field.ty, syn::Type::Path(path) if path.path.is_ident("f64") || path.path.is_ident("State"))
 }
 
-fn is_unit(text: &str) -> bool {
+fn is_unit_text(text: &str) -> bool {
     let words = text.split(['/', '·', '(', ')']).map(|w| w.trim_end_matches(['²', '³']));
     !text.is_empty()
         && words.filter(|w| !w.is_empty()).all(|w| ["m", "kg", "s", "rad", "N", "J", "1"].contains(&w))
@@ -149,7 +149,7 @@ fn mechanisms_of_file(text: &str) -> Vec<Source> {
     found.collect()
 }
 
-/// Returns the mechanisms of all models that have parameters.
+/// Returns the mechanisms in the folder of models that have parameters.
 fn gallery_mechanisms() -> Vec<Source> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/src");
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -163,7 +163,7 @@ fn gallery_mechanisms() -> Vec<Source> {
 
 /// Checks that inferred units of parameters equal those in their documentation.
 #[test]
-fn units_are_those_of_the_documentation() {
+fn inferred_units_equal_those_in_the_documentation() {
     let mut compared = 0;
     for source in gallery_mechanisms() {
         let found = source.parameters_with_units();
@@ -177,7 +177,7 @@ fn units_are_those_of_the_documentation() {
     assert!(compared > 30, "{compared} units");
 }
 
-/// Returns the exponents of m, kg and s.
+/// Returns the exponents of m, kg and s in a unit.
 fn exponents_of_unit(unit: &str) -> [i32; 3] {
     let mut sum = [0; 3];
     let (mut sign, mut inside) = (1, 1);
@@ -221,7 +221,7 @@ fn exponents_of_unit(unit: &str) -> [i32; 3] {
 
 /// Replaces each occurrence of each parameter that has a unit, and checks that the mechanism is rejected.
 /// Returns the number of rejected mechanisms.
-fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
+fn check_all_rejected(text: impl Fn(&str) -> String, itself: bool) -> usize {
     let mut refused = 0;
     // Tables accept any unit, and so do the factors of their values.
     for source in gallery_mechanisms().into_iter().filter(|source| !source.has_tables()) {
@@ -242,7 +242,7 @@ fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
                 };
                 let messages = changed.unit_messages();
                 let what = format!("{}: `{}` at {k}", source.item.ident, text(parameter));
-                assert!(is_refused(&messages, parameter), "{what} ({unit}): {messages:?}");
+                assert!(is_rejected_for(&messages, parameter), "{what} ({unit}): {messages:?}");
                 refused += 1;
             }
         }
@@ -251,22 +251,22 @@ fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
 }
 
 #[test]
-fn a_factor_too_many_is_refused() {
-    let refused = refuse_all(|p| format!("{p} * {p}"), false);
+fn additional_unit_factors_are_rejected() {
+    let refused = check_all_rejected(|p| format!("{p} * {p}"), false);
     assert!(refused > 15, "{refused} mistakes");
 }
 
 /// The ratio of a parameter to itself removes the factor while the parameter is still used.
 #[test]
-fn a_factor_too_few_is_refused() {
-    let refused = refuse_all(|p| format!("{p} / {p}"), true);
+fn missing_unit_factors_are_rejected() {
+    let refused = check_all_rejected(|p| format!("{p} / {p}"), true);
     assert!(refused > 40, "{refused} mistakes");
 }
 
 /// Whether an error message names the parameter, another parameter whose unit follows from it, or the
 /// definition that may contain it. Earlier checks reject an asymmetric inertia matrix, and a loop that a
 /// wrong length locks.
-fn is_refused(messages: &[String], parameter: &str) -> bool {
+fn is_rejected_for(messages: &[String], parameter: &str) -> bool {
     let parameter = format!("`{parameter}`");
     let others = [
         "` becomes ",
@@ -280,7 +280,7 @@ fn is_refused(messages: &[String], parameter: &str) -> bool {
 
 /// Examples of the language reference that are compiled are accepted.
 #[test]
-fn the_page_of_the_language_is_accepted() {
+fn examples_of_the_language_page_are_accepted() {
     for (name, arguments, fields, expected) in PAGE {
         let found = units_of_mechanism(arguments, &format!("struct {name} {{ {fields} }}"));
         let found = found.unwrap_or_else(|messages| panic!("{name}: {messages:?}"));

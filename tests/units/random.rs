@@ -215,7 +215,7 @@ fn random_dimension(random: &mut Random) -> Dimension {
 }
 
 #[test]
-fn expressions_whose_units_fit_are_accepted() {
+fn random_expressions_with_matching_units_are_accepted() {
     let mut random = Random::new(41);
     for _ in 0..600 {
         let dimension = random_dimension(&mut random);
@@ -226,7 +226,7 @@ fn expressions_whose_units_fit_are_accepted() {
 }
 
 #[test]
-fn expressions_whose_units_do_not_fit_are_refused() {
+fn random_expressions_with_conflicting_units_are_rejected() {
     let mut random = Random::new(42);
     for _ in 0..600 {
         let dimension = random_dimension(&mut random);
@@ -238,7 +238,7 @@ fn expressions_whose_units_do_not_fit_are_refused() {
 
 /// Expressions of another dimension than that of their use are rejected.
 #[test]
-fn places_refuse_other_units() {
+fn uses_with_other_units_are_rejected() {
     let mut random = Random::new(43);
     for _ in 0..600 {
         let (kind, place) = pick_randomly(&[("rail", FORCE), ("hinge", ENERGY)], &mut random);

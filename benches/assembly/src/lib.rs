@@ -5,14 +5,14 @@
 
 use linkwork::prelude::*;
 
-/// Panda of Franka Emika without its fingers: seven joint axes in a row.
+/// Panda robot arm of Franka Emika without its fingers: seven revolute joints in series.
 #[mechanism(
     urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives,
     packed
 )]
 pub struct Panda;
 
-/// Solo 12: free body with four identical legs.
+/// Solo 12 quadruped: free base with four identical legs of three joints each.
 #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, derivatives, packed)]
 pub struct Solo12;
 
@@ -41,7 +41,7 @@ pub struct CartPole {
     push: Force,
 }
 
-/// Crank, rod and piston in a closed loop.
+/// Slider-crank: crank, rod and piston, which form a closed loop.
 #[mechanism(gravity = -9.81 * y)]
 pub struct SliderCrank {
     /// Radius of the crank, m.

@@ -1,13 +1,13 @@
 // Mechanisms of this program and of its translation to C. `build.rs` adds the arithmetic to their attributes.
 
-/// Arm with seven axes, without fingers.
+/// Panda arm with seven axes, without fingers.
 #[mechanism(
     urdf = "../../models/urdf/panda.urdf", derivatives,
     lock = ["panda_finger_joint1", "panda_finger_joint2"]
 )]
 pub struct Arm;
 
-/// Quadruped on a free base.
+/// Quadruped robot on a free base.
 #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, derivatives)]
 pub struct Quadruped;
 
@@ -30,7 +30,7 @@ pub struct Functions {
     pub pieces: Scalar,
 }
 
-/// Crank, rod and piston in a closed loop.
+/// Engine: crank, rod and piston, which form a closed loop.
 #[mechanism(gravity = -9.81 * y)]
 pub struct Engine {
     pub length: f64,

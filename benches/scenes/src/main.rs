@@ -60,7 +60,7 @@ boxes!(Boxes2, 2, 1 one 1);
 boxes!(Boxes3, 3, 1 one 2, 2 two 1);
 boxes!(Dominoes, 5, 1 one 4);
 
-/// Six balls on the ground and on each other.
+/// Six balls in contact with the ground and with each other.
 #[mechanism(gravity = -9.81 * z)]
 struct Balls {
     mass: f64,
@@ -102,7 +102,7 @@ struct Balls {
     five: [Contact; 1],
 }
 
-/// Capsules on the ground and on each other.
+/// Capsules in contact with the ground and with each other.
 #[mechanism(gravity = -9.81 * z)]
 struct Capsules4 {
     mass: f64,
@@ -181,7 +181,7 @@ struct Mixed {
     k12: Contact,
 }
 
-/// Ten boxes; each stands with the corners of its base on the top of the one below.
+/// Tower of ten boxes, each with the corners of its base on the top of the box below.
 #[mechanism(gravity = -9.81 * z)]
 struct Tower {
     #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
@@ -194,7 +194,7 @@ struct Tower {
     seat: [Contact; 9],
 }
 
-/// Reproducible random numbers.
+/// Generator of reproducible random numbers.
 struct Random(u64);
 
 impl Random {
@@ -220,7 +220,7 @@ fn thread_time() -> f64 {
 
 /// Statistics of all runs of one family of scenes.
 #[derive(Default)]
-struct Tally {
+struct SceneTally {
     runs: usize,
     errors: usize,
     nans: usize,
@@ -241,18 +241,18 @@ struct Scene<'a> {
     duration: f64,
 }
 
-/// Runs a scene, and adds it to a tally.
+/// Simulates a scene and adds its statistics to the tally of its family.
 fn run_scene<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     scene: &Scene<'_>,
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
-    tally: &mut Tally,
+    tally: &mut SceneTally,
 ) where
     M: Contacts<NQ, NV, 0, NK, NR, Scalar = f64>,
 {
-    let energy =
+    let total_energy =
         |q: &SVector<f64, NQ>, v: &SVector<f64, NV>| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
-    let (first, mut before) = (energy(&q, &v).abs().max(1e-12), f64::INFINITY);
+    let (first, mut before) = (total_energy(&q, &v).abs().max(1e-12), f64::INFINITY);
     let run = simulate(m).from(q, v).overlaps(Overlaps::Part).method(scene.method);
     let mut samples = run.sample_every(scene.h).duration(scene.duration).into_iter();
     tally.runs += 1;
@@ -273,7 +273,7 @@ fn run_scene<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usi
             tally.nans += 1;
             return;
         }
-        let energy = energy(&sample.q, &sample.v);
+        let energy = total_energy(&sample.q, &sample.v);
         tally.gain = tally.gain.max((energy - before) / first);
         before = energy;
         tally.depth = tally.depth.max(-m.contact_gaps(0.0, &sample.q).min() / scene.size);
@@ -283,7 +283,7 @@ fn run_scene<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usi
 }
 
 /// Prints the row of a family of scenes in the table.
-fn print_tally_row(name: &str, mut tally: Tally) {
+fn print_tally_row(name: &str, mut tally: SceneTally) {
     let times = &mut tally.times;
     times.sort_by(f64::total_cmp);
     let quantile_of_times =
@@ -413,7 +413,7 @@ fn fixed_scenes() {
         println!("evaluations of the dynamics in a step: {text}");
         let (mass, grade, taper, e) = (0.02, 0.0, 0.0, 0.0);
         let (a, b, c, mu) = (0.008, 0.025, 0.05, 0.3);
-        let mut tally = Tally::default();
+        let mut tally = SceneTally::default();
         run_scene(
             &build_fixed_scene("bricks", a, 1.0),
             &Boxes2 { mass, grade, a, b, c, taper, mu, e },
@@ -421,7 +421,7 @@ fn fixed_scenes() {
             &mut tally,
         );
         print_tally_row("bricks", tally);
-        let mut tally = Tally::default();
+        let mut tally = SceneTally::default();
         run_scene(
             &build_fixed_scene("dominoes", a, 1.0),
             &Dominoes { mass, grade, a, b, c, taper, mu, e },
@@ -436,14 +436,14 @@ fn fixed_scenes() {
             set_body_pose(&mut q, k, [0.05 * s, 0.03 * s, 0.3 + 0.35 * s], [0.3 + 0.1 * s, 0.2, 0.1, 1.0]);
             v[6 * k + 3] = 1.0 + s;
         }
-        let mut tally = Tally::default();
+        let mut tally = SceneTally::default();
         run_scene(&build_fixed_scene("tumbling", 0.1, 1.5), &m, (q, v), &mut tally);
         print_tally_row("tumbling", tally);
         let mut q = Tower {}.neutral();
         for k in 0..10 {
             (q[7 * k], q[7 * k + 2]) = (0.02 * ((k % 3) as f64 - 1.0), 0.05 + 0.1 * k as f64);
         }
-        let mut tally = Tally::default();
+        let mut tally = SceneTally::default();
         run_scene(&build_fixed_scene("tower", 0.1, 0.2), &Tower {}, (q, SVector::zeros()), &mut tally);
         print_tally_row("tower", tally);
     }
@@ -454,7 +454,7 @@ fn random_scenes(count: u64, first: u64, which: &str) {
     macro_rules! family {
         ($name:ident, $n:tt, $nq:tt, $nv:tt, |$random:ident, $mu:ident, $e:ident, $grade:ident| $scene:expr) => {
             if which.is_empty() || which == stringify!($name) {
-                let mut tally = Tally::default();
+                let mut tally = SceneTally::default();
                 for seed in first..first + count {
                     let mut random = Random(seed.wrapping_mul(7919).wrapping_add(13));
                     (0..5).for_each(|_| _ = random.next());

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::{env, fs};
 
-/// Functions that generated functions may call in addition to each other.
+/// Names of functions that generated functions may call in addition to generated functions.
 const DOCUMENTED: [&str; 18] = [
     // Copy large results, and fill them with zeros.
     "memcpy",
@@ -59,7 +59,7 @@ fn main() -> ExitCode {
 
 /// Prints the tables. Returns an error for an undocumented call.
 fn print_tables(flags: &str) -> Result<(), String> {
-    let (text, object) = build(flags)?;
+    let (text, object) = build_package(flags)?;
     let (routines, bytes) = (parse_routines(&text), function_sizes(&object)?);
     let (generated, others): (Vec<&String>, Vec<&String>) =
         routines.keys().partition(|symbol| mechanism_and_function_names(symbol).is_some());
@@ -137,7 +137,7 @@ fn format_table_row(
 }
 
 /// Compiles the package and returns its assembly and its object file.
-fn build(flags: &str) -> Result<(String, Vec<u8>), String> {
+fn build_package(flags: &str) -> Result<(String, Vec<u8>), String> {
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("assembly");
     let folder = env::var_os("CARGO_TARGET_DIR").map_or(package.join("../../target"), PathBuf::from);
     let folder = folder.join(if flags.is_empty() { "assembly" } else { "assembly-native" });
@@ -163,7 +163,7 @@ fn build(flags: &str) -> Result<(String, Vec<u8>), String> {
 
 /// Returns the size of every function in an object file, bytes.
 fn function_sizes(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
-    let file = object::File::parse(object).map_err(|error| error.to_string())?;
+    let file = object::File::parse_source(object).map_err(|error| error.to_string())?;
     let symbols = file.symbols();
     Ok(symbols.filter_map(|symbol| Some((symbol.name().ok()?.to_string(), symbol.size()))).collect())
 }
@@ -203,7 +203,7 @@ fn undocumented_calls(symbols: &BTreeSet<&str>, routines: &BTreeMap<String, Rout
     wrong
 }
 
-/// Returns the last segment of a name's path.
+/// Returns the last segment of a symbol's path, the name of the function.
 fn last_path_segment(symbol: &str) -> String {
     let name = name_in_source(symbol);
     name.rsplit("::").next().unwrap_or(&name).to_string()

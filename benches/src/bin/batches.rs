@@ -14,13 +14,13 @@ use linkwork_benches::random::Random;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// Time for the measurement of each function.
+/// Processor time spent on the measurement of each function.
 const BUDGET: Duration = Duration::from_millis(400);
 
 /// Number of states that the calls cycle through, which fit into the fastest cache.
 const STATES: usize = 64;
 
-/// Number of states of the arrays.
+/// Number of states in the arrays that batch functions process.
 const ARRAYS: usize = 4096;
 
 #[mechanism(urdf = "../models/urdf/ur5.urdf", batch)]
@@ -49,7 +49,7 @@ fn main() {
     measure_state_arrays("Panda", &Panda);
 }
 
-/// Packs the states into lanes, `L` states each.
+/// Packs states into SIMD lanes, `L` states in each vector.
 fn pack_into_lanes<const L: usize, const N: usize>(
     states: &[SVector<f64, N>],
 ) -> Vec<SVector<Lanes<f64, L>, N>> {
@@ -58,7 +58,7 @@ fn pack_into_lanes<const L: usize, const N: usize>(
     states.chunks_exact(L).map(pack_group_into_lanes).collect()
 }
 
-/// States as single vectors, and packed into 4 and 8 lanes.
+/// States as single vectors, and packed into SIMD vectors of 4 and 8 lanes.
 type States<const N: usize> =
     (Vec<SVector<f64, N>>, Vec<SVector<Lanes<f64, 4>, N>>, Vec<SVector<Lanes<f64, 8>, N>>);
 
@@ -95,7 +95,7 @@ where
     row!("forward dynamics", forward_dynamics(q, v, v));
 }
 
-/// Returns the nanoseconds per state for calls with one, four and eight states.
+/// Returns the times per state of calls for one, four and eight states, ns.
 fn nanoseconds_per_state(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
     let mut calls = calls.into_iter().zip([1, 4, 8]).collect::<Vec<_>>();
     let mut best = [Duration::MAX; 3];

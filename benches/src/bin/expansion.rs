@@ -48,7 +48,7 @@ const SPRINGS: [usize; 4] = [10, 100, 300, 1000];
 const PLACED: [usize; 5] = [4, 8, 16, 32, 64];
 const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
-/// Returns name, target time and text of every mechanism.
+/// Returns the name, the target time and the source text of every measured mechanism.
 fn mechanism_sources() -> Vec<(String, &'static str, Source)> {
     let named_mechanism_source = |name: &str, goal, item: &str| {
         let arguments = "gravity = -g * y".to_string();
@@ -79,8 +79,8 @@ fn mechanism_sources() -> Vec<(String, &'static str, Source)> {
     list
 }
 
-/// Command of the child process that prints one line. The number of the mechanism and the path of the library
-/// follow it.
+/// Command of the child process that prints one line of the table, followed by the mechanism's number and the
+/// library's path.
 const LINE: &str = "line";
 
 fn main() -> ExitCode {
@@ -102,7 +102,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Prints the table line of mechanism `k`.
+/// Compiles mechanism `k` and prints its line of the table.
 fn print_line(k: usize, rlib: &str) -> Result<(), Box<dyn Error>> {
     let mechanisms = mechanism_sources();
     let (name, goal, source) = mechanisms.get(k).ok_or("there is no such mechanism")?;
@@ -134,7 +134,7 @@ fn print_mechanism_table(first: usize, last: usize) -> Result<(), Box<dyn Error>
     Ok(())
 }
 
-/// Returns the table line of a mechanism.
+/// Returns the line of the table with the measured costs of a mechanism.
 fn format_mechanism_line(
     name: &str,
     goal: &str,

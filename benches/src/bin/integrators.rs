@@ -3,11 +3,11 @@
 //! `peers/run integrators` compares it.
 
 use linkwork::integrate::{DormandPrince, DormandPrince8, Error, Rodas};
-use linkwork_benches::precision::{Found, PROBLEMS, solve_problem};
+use linkwork_benches::precision::{IntegrationResult, PROBLEMS, solve_problem};
 
-fn print(problem: usize, method: &str, tolerance: f64, found: Result<Found, Error>) {
+fn print_result_row(problem: usize, method: &str, tolerance: f64, found: Result<IntegrationResult, Error>) {
     match found {
-        Ok(Found { q, evaluations, derivatives, seconds }) => {
+        Ok(IntegrationResult { q, evaluations, derivatives, seconds }) => {
             let q: Vec<String> = q.iter().map(|x| format!("{x:e}")).collect();
             println!(
                 "{problem} {method} {tolerance:e} {evaluations} {derivatives} {seconds:e} {}",
@@ -25,10 +25,10 @@ fn main() {
             let rodas = Rodas::new().tolerance(tolerance, tolerance);
             let explicit = DormandPrince::new().tolerance(tolerance, tolerance);
             let high = DormandPrince8::new().tolerance(tolerance, tolerance);
-            print(problem, "DormandPrince", tolerance, solve_problem(problem, explicit));
-            print(problem, "DormandPrince8", tolerance, solve_problem(problem, high));
+            print_result_row(problem, "DormandPrince", tolerance, solve_problem(problem, explicit));
+            print_result_row(problem, "DormandPrince8", tolerance, solve_problem(problem, high));
             if power <= 9 {
-                print(problem, "Rodas", tolerance, solve_problem(problem, rodas));
+                print_result_row(problem, "Rodas", tolerance, solve_problem(problem, rodas));
             }
         }
     }

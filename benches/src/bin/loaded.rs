@@ -16,11 +16,11 @@ use linkwork_jit::{Error, Function, Loader, Robot};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::hint::black_box;
 
-/// Number of states that the calls cycle through.
+/// Number of states that the measured calls cycle through.
 const STATES: usize = 64;
-/// Processor time for the measurement of each function, s.
+/// Processor time spent on the measurement of each function, s.
 const BUDGET: f64 = 0.3;
-/// Largest difference between results, relative to the largest entry.
+/// Largest accepted difference between results, relative to the largest entry.
 const TOLERANCE: f64 = 1e-9;
 
 fn main() -> Result<(), Error> {
@@ -38,7 +38,7 @@ fn main() -> Result<(), Error> {
     print_robot_rows("g1", "g1", "base = free", &G1)
 }
 
-/// A state: configuration, velocity, and acceleration or force.
+/// A sample state: configuration, velocity, and acceleration or force.
 type Sample<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
 
 /// Prints the rows of a robot: each function loaded at run time and compiled in.
@@ -97,7 +97,7 @@ struct Comparison<'a, const NQ: usize, const NV: usize> {
 }
 
 impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
-    /// Measures one function loaded and compiled in, and prints its row.
+    /// Measures one function both loaded at run time and compiled into the program, and prints its row.
     fn print_function_row<T>(
         &self,
         function: &str,

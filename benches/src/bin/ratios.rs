@@ -1,4 +1,5 @@
-//! Table of generated functions and the generic implementation.
+//! Benchmark that prints the times of generated functions and of the generic implementation, with their
+//! ratios.
 //!
 //! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin ratios`, or without the
 //! flag for the default target. The values are nanoseconds per call: the minimum over many batches, in which
@@ -8,7 +9,7 @@ use linkwork_benches::pairs::{Pair, benchmark_robots};
 use linkwork_benches::states::STATES;
 use std::time::{Duration, Instant};
 
-/// Time for the measurement of each function.
+/// Processor time spent on the measurement of each function.
 const BUDGET: Duration = Duration::from_millis(700);
 
 fn main() {
@@ -39,7 +40,7 @@ fn main() {
     }
 }
 
-/// Returns the nanoseconds per call of both implementations.
+/// Returns the times of the generated and of the generic implementation, ns per call.
 fn measure_pair(pair: &mut Pair) -> (f64, f64) {
     let (mut generated, mut generic) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();

@@ -11,10 +11,10 @@ use std::array::from_fn;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// Time for the measurement of each number of angles.
+/// Processor time spent on the measurement of each number of angles.
 const BUDGET: Duration = Duration::from_millis(300);
 
-/// Number of configurations that the calls cycle through.
+/// Number of configurations that the measured calls cycle through.
 const STATES: usize = 64;
 
 /// Largest angle at which sines and cosines are compared, rad.

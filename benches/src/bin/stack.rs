@@ -11,11 +11,11 @@ use linkwork_benches::random::Random;
 use std::hint::black_box;
 use std::thread;
 
-/// Size of the filled part of the stack, bytes.
+/// Size of the part of the stack that is filled with the pattern, bytes.
 const PAINTED: usize = 6 << 20;
 /// Reserve for the filling function itself, bytes: smaller values cannot be measured.
 const MARGIN: usize = 512;
-/// Size of the stack of the measuring thread, bytes.
+/// Size of the stack of the thread that is measured, bytes.
 const STACK: usize = PAINTED + (2 << 20);
 /// Byte pattern that fills the unused stack, so that the deepest use can be found.
 const PAINT: u8 = 0xA5;
@@ -61,7 +61,7 @@ fn print_stack_table() {
     robot!("humanoid", Humanoid);
 }
 
-/// Returns a random state.
+/// Returns a random configuration, velocity and acceleration of a mechanism.
 fn random_state<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
 ) -> (SVector<f64, NQ>, SVector<f64, NV>)
@@ -115,7 +115,7 @@ fn stack_usage_of_call(call: &mut dyn FnMut()) -> usize {
     top - lowest_overwritten_address(top)
 }
 
-/// Fills the stack below an address with the pattern.
+/// Fills the stack below an address with the byte pattern.
 #[inline(never)]
 #[expect(unsafe_code, reason = "the stack below this function belongs to the thread, and nobody uses it")]
 fn paint_stack(top: usize) {

@@ -7,15 +7,15 @@ use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::library::{self, Rows};
-use linkwork_benches::peers::own::{Call, Flat, Own};
+use linkwork_benches::peers::own::{Call, Flat, GeneratedContender};
 use linkwork_benches::peers::turns::{TOLERANCE, measure_in_turns, remove_disagreeing};
 use linkwork_benches::states::{STATES, State, random_states};
 use std::path::Path;
 use std::rc::Rc;
 
-/// Step size, s.
+/// Step size of the measured integration steps, s.
 const PERIOD: f64 = 0.01;
-/// Time for the measurement of each implementation, s.
+/// Processor time spent on the measurement of each implementation, s.
 const BUDGET: f64 = 0.2;
 
 #[mechanism(urdf = "../models/urdf/ur5.urdf", passive = ignore, second_derivatives)]
@@ -32,7 +32,7 @@ struct Ur5;
 struct PandaArm;
 
 /// Returns `[A B]` of a step under joint torques: the columns of `q`, `v` and `τ`.
-fn step<M, const N: usize>(m: &M, s: &State<N, N>) -> [[SMatrix<f64, N, N>; 2]; 3]
+fn step_jacobian<M, const N: usize>(m: &M, s: &State<N, N>) -> [[SMatrix<f64, N, N>; 2]; 3]
 where
     M: Derivatives<N, N, N, Scalar = f64>,
 {
@@ -41,35 +41,35 @@ where
 }
 
 /// Blocks in a column, as a list of matrix columns.
-struct Stacked<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
+struct StackedBlocks<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
 
-impl<const N: usize> Flat for Stacked<N> {
+impl<const N: usize> Flat for StackedBlocks<N> {
     fn flat(&self) -> Vec<f64> {
         let columns = self.0.iter().flat_map(|[q, v]| q.column_iter().zip(v.column_iter()));
         columns.flat_map(|(q, v)| q.iter().chain(v.iter()).copied().collect::<Vec<f64>>()).collect()
     }
 }
 
-/// Returns a function of Linkwork as a contender.
+/// Returns an integration step of Linkwork as a contender of the comparison.
 fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
     mechanism: M,
     states: &Rc<Vec<State<N, N>>>,
     call: Call<M, R, N, N>,
 ) -> Box<dyn Contender> {
     let (owner, name, states) = (Owner::Linkwork, Function::Step.function_name(), states.clone());
-    Box::new(Own { owner, mechanism, states, name, call })
+    Box::new(GeneratedContender { owner, mechanism, states, name, call })
 }
 
-/// Result of a call whose values are not compared.
-struct Unread<R>(R);
+/// Result of a contender whose values are not compared with those of the others.
+struct UnreadResult<R>(R);
 
-impl<R> Flat for Unread<R> {
+impl<R> Flat for UnreadResult<R> {
     fn flat(&self) -> Vec<f64> {
         Vec::new()
     }
 }
 
-/// Returns the nanoseconds per call of each function, measured in turns.
+/// Returns the times per call of each function, ns, measured in turns.
 fn nanoseconds_per_call(mut of: Vec<Box<dyn Contender>>) -> Vec<f64> {
     measure_in_turns(&mut of, STATES, BUDGET).iter().map(|measured| measured.time).collect()
 }
@@ -92,7 +92,7 @@ where
             let path = folder.join(name).join(format!("step_{file}.so"));
             all.extend(library::casadi_function(&path, Function::Step, rows));
         }
-        all.push(linkwork_contender(m, &states, |m, s| Stacked(step(m, s))));
+        all.push(linkwork_contender(m, &states, |m, s| StackedBlocks(step_jacobian(m, s))));
         let wrong = remove_disagreeing(&mut all, name, (2 * N, STATES), TOLERANCE);
         if !wrong.is_empty() {
             return Err(wrong.join("\n"));
@@ -108,20 +108,22 @@ where
         );
     }
     let found = nanoseconds_per_call(vec![
-        linkwork_contender(m, &states, |m, s| Unread(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))),
         linkwork_contender(m, &states, |m, s| {
-            Unread(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))
+            UnreadResult(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))
         }),
         linkwork_contender(m, &states, |m, s| {
-            Unread(m.forward_dynamics_derivatives(0.0, &s.q, &s.v, &s.tau))
+            UnreadResult(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))
         }),
         linkwork_contender(m, &states, |m, s| {
-            Unread(m.forward_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.tau, &s.a))
+            UnreadResult(m.forward_dynamics_derivatives(0.0, &s.q, &s.v, &s.tau))
         }),
-        linkwork_contender(m, &states, |m, s| Unread(step(m, s))),
+        linkwork_contender(m, &states, |m, s| {
+            UnreadResult(m.forward_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.tau, &s.a))
+        }),
+        linkwork_contender(m, &states, |m, s| UnreadResult(step_jacobian(m, s))),
         linkwork_contender(m, &states, |m, s| {
             let factors = (&s.a, &s.tau);
-            Unread(discrete::second_order(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau, factors))
+            UnreadResult(discrete::second_order(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau, factors))
         }),
     ]);
     for (what, pair) in ["inverse dynamics", "forward dynamics", "step"].iter().zip(found.chunks_exact(2)) {

@@ -6,14 +6,14 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 /// Twist (velocity of the origin, angular velocity) or wrench (force, moment about the origin).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spatial {
-    /// Linear velocity of the origin, or force.
+    /// Linear part of a spatial vector: velocity of the origin, or force.
     pub linear: Vector3<f64>,
-    /// Angular velocity, or moment about the origin.
+    /// Angular part of a spatial vector: angular velocity, or moment about the origin.
     pub angular: Vector3<f64>,
 }
 
 impl Spatial {
-    /// Creates a spatial vector from its two parts.
+    /// Creates a spatial vector from its linear and angular parts.
     pub fn new(linear: Vector3<f64>, angular: Vector3<f64>) -> Spatial {
         Spatial { linear, angular }
     }
@@ -96,7 +96,7 @@ impl Mul<f64> for Spatial {
     }
 }
 
-/// Placement of a child frame in a parent frame.
+/// Placement of a child frame relative to its parent frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// Rotation matrix whose columns are the child's axes in the parent's.
@@ -111,12 +111,12 @@ impl Placement {
         Placement { rotation, translation }
     }
 
-    /// Returns the placement of a frame in itself.
+    /// Returns the identity placement.
     pub fn identity() -> Placement {
         Placement::new(Matrix3::identity(), Vector3::zeros())
     }
 
-    /// Composes this placement with another one in the child frame.
+    /// Returns the composition of this placement with a placement in its child frame.
     pub fn compose_with(&self, next: &Placement) -> Placement {
         Placement::new(self.rotation * next.rotation, self.translation + self.rotation * next.translation)
     }
@@ -148,14 +148,14 @@ impl Placement {
     }
 }
 
-/// Rigid-body inertia about a frame's origin.
+/// Rigid-body inertia about the origin of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
-    /// Mass, kg.
+    /// Mass of the body, kg.
     pub mass: f64,
-    /// Mass times centre of mass, kg·m.
+    /// First moment of the body: mass times centre of mass, kg·m.
     pub moment: Vector3<f64>,
-    /// Inertia tensor about the origin, kg·m².
+    /// Inertia tensor of the body about the origin of the frame, kg·m².
     pub tensor: Matrix3<f64>,
 }
 
@@ -166,7 +166,7 @@ impl Inertia {
     }
 
     /// Returns the inertia of a body with its centre of mass at `c` and an inertia tensor about it.
-    pub fn of_body(mass: f64, c: Vector3<f64>, central: Matrix3<f64>) -> Inertia {
+    pub fn inertia_of_body(mass: f64, c: Vector3<f64>, central: Matrix3<f64>) -> Inertia {
         Inertia {
             mass,
             moment: c * mass,
@@ -183,7 +183,7 @@ impl Inertia {
     }
 
     /// Transforms the inertia to the parent's origin and axes.
-    pub fn to_parent(&self, placement: &Placement) -> Inertia {
+    pub fn inertia_in_parent(&self, placement: &Placement) -> Inertia {
         let (r, p) = (&placement.rotation, &placement.translation);
         let h = r * self.moment;
         let s = h + p * (0.5 * self.mass);
@@ -229,7 +229,7 @@ impl Articulated {
         Spatial::new(self.m * a.linear + self.h.tr_mul(&a.angular), self.h * a.linear + self.i * a.angular)
     }
 
-    /// Returns `IA − U Uᵀ / D`.
+    /// Returns the articulated inertia after elimination of a joint: `IA − U Uᵀ / D`.
     pub fn subtract_rank_one(&self, u: &Spatial, inverse: f64) -> Articulated {
         let scaled = *u * inverse;
         Articulated {
@@ -240,7 +240,7 @@ impl Articulated {
     }
 
     /// Transforms the articulated inertia to the parent's origin and axes.
-    pub fn to_parent(&self, placement: &Placement) -> Articulated {
+    pub fn inertia_in_parent(&self, placement: &Placement) -> Articulated {
         let r = &placement.rotation;
         let rotate_matrix = |x: &Matrix3<f64>| r * x * r.transpose();
         let p = placement.translation.cross_matrix();

@@ -8,9 +8,9 @@ use roxmltree::{Document, Node};
 /// Options for reading a robot file. Mimic joints are read as independent joints.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options<'a> {
-    /// Whether the base is free.
+    /// Whether the robot's base is free instead of fixed.
     pub free: bool,
-    /// Names of joints that are locked at zero.
+    /// Names of the joints that are locked at the coordinate zero.
     pub lock: &'a [&'a str],
 }
 
@@ -25,7 +25,7 @@ pub fn read_urdf(text: &str, options: &Options<'_>) -> Result<Model, String> {
     let is_child =
         |link: &Node<'_, '_>| joints.iter().any(|j| link_at_joint_end(j, "child") == link.attribute("name"));
     let root = links.iter().find(|link| !is_child(link)).ok_or("no root link")?;
-    let mut reader = Reader {
+    let mut reader = UrdfReader {
         joints: &joints,
         links: &links,
         lock: options.lock,
@@ -48,14 +48,14 @@ fn link_at_joint_end<'a>(joint: &Node<'a, '_>, which: &str) -> Option<&'a str> {
     node.attribute("link")
 }
 
-struct Reader<'a, 'd, 'i> {
+struct UrdfReader<'a, 'd, 'i> {
     joints: &'a [Node<'d, 'i>],
     links: &'a [Node<'d, 'i>],
     lock: &'a [&'a str],
     model: Model,
 }
 
-impl Reader<'_, '_, '_> {
+impl UrdfReader<'_, '_, '_> {
     /// Adds a moving link of zero mass, and returns its index.
     fn add(&mut self, parent: Option<usize>, placement: Placement, motion: Motion) -> usize {
         let (nq, nv) = motion.coordinate_counts();
@@ -72,7 +72,7 @@ impl Reader<'_, '_, '_> {
         let node = self.links.iter().find(|n| n.attribute("name") == Some(name));
         let node = node.ok_or_else(|| format!("no link `{name}`"))?;
         if let (Some(at), Some(inertial)) = (at, node.children().find(|n| n.has_tag_name("inertial"))) {
-            self.model.links[at].inertia += read_inertia(&inertial)?.to_parent(&placement);
+            self.model.links[at].inertia += read_inertia(&inertial)?.inertia_in_parent(&placement);
         }
         for joint in self.joints.iter().filter(|j| link_at_joint_end(j, "parent") == Some(name)) {
             let child = link_at_joint_end(joint, "child").ok_or("a joint without child")?;
@@ -132,8 +132,8 @@ fn read_inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
     }
     let [xx, xy, xz, yy, yz, zz] = entries;
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    let central = Inertia::of_body(mass, Vector3::zeros(), tensor);
-    Ok(central.to_parent(&read_origin(inertial)?))
+    let central = Inertia::inertia_of_body(mass, Vector3::zeros(), tensor);
+    Ok(central.inertia_in_parent(&read_origin(inertial)?))
 }
 
 fn read_number_attribute(node: &Node<'_, '_>, key: &str) -> Result<f64, String> {

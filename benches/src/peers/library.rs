@@ -1,4 +1,4 @@
-//! Peers as contenders: functions of shared libraries.
+//! Contenders of the comparison that are functions of shared libraries.
 //!
 //! A library with algorithms for any robot (`peers/pinocchio.cpp`, `peers/rust`) exports
 //!
@@ -18,19 +18,19 @@ use libloading::Library;
 use std::ffi::{CString, c_char, c_int, c_longlong, c_void};
 use std::path::Path;
 
-type Open = unsafe extern "C" fn(*const c_char, *const f64, usize, usize) -> *mut c_void;
-type Step = unsafe extern "C" fn(*mut c_void, usize);
-type FindStep = unsafe extern "C" fn(*mut c_void, usize, usize) -> Option<Step>;
+type OpenFunction = unsafe extern "C" fn(*const c_char, *const f64, usize, usize) -> *mut c_void;
+type StepFunction = unsafe extern "C" fn(*mut c_void, usize);
+type FindStep = unsafe extern "C" fn(*mut c_void, usize, usize) -> Option<StepFunction>;
 type TakeResult = unsafe extern "C" fn(*mut c_void, usize, usize, *mut f64);
 
 /// States for the calls, as a matrix with one row of numbers per state.
 #[derive(Clone, Copy)]
 pub struct Rows<'a> {
-    /// Number of coordinates.
+    /// Number of coordinates of the robot.
     pub nq: usize,
-    /// Number of velocities.
+    /// Number of velocities of the robot.
     pub nv: usize,
-    /// Rows of `q`, `v`, `a` and `τ`.
+    /// Numbers of all states: rows of `q`, `v`, `a` and `τ`.
     pub numbers: &'a [f64],
 }
 
@@ -44,13 +44,13 @@ impl Rows<'_> {
     }
 }
 
-/// Robot of a library with algorithms for any robot.
+/// Robot of a peer library with general algorithms.
 struct Peer {
     owner: Owner,
     function: usize,
     variant: usize,
     robot: *mut c_void,
-    step: Step,
+    step: StepFunction,
     take: TakeResult,
     states: usize,
     size: usize,
@@ -64,21 +64,21 @@ pub fn peers_of_library(
     function: Function,
     rows: Rows<'_>,
 ) -> Vec<Box<dyn Contender>> {
-    let offered = load(path).and_then(|library| {
+    let offered = load_shared_library(path).and_then(|library| {
         let folder = CString::new(folder.to_str()?).ok()?;
         // SAFETY: the types are those that the documentation of this file states, and the sources in `peers`
         // have them.
         unsafe {
-            let open: Open = *library.get(b"peer_open\0").ok()?;
+            let open: OpenFunction = *library.get(b"peer_open\0").ok()?;
             let find: FindStep = *library.get(b"peer_step\0").ok()?;
             let take: TakeResult = *library.get(b"peer_result\0").ok()?;
             let robot = open(folder.as_ptr(), rows.numbers.as_ptr(), rows.numbers.len(), rows.row_count());
             let (states, size) = (rows.row_count(), function.column_count(rows.nv) * rows.nv);
             let number = function as usize;
             let steps = (0..).map_while(|variant| find(robot, number, variant)).enumerate();
-            let peer =
+            let peer_of_variant =
                 |(variant, step)| Peer { owner, function: number, variant, robot, step, take, states, size };
-            Some(if robot.is_null() { Vec::new() } else { steps.map(peer).collect() })
+            Some(if robot.is_null() { Vec::new() } else { steps.map(peer_of_variant).collect() })
         }
     });
     let boxed = offered.unwrap_or_default().into_iter();
@@ -122,7 +122,7 @@ struct Casadi {
     call: Generated,
     /// Pointers to `q`, `v` and the third argument of every state.
     arguments: Vec<[*const f64; 3]>,
-    /// Pointers of one call; CasADi writes after the first three.
+    /// Argument pointers of one call of CasADi's code, which writes results behind the first three.
     given: Vec<*const f64>,
     out: Vec<f64>,
     results: Vec<*mut f64>,
@@ -133,7 +133,7 @@ struct Casadi {
 /// Returns the function of a library that was compiled from C by CasADi. The states must live as long as the
 /// library.
 pub fn casadi_function(path: &Path, function: Function, rows: Rows<'static>) -> Option<Box<dyn Contender>> {
-    let library = load(path)?;
+    let library = load_shared_library(path)?;
     // SAFETY: CasADi documents these types for the functions that it generates.
     let (call, [arguments, results, integers, numbers]) = unsafe {
         let work: Work = *library.get(b"f_work\0").ok()?;
@@ -193,8 +193,8 @@ impl Contender for Casadi {
     }
 }
 
-/// Loads a library, which is never unloaded.
-fn load(path: &Path) -> Option<&'static Library> {
+/// Loads a shared library, which is never unloaded.
+fn load_shared_library(path: &Path) -> Option<&'static Library> {
     if !path.exists() {
         return None;
     }

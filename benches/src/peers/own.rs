@@ -1,4 +1,4 @@
-//! Implementation of contenders by generated functions.
+//! Contenders of the comparison that call generated functions.
 
 use super::code;
 use super::contender::{Contender, Owner};
@@ -10,21 +10,21 @@ use std::rc::Rc;
 /// Closure type that calls one function of the mechanism `M` at a state.
 pub type Call<M, R, const NQ: usize, const NV: usize> = fn(&M, &State<NQ, NV>) -> R;
 
-/// Generated function with its mechanism.
-pub struct Own<M, R, const NQ: usize, const NV: usize> {
+/// Contender that calls a generated function of a mechanism.
+pub struct GeneratedContender<M, R, const NQ: usize, const NV: usize> {
     /// Variant of the generated code: with or without parameters.
     pub owner: Owner,
     /// Mechanism whose function is called.
     pub mechanism: M,
     /// States at which the function is called.
     pub states: Rc<Vec<State<NQ, NV>>>,
-    /// Name of the function.
+    /// Name of the generated function that is called.
     pub name: &'static str,
-    /// Closure that calls the function.
+    /// Closure that calls the generated function.
     pub call: Call<M, R, NQ, NV>,
 }
 
-impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for Own<M, R, NQ, NV> {
+impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for GeneratedContender<M, R, NQ, NV> {
     fn owner(&self) -> Owner {
         self.owner
     }
@@ -50,20 +50,20 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for Own<M, R, NQ, N
 }
 
 /// Generated function that writes its results to `K` matrices with permanent zeros.
-pub struct Keeping<M, const NQ: usize, const NV: usize, const K: usize> {
+pub struct MatrixContender<M, const NQ: usize, const NV: usize, const K: usize> {
     /// Mechanism whose function is called.
     pub mechanism: M,
     /// States at which the function is called.
     pub states: Rc<Vec<State<NQ, NV>>>,
-    /// Name of the function.
+    /// Name of the generated function that is called.
     pub name: &'static str,
-    /// Closure that calls the function.
+    /// Closure that calls the generated function and writes its matrices.
     pub call: fn(&M, &State<NQ, NV>, &mut [SMatrix<f64, NV, NV>; K]),
-    /// Matrices of the results.
+    /// Matrices to which the generated function writes its results.
     pub matrices: [SMatrix<f64, NV, NV>; K],
 }
 
-impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for Keeping<M, NQ, NV, K> {
+impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixContender<M, NQ, NV, K> {
     fn owner(&self) -> Owner {
         Owner::Kept
     }

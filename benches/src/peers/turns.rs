@@ -1,27 +1,27 @@
-//! Compares the results of contenders, and measures their times in turns.
+//! Comparison of the results of contenders, and measurement of their times in turns.
 
 use super::clock;
 use super::contender::{Contender, Owner};
 
-/// Tolerance of results, relative to one plus the largest number of the column.
+/// Tolerance between results of contenders, relative to one plus the largest number of the column.
 pub const TOLERANCE: f64 = 1e-9;
 /// Duration of one measurement, s, which is long enough that reading the clock costs nothing.
 const BATCH: f64 = 1e-4;
 
-/// Result of a contender's measurement.
+/// Measured time and code size of a contender.
 pub struct Measured {
-    /// Owner of the implementation.
+    /// Library that the contender belongs to.
     pub owner: Owner,
-    /// Variant among the owner's implementations.
+    /// Variant of the contender among the implementations of one library.
     pub variant: String,
-    /// Time per call, ns.
+    /// Processor time per call, ns.
     pub time: f64,
-    /// Bytes of machine code.
+    /// Size of the contender's machine code, bytes.
     pub bytes: Option<u64>,
 }
 
-/// Removes contenders that differ from the first one (Pinocchio if present). Returns a message for each of
-/// Linkwork's own.
+/// Removes contenders whose results differ from those of the first one (Pinocchio if present). Returns a
+/// message for each removed contender of Linkwork.
 pub fn remove_disagreeing(
     contenders: &mut Vec<Box<dyn Contender>>,
     what: &str,

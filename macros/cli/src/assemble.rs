@@ -6,7 +6,7 @@ use linkwork_jit::Robot;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Number of steps in which the given entries move to their values.
+/// Number of steps in which prescribed configuration entries move to their values.
 const STEPS: u8 = 40;
 /// Maximum difference of an angle from half a revolution that rounding explains, rad.
 const ROUNDING: f64 = 1e-12;
@@ -21,13 +21,13 @@ pub struct Assembly<'a, 'g> {
     pub model: &'a Model<'g>,
 }
 
-/// Returns the indices of the entries that are true.
+/// Returns the indices of the marks that are true.
 fn marked_indices(marks: &[bool]) -> Vec<usize> {
     (0..marks.len()).filter(|k| marks[*k]).collect()
 }
 
 /// Returns a number from −1 to 1 of a sequence that does not repeat (multiples of irrational fractions).
-fn perturbation(attempt: u8, k: usize) -> f64 {
+fn perturbation_of_guess(attempt: u8, k: usize) -> f64 {
     2.0 * (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract() - 1.0
 }
 
@@ -86,7 +86,7 @@ impl Assembly<'_, '_> {
         let n = self.model.nv();
         let mut unreached = [vec![true; n], vec![true; n]];
         for size in [0.0, 0.1] {
-            let dv: Vec<f64> = (0..n).map(|k| size * perturbation(1, k)).collect();
+            let dv: Vec<f64> = (0..n).map(|k| size * perturbation_of_guess(1, k)).collect();
             let Ok(near) = self.robot.integrate(q, &dv) else { continue };
             let near = near.as_slice();
             let Some(jacobian) = self.evaluate_function("constraint_jacobian", &[("q", near)]) else {
@@ -153,7 +153,7 @@ impl Assembly<'_, '_> {
             let mut from = q.to_vec();
             let size = 0.02 * f64::from(attempt);
             for (k, x) in from.iter_mut().enumerate().filter(|(k, _)| !given[*k]) {
-                *x += size * perturbation(attempt, k);
+                *x += size * perturbation_of_guess(attempt, k);
             }
             crate::motion::normalise_quaternions(self.model, &mut from).ok()?;
             let found = self.robot.least_violation(&from, &held).ok()?.as_slice().to_vec();
@@ -193,7 +193,7 @@ impl Assembly<'_, '_> {
         })
     }
 
-    /// Whether a configuration satisfies the constraints.
+    /// Whether a configuration satisfies the holonomic constraints.
     fn satisfies_constraints(&self, q: &[f64]) -> bool {
         let left = self.evaluate_function("constraint_residuals", &[("q", q)]);
         left.is_some_and(|left| left.iter().all(|x| x.abs() <= SATISFIED))

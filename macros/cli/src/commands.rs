@@ -13,21 +13,21 @@ pub fn linkwork_command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(
-            with_input(Command::new("check").about("Lists every error with its position")).arg(json_switch()),
+            add_input(Command::new("check").about("Lists every error with its position")).arg(json_switch()),
         )
         .subcommand(
-            with_input(
+            add_input(
                 Command::new("show")
                     .about("Prints coordinates, units, structure, equations and operation counts"),
             )
             .arg(json_switch()),
         )
         .subcommand(
-            with_motion(with_input(Command::new("simulate").about(
+            add_motion_options(add_input(Command::new("simulate").about(
                 "Simulates a motion and prints it as comma-separated values: t, q.…, v.…, u.… (with `--out \
                  NAME.mcap` as a log for robotics tools)",
             )))
-            .arg(out_file()),
+            .arg(out_file_argument()),
         )
         .subcommand(view_command())
         .subcommand(
@@ -47,10 +47,10 @@ pub fn linkwork_command() -> Command {
                 ),
         )
         .subcommand(
-            with_input(
+            add_input(
                 Command::new("convert").about("Converts a robot file to a Rust struct"),
             )
-            .arg(out_file()),
+            .arg(out_file_argument()),
         )
         .subcommand(
             Command::new("new")
@@ -81,7 +81,7 @@ pub fn linkwork_command() -> Command {
 
 /// Returns the definition of the subcommand `linkwork view`.
 pub fn view_command() -> Command {
-    with_motion(with_input(
+    add_motion_options(add_input(
         Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
     ))
     .arg(
@@ -147,7 +147,8 @@ fn export_command() -> Command {
         .subcommand(export_fmu())
         .subcommand(export_library())
         .subcommand(
-            with_input(Command::new("rust").about("The generated Rust code, for reading")).arg(out_file()),
+            add_input(Command::new("rust").about("The generated Rust code, for reading"))
+                .arg(out_file_argument()),
         )
 }
 
@@ -171,7 +172,7 @@ fn export_kernels(name: &'static str, about: &'static str) -> Command {
 
 /// Adds the options that all exports of source code share.
 fn with_source_options(command: Command, folder: &'static str) -> Command {
-    with_input(command)
+    add_input(command)
         .arg(
             text_argument("out", "FOLDER", folder)
                 .short('o')
@@ -189,7 +190,7 @@ fn with_source_options(command: Command, folder: &'static str) -> Command {
 fn export_fmu() -> Command {
     let command =
         Command::new("fmu").about("FMI 3.0: a model for simulation tools, with sources and a binary");
-    with_start(with_tables(with_input(command)))
+    add_start_options(add_table_options(add_input(command)))
         .arg(
             text_argument("out", "FILE", "Output file [default: the mechanism's name with .fmu]")
                 .short('o')
@@ -205,7 +206,7 @@ fn export_fmu() -> Command {
 }
 
 fn export_library() -> Command {
-    with_tables(with_input(
+    add_table_options(add_input(
         Command::new("library")
             .about("A crate and a header: all functions on plain arrays, as a shared and a static library"),
     ))
@@ -226,7 +227,7 @@ fn export_library() -> Command {
     ))
 }
 
-fn with_input(command: Command) -> Command {
+fn add_input(command: Command) -> Command {
     command
         .arg(
             Arg::new("file")
@@ -245,7 +246,7 @@ fn with_input(command: Command) -> Command {
         ))
 }
 
-fn with_tables(command: Command) -> Command {
+fn add_table_options(command: Command) -> Command {
     command.arg(
         text_argument(
             "table",
@@ -258,8 +259,8 @@ fn with_tables(command: Command) -> Command {
     )
 }
 
-/// Adds the options for parameters and the initial state.
-fn with_start(command: Command) -> Command {
+/// Adds the options for parameters and the initial state to a subcommand.
+fn add_start_options(command: Command) -> Command {
     command
         .arg(
             text_argument(
@@ -281,8 +282,8 @@ fn with_start(command: Command) -> Command {
         )
 }
 
-fn with_motion(command: Command) -> Command {
-    let command = with_start(with_tables(command));
+fn add_motion_options(command: Command) -> Command {
+    let command = add_start_options(add_table_options(command));
     let number_argument = |name, value, help| {
         text_argument(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
     };
@@ -311,7 +312,7 @@ fn with_motion(command: Command) -> Command {
         .arg(switch_argument("without-contacts", "Ignores contacts: bodies pass through each other"))
 }
 
-/// Names of the methods of integration.
+/// Parser of the option for the integration method, with the names of the methods.
 fn integration_method_names() -> PossibleValuesParser {
     let names = linkwork_jit::Method::NAMES.iter();
     PossibleValuesParser::new(names.map(|(name, ..)| -> &'static str { name.replace('_', "-").leak() }))
@@ -329,13 +330,13 @@ fn json_switch() -> Arg {
     switch_argument("json", "Prints JSON for other programs")
 }
 
-fn out_file() -> Arg {
+fn out_file_argument() -> Arg {
     text_argument("out", "FILE", "Output file [default: standard output]")
         .short('o')
         .value_parser(value_parser!(PathBuf))
 }
 
-/// Returns the value of a text option, if present.
+/// Returns the value of an option that is a text, if the option is present.
 pub fn text_option<'a>(matches: &'a ArgMatches, name: &str) -> Option<&'a str> {
     matches.get_one::<String>(name).map(String::as_str)
 }

@@ -60,14 +60,14 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
     // struct either.
     let graph = Graph::new();
     input.result_without_errors(compile(&source, &graph, cx), cx)?;
-    let mut struct_of = Struct::new(description);
+    let mut struct_of = ConvertedStruct::new(description);
     let text = struct_of.convert_to_struct(&input);
     struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));
-    struct_of.tell_renamed();
+    struct_of.print_renamed();
     write_output(matches, &text)
 }
 
-struct Struct<'a> {
+struct ConvertedStruct<'a> {
     description: &'a Description,
     links: Names,
     joints: Names,
@@ -84,14 +84,15 @@ struct Struct<'a> {
 /// Number of renamed elements printed on the terminal; the documentation of the struct lists all.
 const RENAMED_SHOWN: usize = 4;
 
-impl<'a> Struct<'a> {
-    fn new(description: &'a Description) -> Struct<'a> {
+impl<'a> ConvertedStruct<'a> {
+    fn new(description: &'a Description) -> ConvertedStruct<'a> {
         let mut taken = Names::default();
         let links = taken.add(description.bodies.iter().map(|body| &*body.name.text), "link");
         let joints = taken.add(description.joints.iter().map(|joint| &*joint.name.text), "joint");
         let (fields, notes, renamed) = (String::new(), Vec::new(), Vec::new());
         let constant = constant_lengths(description);
-        let mut made = Struct { description, links, joints, others: taken, constant, fields, notes, renamed };
+        let mut made =
+            ConvertedStruct { description, links, joints, others: taken, constant, fields, notes, renamed };
         let links = description
             .bodies
             .iter()
@@ -105,15 +106,15 @@ impl<'a> Struct<'a> {
         made
     }
 
-    /// Records a name that differs from the one in the file.
+    /// Records an element whose name in the struct differs from its name in the file.
     fn record_renamed_element(&mut self, kind: &str, name: &str, field: &str) {
         if name != field {
             self.renamed.push((format!("{kind} `{name}`"), field.to_string()));
         }
     }
 
-    /// Prints the first names that differ from those in the file.
-    fn tell_renamed(&self) {
+    /// Prints the first elements whose names in the struct differ from those in the file.
+    fn print_renamed(&self) {
         let shown = self.renamed.iter().take(RENAMED_SHOWN);
         let shown: Vec<String> = shown.map(|(what, field)| format!("{what} is `{field}`")).collect();
         let more = match self.renamed.len().saturating_sub(RENAMED_SHOWN) {
@@ -129,7 +130,7 @@ impl<'a> Struct<'a> {
         let d = self.description;
         d.bodies.iter().filter(|body| body.name.text != GROUND).for_each(|body| self.add_body(body));
         d.joints.iter().for_each(|joint| self.add_joint(joint));
-        d.joints.iter().for_each(|joint| self.elements_of(joint));
+        d.joints.iter().for_each(|joint| self.add_elements_of_joint(joint));
         self.add_inputs();
         d.drives.iter().for_each(|drive| self.add_drive(drive));
         for (name, e) in &d.dissipations {
@@ -258,7 +259,7 @@ impl<'a> Struct<'a> {
     }
 
     /// Adds the elements that belong to a joint: damping, friction, and the constraint of a mimic joint.
-    fn elements_of(&mut self, joint: &Joint) {
+    fn add_elements_of_joint(&mut self, joint: &Joint) {
         let on = self.joints.field_or_same(&joint.name.text);
         if let Some(damping) = &joint.damping {
             let e = self.format_expression(damping);
@@ -289,7 +290,7 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Adds the inputs in the order of the file.
+    /// Adds the input fields of the struct, in the order of the robot file.
     fn add_inputs(&mut self) {
         for joint in self.description.joints.iter().filter(|joint| joint.driven && joint.mimic.is_none()) {
             let on = self.joints.field_or_same(&joint.name.text);
@@ -340,7 +341,7 @@ impl<'a> Struct<'a> {
 
     /// Adds forces and torques that are the components of a wrench times a factor.
     fn add_wrench(&mut self, wrench: &Wrench, name: &str, factor: &str) {
-        let Some((point, body)) = self.body_of(wrench, name) else { return };
+        let Some((point, body)) = self.body_of_wrench(wrench, name) else { return };
         for (kind, on, vector) in [("Force", &point, wrench.force), ("Torque", &body, wrench.torque)] {
             if vector != [0.0; 3] {
                 let value = vector_in_axes(vector, &body);
@@ -350,9 +351,9 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Adds damping along the velocity of a wrench.
+    /// Adds dashpots for the damping along the velocity of a wrench's point.
     fn add_wrench_damping(&mut self, wrench: &Wrench, name: &str, damping: f64) {
-        let Some((point, body)) = self.body_of(wrench, name) else { return };
+        let Some((point, body)) = self.body_of_wrench(wrench, name) else { return };
         let mut rates = Vec::new();
         if wrench.force != [0.0; 3] {
             rates.push(format!("dot(v({point} / ground / ground), {})", vector_in_axes(wrench.force, &body)));
@@ -369,7 +370,7 @@ impl<'a> Struct<'a> {
 
     /// Returns the point of application of a wrench, and its body. A wrench with a reaction on another body,
     /// or on a body that is fixed to the ground, is omitted and noted.
-    fn body_of(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
+    fn body_of_wrench(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
         if wrench.against.is_some() {
             self.notes.push(format!("`{name}`, which acts between points of two bodies, has no effect here"));
             return None;
@@ -476,11 +477,11 @@ impl<'a> Struct<'a> {
                 element,
             );
         }
-        self.on_length(&on, name, &drive.law);
+        self.add_length_element(&on, name, &drive.law);
     }
 
     /// Adds a spring or another element on the length of a cable, or on a sum of coordinates.
-    fn on_length(&mut self, on: &str, name: &str, law: &DriveLaw) {
+    fn add_length_element(&mut self, on: &str, name: &str, law: &DriveLaw) {
         let (figures, element) = match *law {
             DriveLaw::Spring { stiffness, free } => (
                 format!("stiffness = {}, free_length = {}", format_number(stiffness), format_number(free)),
@@ -528,7 +529,7 @@ fn motor_type(kind: JointKind) -> &'static str {
     if kind == JointKind::Sleeve { "Force" } else { "Torque" }
 }
 
-/// Returns a vector in the axes of a body.
+/// Returns a constant vector in the axes of a body as source text.
 fn vector_in_axes(vector: [f64; 3], body: &str) -> String {
     let parts = vector.into_iter().zip(["x", "y", "z"]).filter(|(x, _)| *x != 0.0);
     parts.map(|(x, axis)| format!("{} * {body}.{axis}", format_number(x))).collect::<Vec<_>>().join(" + ")
@@ -548,9 +549,12 @@ fn constant_lengths(description: &Description) -> BTreeSet<String> {
     let is_length = |drive: &&Drive| matches!(drive.on, DriveOn::Length(_));
     let lengths: Vec<&Drive> = description.drives.iter().filter(is_length).collect();
     // The forces on the lengths have different magnitudes, so that the model shows which of them it has.
-    let push =
+    let numbered_push =
         |(k, drive): (usize, &&Drive)| Drive { law: DriveLaw::Push(k as f64 + 1.0), ..(*drive).clone() };
-    let probe = Description { drives: lengths.iter().enumerate().map(push).collect(), ..description.clone() };
+    let probe = Description {
+        drives: lengths.iter().enumerate().map(numbered_push).collect(),
+        ..description.clone()
+    };
     let graph = Graph::new();
     let Some(model) = build_model(&probe, &graph, &mut Diagnostics::new()) else { return BTreeSet::new() };
     let forces: Vec<f64> = model.loads.iter().filter_map(|load| load.force.constant_value()).collect();
@@ -569,12 +573,13 @@ fn polynomial_damper_law(damping: [f64; 3]) -> String {
 /// beyond it, with these coefficients of its first three powers.
 fn slack_spring_energy(stiffness: [f64; 3], [low, high]: [f64; 2]) -> String {
     let (from, to) = (format_number(low), format_number(high));
-    let power = |n: u8| match low == high {
+    let power_of_excess = |n: u8| match low == high {
         true => format!("pow(stretch - {from}, {n})"),
         false => format!("(pow(min(stretch - {from}, 0), {n}) + pow(max(stretch - {to}, 0), {n}))"),
     };
     let terms = [(stiffness[0] / 2.0, 2), (stiffness[1] / 3.0, 3), (stiffness[2] / 4.0, 4)];
     let terms = terms.into_iter().filter(|(k, _)| *k != 0.0);
-    let terms: Vec<String> = terms.map(|(k, n)| format!("{} * {}", format_number(k), power(n))).collect();
+    let terms: Vec<String> =
+        terms.map(|(k, n)| format!("{} * {}", format_number(k), power_of_excess(n))).collect();
     format!("energy = {}", terms.join(" + "))
 }

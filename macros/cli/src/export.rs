@@ -13,7 +13,7 @@ use linkwork_compiler::syntax::{Inertias, ScalarType};
 use linkwork_compiler::{Source, expand, export_c, export_cuda, export_wgsl};
 use std::path::{Path, PathBuf};
 
-/// Writes a C source file and a header.
+/// Writes the C99 source file and header of a mechanism.
 pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
@@ -135,7 +135,7 @@ pub fn export_library_crate(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Writes the generated Rust code, formatted.
+/// Writes the formatted Rust code that the attribute generates.
 pub fn export_rust_code(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
@@ -154,7 +154,7 @@ pub fn write_output(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     match matches.get_one::<PathBuf>("out") {
         Some(path) => write_file(path, text),
         None => {
-            crate::print(format_args!("{text}"));
+            crate::print_or_exit(format_args!("{text}"));
             Ok(())
         }
     }

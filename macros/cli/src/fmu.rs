@@ -39,7 +39,7 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
         archive.add(path, text.as_bytes())?;
     }
     if !matches.get_flag("no-binary") {
-        match compile(&files, text_option(matches, "compiler"))? {
+        match compile_shared_library(&files, text_option(matches, "compiler"))? {
             Some(binary) => archive.add(&binary_path(&files.identifier), &binary)?,
             None => crate::note!(
                 "linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only"
@@ -58,13 +58,13 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Start values of the variables, and whether the mechanism has derivatives of its motion.
-struct Values {
+struct VariableValues {
     start: StartValues,
     is_tree: bool,
 }
 
 /// Returns the start values of all variables; the initial state satisfies the constraints.
-fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<Values, Stop> {
+fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<VariableValues, Stop> {
     let loaded = input.load_mechanism(graph)?;
     let start = Start::new(&loaded, matches)?;
     if let Some(why) = start.reason_without_motion() {
@@ -84,7 +84,7 @@ fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<Va
     let states: Vec<usize> =
         loaded.source.mechanism.description.states.iter().map(|(_, index)| *index).collect();
     states.iter().zip(&start.x).for_each(|(k, x)| parameters[*k] = *x);
-    Ok(Values {
+    Ok(VariableValues {
         start: StartValues {
             parameters,
             q,
@@ -113,14 +113,18 @@ fn binary_path(identifier: &str) -> String {
 
 /// Compiles the sources to a shared library. Returns `None` if no compiler is named, and the
 /// usual one is not installed.
-fn compile(files: &FmuFiles, compiler: Option<&str>) -> Result<Option<Vec<u8>>, Stop> {
+fn compile_shared_library(files: &FmuFiles, compiler: Option<&str>) -> Result<Option<Vec<u8>>, Stop> {
     let folder = std::env::temp_dir().join(format!("linkwork-fmu-{}", std::process::id()));
-    let done = compile_in(&folder, files, compiler);
+    let done = compile_in_folder(&folder, files, compiler);
     let _ = std::fs::remove_dir_all(&folder);
     done
 }
 
-fn compile_in(folder: &Path, files: &FmuFiles, compiler: Option<&str>) -> Result<Option<Vec<u8>>, Stop> {
+fn compile_in_folder(
+    folder: &Path,
+    files: &FmuFiles,
+    compiler: Option<&str>,
+) -> Result<Option<Vec<u8>>, Stop> {
     std::fs::create_dir_all(folder.join("sources"))?;
     for (path, text) in &files.files {
         std::fs::write(folder.join(path), text)?;

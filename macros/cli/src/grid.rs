@@ -9,10 +9,10 @@ use linkwork_jit::AnyTable;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Values of a table on a grid.
+/// Values of an interpolation table on a rectangular grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Grid points along each axis.
+    /// Grid points along each axis of the table.
     pub axes: Vec<Vec<f64>>,
     /// Values in the order of the grid points, with the last axis varying fastest.
     pub values: Vec<f64>,
@@ -23,7 +23,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    fn parse(text: &str, variables: usize) -> Result<Grid, String> {
+    fn parse_grid(text: &str, variables: usize) -> Result<Grid, String> {
         let mut points: BTreeMap<Vec<u64>, f64> = BTreeMap::new();
         let mut axes: Vec<Vec<f64>> = vec![Vec::new(); variables];
         let mut is_first = true;
@@ -124,8 +124,8 @@ pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result
             file = before;
         }
         let text = text_of(Path::new(file.trim())).map_err(invalid_table_option)?;
-        let grid =
-            Grid::parse(&text, tables[at].1).map_err(|why| invalid_table_option(format!("{file}: {why}")))?;
+        let grid = Grid::parse_grid(&text, tables[at].1)
+            .map_err(|why| invalid_table_option(format!("{file}: {why}")))?;
         if found[at].replace(Grid { smooth, extrapolated, ..grid }).is_some() {
             return Err(invalid_table_option(format!("the table `{}` is given twice", name.trim())));
         }
@@ -145,9 +145,9 @@ mod tests {
     use super::Grid;
 
     #[test]
-    fn points_come_in_any_order() {
-        let grid =
-            Grid::parse("x, y, f\n1,0,3\n0,0,1\n0,5,2\n1,5,4\n", 2).unwrap_or_else(|why| panic!("{why}"));
+    fn grid_points_are_accepted_in_any_order() {
+        let grid = Grid::parse_grid("x, y, f\n1,0,3\n0,0,1\n0,5,2\n1,5,4\n", 2)
+            .unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(
             (grid.axes, grid.values),
             (vec![vec![0.0, 1.0], vec![0.0, 5.0]], vec![1.0, 2.0, 3.0, 4.0])
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_grid_is_told() {
+    fn tables_that_are_not_grids_are_rejected() {
         for (text, part) in [
             ("", "fewer than two points"),
             ("0,1\n", "fewer than two points"),
@@ -166,11 +166,13 @@ mod tests {
             ("0,1\n1,inf\n", "line 2: expected numbers"),
         ] {
             assert!(
-                Grid::parse(text, 1).is_err_and(|why| why.contains(part)),
+                Grid::parse_grid(text, 1).is_err_and(|why| why.contains(part)),
                 "{text}: {:?}",
-                Grid::parse(text, 1)
+                Grid::parse_grid(text, 1)
             );
         }
-        assert!(Grid::parse("0,0,1\n1,1,2\n", 2).is_err_and(|why| why.contains("no value at [0.0, 1.0]")));
+        assert!(
+            Grid::parse_grid("0,0,1\n1,1,2\n", 2).is_err_and(|why| why.contains("no value at [0.0, 1.0]"))
+        );
     }
 }

@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 pub struct Input {
     /// Path of the file, as named on the command line.
     pub file: PathBuf,
-    /// Struct with its attribute.
+    /// Struct of the mechanism with its attribute.
     pub declaration: DeclaredStruct,
     /// Folder to which paths in the arguments are relative.
     pub folder: PathBuf,
@@ -30,30 +30,31 @@ pub struct Input {
     pub is_robot: bool,
 }
 
-/// Mechanism that was compiled without errors.
-pub struct Compiled<'g> {
-    /// Parsed source.
+/// Mechanism that was compiled without errors: source, model and generated functions.
+pub struct CompiledMechanism<'g> {
+    /// Parsed source of the mechanism.
     pub source: Source,
     /// Resolved model of the mechanism.
     pub model: Model<'g>,
-    /// Generated functions.
+    /// Generated functions of the mechanism.
     pub output: Output,
 }
 
 /// Mechanism whose functions were compiled to machine code.
-pub struct Loaded<'g> {
-    /// Parsed source.
+pub struct LoadedMechanism<'g> {
+    /// Parsed source of the mechanism.
     pub source: Source,
     /// Resolved model of the mechanism.
     pub model: Model<'g>,
-    /// Functions of the mechanism.
+    /// Mechanism whose functions can be called.
     pub robot: Robot,
     /// Equations of motion as HTML with MathML; empty if they are too long to be read.
     pub equations: String,
 }
 
 impl Input {
-    /// Returns the mechanism of the command line: the only one of its file, or the one that `--struct` names.
+    /// Returns the mechanism that the command line selects: the only one of its file, or the one that
+    /// `--struct` names.
     pub fn one(matches: &ArgMatches) -> Result<Input, Stop> {
         let mut all = Input::select_mechanisms(matches)?;
         if all.len() > 1 {
@@ -67,7 +68,7 @@ impl Input {
         all.pop().ok_or_else(|| Stop::Failure("there is no mechanism".to_string()))
     }
 
-    /// Returns all mechanisms of the file, or the one that `--struct` names.
+    /// Returns all mechanisms of the file, or only the mechanism that `--struct` names.
     pub fn select_mechanisms(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
         let file: &PathBuf =
             matches.get_one("file").ok_or_else(|| Stop::Failure("expected a file".to_string()))?;
@@ -76,7 +77,8 @@ impl Input {
             .parse()
             .map_err(|error| Stop::Failure(format!("`--with`: {error}")))?;
         let is_rust = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"));
-        let mut found = if is_rust { from_rust(file)? } else { vec![from_robot(file)?] };
+        let mut found =
+            if is_rust { mechanisms_of_rust_file(file)? } else { vec![struct_of_robot_file(file)?] };
         if let Some(name) = text_option(matches, "struct") {
             let names: Vec<String> = found.iter().map(|input| input.declaration.name.clone()).collect();
             found.retain(|input| input.declaration.name == name);
@@ -103,7 +105,7 @@ impl Input {
         read_source(arguments.clone(), item.clone(), &self.folder, cx)
     }
 
-    /// Prints the errors, if there are any.
+    /// Prints the compile errors, if there are any.
     pub fn report_errors(&self, cx: &Diagnostics) -> Stop {
         for one in cx.distinct_errors() {
             crate::note!("{}", self.error_with_location(one));
@@ -111,7 +113,7 @@ impl Input {
         Stop::Errors
     }
 
-    /// Returns the result if there are no errors; otherwise prints them.
+    /// Returns the result of the compiler if there are no errors; otherwise prints the errors.
     pub fn result_without_errors<T>(&self, made: Option<T>, cx: &Diagnostics) -> Result<T, Stop> {
         match made {
             Some(made) if cx.is_empty() => Ok(made),
@@ -120,15 +122,15 @@ impl Input {
     }
 
     /// Returns the mechanism with its generated functions; otherwise prints the errors.
-    pub fn compile_mechanism<'g>(&self, graph: &'g Graph) -> Result<Compiled<'g>, Stop> {
+    pub fn compile_mechanism<'g>(&self, graph: &'g Graph) -> Result<CompiledMechanism<'g>, Stop> {
         let cx = &mut Diagnostics::new();
         let source = self.result_without_errors(self.parse_source(cx), cx)?;
         let (model, output) = self.result_without_errors(compile(&source, graph, cx), cx)?;
-        Ok(Compiled { source, model, output })
+        Ok(CompiledMechanism { source, model, output })
     }
 
     /// Returns the model of the mechanism, and the mechanism with machine code; otherwise prints the errors.
-    pub fn load_mechanism<'g>(&self, graph: &'g Graph) -> Result<Loaded<'g>, Stop> {
+    pub fn load_mechanism<'g>(&self, graph: &'g Graph) -> Result<LoadedMechanism<'g>, Stop> {
         let cx = &mut Diagnostics::new();
         let mut source = self.result_without_errors(self.parse_source(cx), cx)?;
         linkwork_jit::without_rust(&mut source);
@@ -138,7 +140,7 @@ impl Input {
         let (model, output) = self.result_without_errors(compiled, cx)?;
         let equations = output.equations.mathml.clone();
         let robot = linkwork_jit::compiled(&source, &model, output);
-        Ok(Loaded { source, model, robot, equations })
+        Ok(LoadedMechanism { source, model, robot, equations })
     }
 
     /// Converts a diagnostic to an error message with its location.
@@ -150,7 +152,8 @@ impl Input {
                 (!self.is_robot).then(|| start_of_span(one.source_position().span)),
             ),
         };
-        let reword_for_command = |text: &String| if self.is_robot { for_command(text) } else { text.clone() };
+        let reword_for_command =
+            |text: &String| if self.is_robot { rewrite_advice_for_command(text) } else { text.clone() };
         SourceError {
             mechanism: Some(self.declaration.name.clone()),
             file,
@@ -167,7 +170,7 @@ const ENDINGS: [&str; 6] = ["urdf", "xacro", "sdf", "world", "mjcf", "xml"];
 
 /// Rewrites advice on the attribute to advice on the command, where options are passed by `--with` and the
 /// format follows from the file extension.
-fn for_command(text: &str) -> String {
+fn rewrite_advice_for_command(text: &str) -> String {
     let mut said = text.to_string();
     let mut from = 0;
     while let Some(at) = said[from..].find("`#[mechanism(").map(|at| from + at) {
@@ -198,21 +201,21 @@ fn start_of_span(span: Span) -> (usize, usize) {
 /// Error in a mechanism's source file.
 #[derive(Default)]
 pub struct SourceError {
-    /// Name of the struct, if the error is in one.
+    /// Name of the struct that contains the error, if any.
     pub mechanism: Option<String>,
     /// Path of the file with the error.
     pub file: String,
     /// Line and column, both counted from one.
     pub at: Option<(usize, usize)>,
-    /// Text of the error message.
+    /// Text of the error message, without notes and help.
     pub message: String,
-    /// Notes that follow the message.
+    /// Notes that follow the error message.
     pub notes: Vec<String>,
-    /// Suggested corrections.
+    /// Suggested corrections of the error.
     pub helps: Vec<String>,
 }
 
-/// Formats the error as compilers do.
+/// Formats the error with its position in the style of compilers.
 impl std::fmt::Display for SourceError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.at {
@@ -228,7 +231,7 @@ impl std::fmt::Display for SourceError {
 }
 
 /// Reads the text of a user's file, and limits its size.
-fn text_of(path: &Path) -> Result<String, Stop> {
+fn read_user_file(path: &Path) -> Result<String, Stop> {
     let read_failure = |why: String| Stop::Failure(format!("{}: {why}", path.display()));
     let about = std::fs::metadata(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => read_failure("there is no such file".to_string()),
@@ -249,10 +252,10 @@ fn text_of(path: &Path) -> Result<String, Stop> {
     String::from_utf8(bytes).map_err(|_| read_failure("is not UTF-8 text".to_string()))
 }
 
-/// Returns the mechanisms of a Rust file, including those in inline modules. Paths in them are relative to
-/// the package.
-fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
-    let text = text_of(path)?;
+/// Returns the mechanisms of a Rust file, including those in inline modules, with paths relative to the
+/// package.
+fn mechanisms_of_rust_file(path: &Path) -> Result<Vec<Input>, Stop> {
+    let text = read_user_file(path)?;
     let found = mechanism_declarations(&text).map_err(|error| {
         Stop::Syntax(Box::new(SourceError {
             file: path.display().to_string(),
@@ -275,7 +278,7 @@ fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
 }
 
 /// Returns a struct without fields whose arguments name a robot file.
-fn from_robot(path: &Path) -> Result<Input, Stop> {
+fn struct_of_robot_file(path: &Path) -> Result<Input, Stop> {
     let is_known =
         path.extension().is_some_and(|end| ENDINGS.iter().any(|known| end.eq_ignore_ascii_case(known)));
     let unknown_file_type_failure = || {
@@ -285,7 +288,7 @@ fn from_robot(path: &Path) -> Result<Input, Stop> {
              an element `<robot>`, `<sdf>` or `<mujoco>`"
         ))
     };
-    let text = text_of(path)
+    let text = read_user_file(path)
         .map_err(|stop| if is_known || !path.is_file() { stop } else { unknown_file_type_failure() })?;
     if !is_known && !["<robot", "<sdf", "<mujoco"].iter().any(|element| text.contains(element)) {
         return Err(unknown_file_type_failure());

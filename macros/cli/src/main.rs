@@ -27,9 +27,9 @@ use std::process::ExitCode;
 
 /// Reason why a subcommand stops early.
 enum Stop {
-    /// The mechanism has errors, which have been printed.
+    /// The mechanism has errors, which the command has printed.
     Errors,
-    /// A syntax error of a file, with its location.
+    /// Syntax error of a Rust file, with its location.
     Syntax(Box<input::SourceError>),
     /// The command cannot be carried out, for the reason in the text.
     Failure(String),
@@ -43,7 +43,7 @@ impl<E: std::error::Error> From<E> for Stop {
 
 /// Prints a line to standard output.
 macro_rules! say {
-    ($($text:tt)*) => { $crate::print(format_args!("{}\n", format_args!($($text)*))) };
+    ($($text:tt)*) => { $crate::print_or_exit(format_args!("{}\n", format_args!($($text)*))) };
 }
 use say;
 
@@ -57,7 +57,7 @@ macro_rules! note {
 use note;
 
 /// Prints a text to standard output. Exits silently if the reader has closed it, as `head` does.
-fn print(text: std::fmt::Arguments<'_>) {
+fn print_or_exit(text: std::fmt::Arguments<'_>) {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
     if let Err(error) = out.write_fmt(text).and_then(|()| out.flush()) {
@@ -111,6 +111,6 @@ fn print_completions(matches: &clap::ArgMatches) -> Result<(), Stop> {
     let shell = shell.ok_or_else(|| Stop::Failure("expected a shell".to_string()))?;
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut commands::linkwork_command(), "linkwork", &mut script);
-    print(format_args!("{}", String::from_utf8_lossy(&script)));
+    print_or_exit(format_args!("{}", String::from_utf8_lossy(&script)));
     Ok(())
 }

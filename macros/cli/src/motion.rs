@@ -1,9 +1,9 @@
-//! Initial state of a motion, and the simulation from it.
+//! Initial state of a motion, and the simulation from this state.
 
 use crate::Stop;
 use crate::assemble::Assembly;
 use crate::grid;
-use crate::input::Loaded;
+use crate::input::LoadedMechanism;
 use crate::table::Table;
 use clap::ArgMatches;
 use linkwork::integrate;
@@ -18,30 +18,30 @@ use std::path::PathBuf;
 
 /// Sample of a motion: the state at one instant.
 pub struct Sample {
-    /// Time, s.
+    /// Time of the sample, s.
     pub t: f64,
-    /// Configuration at this instant.
+    /// Configuration at the time of the sample.
     pub q: Vec<f64>,
-    /// Velocity at this instant.
+    /// Velocity at the time of the sample.
     pub v: Vec<f64>,
-    /// States of first order at this instant.
+    /// States of first order at the time of the sample.
     pub x: Vec<f64>,
-    /// Inputs at this instant.
+    /// Inputs at the time of the sample.
     pub u: Vec<f64>,
 }
 
 /// Mechanism with its parameters, initial state and initial inputs.
 pub struct Start<'a, 'g> {
-    /// Mechanism with its parameters.
+    /// Mechanism with the values of its parameters.
     pub robot: Robot,
     /// Model of the mechanism.
     pub model: &'a Model<'g>,
-    /// Names of the states of first order.
+    /// Names of the mechanism's states of first order.
     pub states: Vec<String>,
-    /// Initial configuration.
+    /// Initial configuration of the motion.
     pub q: Vec<f64>,
     v: Vec<f64>,
-    /// Initial states of first order.
+    /// Initial states of first order of the motion.
     pub x: Vec<f64>,
     /// Constant inputs of the motion.
     pub u: Vec<f64>,
@@ -60,10 +60,10 @@ const TOLD: f64 = 1e-6;
 /// Change of a specified value above which it is not explained by rounding, m and rad, or per second. The
 /// simulation is then rejected.
 const FAR: f64 = 0.05;
-/// Maximum number of samples of a motion.
+/// Maximum number of samples of a simulated motion.
 const MAX_SAMPLES: f64 = 1e7;
 
-/// Normalises quaternions; a zero quaternion is an error.
+/// Normalises the quaternions of a configuration; a zero quaternion is an error.
 pub fn normalise_quaternions(model: &Model<'_>, q: &mut [f64]) -> Result<(), Stop> {
     for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
         let quaternion = &mut q[first.and_next(4)];
@@ -79,8 +79,8 @@ pub fn normalise_quaternions(model: &Model<'_>, q: &mut [f64]) -> Result<(), Sto
 
 impl<'a, 'g> Start<'a, 'g> {
     /// Reads the parameters, the initial state and the inputs from `--set`, `--guess` and `--table`.
-    pub fn new(loaded: &'a Loaded<'g>, matches: &ArgMatches) -> Result<Start<'a, 'g>, Stop> {
-        let Loaded { source, model, robot, .. } = loaded;
+    pub fn new(loaded: &'a LoadedMechanism<'g>, matches: &ArgMatches) -> Result<Start<'a, 'g>, Stop> {
+        let LoadedMechanism { source, model, robot, .. } = loaded;
         let mut robot = robot.clone();
         let prefixed_velocity_names = |list: &[(String, linkwork_compiler::diag::Place)]| -> Vec<String> {
             list.iter().map(|(name, _)| format!("v.{name}")).collect()
@@ -94,7 +94,7 @@ impl<'a, 'g> Start<'a, 'g> {
         // States of first order are zero by default, as coordinates are.
         states.iter().for_each(|(_, k)| parameters[*k] = Some(0.0));
         let of_states: Vec<String> = states.iter().map(|(name, _)| format!("x.{name}")).collect();
-        let mut q = neutral(model);
+        let mut q = neutral_configuration(model);
         let (mut v, mut u) = (vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
         for (name, value) in named_option_values("set", matches)? {
@@ -132,7 +132,7 @@ impl<'a, 'g> Start<'a, 'g> {
             q[k] = value;
         }
         if matches.try_contains_id("live").unwrap_or(false) && matches.get_flag("live") {
-            fill_in(model, &mut parameters);
+            fill_missing_parameters(model, &mut parameters);
         }
         let missing: Vec<String> = (model.parameters.iter().zip(&parameters))
             .filter(|(_, value)| value.is_none())
@@ -183,7 +183,7 @@ impl<'a, 'g> Start<'a, 'g> {
         Ok(placed.map(|placement| placement.map(isometry_with_rotation_matrix)).collect::<Result<_, _>>()?)
     }
 
-    /// Evaluates an expression of the parameters.
+    /// Returns the value of an expression that depends on parameters alone.
     pub fn evaluate_expression(&self, e: Expr<'_>) -> f64 {
         let parameters = self.robot.parameter_values();
         eval_one(e, &|symbol| match Quantity::from_symbol(symbol) {
@@ -192,7 +192,7 @@ impl<'a, 'g> Start<'a, 'g> {
         })
     }
 
-    /// Returns the method of integration.
+    /// Returns the integration method that the options of the command select.
     fn integration_method(&self, matches: &ArgMatches, without_contacts: bool) -> Result<Method, Stop> {
         let read_positive_option = |name: &str| match matches.get_one::<f64>(name) {
             Some(x) if !(*x > 0.0 && x.is_finite()) => {
@@ -414,7 +414,7 @@ impl<'a, 'g> Start<'a, 'g> {
         moved.join(", ")
     }
 
-    /// Returns times, and the inputs at each of them.
+    /// Returns the times of the samples of an input file, and the inputs at each of them.
     fn read_inputs(&self, matches: &ArgMatches) -> Result<(Vec<f64>, Vec<f64>), Stop> {
         let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok((vec![0.0], self.u.clone())) };
         let table = Table::read_table(path)?;
@@ -450,7 +450,7 @@ impl<'a, 'g> Start<'a, 'g> {
 }
 
 /// Gives parameters without a value the value of a page's sliders: gravity on Earth, otherwise one.
-fn fill_in(model: &Model<'_>, parameters: &mut [Option<f64>]) {
+fn fill_missing_parameters(model: &Model<'_>, parameters: &mut [Option<f64>]) {
     let mut chosen = Vec::new();
     for (k, value) in parameters.iter_mut().enumerate().filter(|(_, value)| value.is_none()) {
         let is_gravity = model.units.parameters.get(k).is_some_and(|unit| unit == "m/s²");
@@ -462,8 +462,8 @@ fn fill_in(model: &Model<'_>, parameters: &mut [Option<f64>]) {
     }
 }
 
-/// Returns the neutral configuration.
-fn neutral(model: &Model<'_>) -> Vec<f64> {
+/// Returns the neutral configuration of a model: zero coordinates and identity quaternions.
+fn neutral_configuration(model: &Model<'_>) -> Vec<f64> {
     let mut q = vec![0.0; model.nq()];
     for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
         q[first.0 + 3] = 1.0;
@@ -485,7 +485,7 @@ fn time_of_failure(error: &Error) -> Option<f64> {
 pub fn named_option_values<'a>(option: &str, matches: &'a ArgMatches) -> Result<Vec<(&'a str, f64)>, Stop> {
     let mut found: Vec<(&str, f64)> = Vec::new();
     for given in matches.get_many::<String>(option).into_iter().flatten() {
-        let one = parse(&format!("--{option}"), given)?;
+        let one = parse_assignment(&format!("--{option}"), given)?;
         if found.iter().any(|(known, _)| *known == one.0) {
             return Err(Stop::Failure(format!("`--{option}`: `{}` is given twice", one.0)));
         }
@@ -494,13 +494,13 @@ pub fn named_option_values<'a>(option: &str, matches: &'a ArgMatches) -> Result<
     Ok(found)
 }
 
-/// Parses the `NAME=VALUE` of an option.
-fn parse<'a>(option: &str, given: &'a str) -> Result<(&'a str, f64), Stop> {
-    let fail =
+/// Parses the value `NAME=VALUE` of a command-line option.
+fn parse_assignment<'a>(option: &str, given: &'a str) -> Result<(&'a str, f64), Stop> {
+    let option_error =
         |what: &str, found: &str| Stop::Failure(format!("`{option}`: expected {what}, found `{found}`"));
-    let (name, value) = given.split_once('=').ok_or_else(|| fail("NAME=VALUE", given))?;
+    let (name, value) = given.split_once('=').ok_or_else(|| option_error("NAME=VALUE", given))?;
     let number: Option<f64> = value.trim().parse().ok();
     let number = number.filter(|number| number.is_finite());
     let what = format!("a number for `{}`", name.trim());
-    Ok((name.trim(), number.ok_or_else(|| fail(&what, value.trim()))?))
+    Ok((name.trim(), number.ok_or_else(|| option_error(&what, value.trim()))?))
 }

@@ -1,4 +1,4 @@
-//! Conversion of names in files to field names.
+//! Conversion of the names in a robot file to field names of a struct.
 
 use linkwork_compiler::syntax::GROUND;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,7 +9,7 @@ const WORDS: [&str; 24] = [
     "rate", "stretch", "speed", "crate", "self", "super", "Self", "true", "false",
 ];
 
-/// Field names, by the names in a file.
+/// Field names of a converted struct, by the names in the robot file.
 #[derive(Clone, Default)]
 pub struct Names {
     of: BTreeMap<String, String>,
@@ -27,7 +27,7 @@ impl Names {
         Names { of, taken: BTreeSet::new() }
     }
 
-    /// Returns an unused field name.
+    /// Returns a field name that is not used yet.
     pub fn unused_field_name(&mut self, name: &str, kind: &str) -> String {
         let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         let plain = plain.trim_matches('_').to_ascii_lowercase();
@@ -64,7 +64,7 @@ mod tests {
     use super::Names;
 
     #[test]
-    fn fields_have_names_of_their_own() {
+    fn robot_names_become_distinct_rust_fields() {
         let mut taken = Names::default();
         let links = taken.add(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
         let joints = taken.add(["Hand-left", "é"].into_iter(), "joint");

@@ -22,7 +22,7 @@ pub fn create_package(matches: &ArgMatches) -> Result<(), Stop> {
         |path: &str, text: &str| std::fs::write(folder.join(Path::new(path)), text).map_err(creation_failure);
     let sources = matches.get_one::<PathBuf>("linkwork").map(std::fs::canonicalize).transpose();
     let sources = sources.map_err(|error| Stop::Failure(format!("`--linkwork`: {error}")))?;
-    let sources = sources.or_else(sources::of_command);
+    let sources = sources.or_else(sources::repository_of_command);
     write_project_file("Cargo.toml", &manifest_text(&name, sources.as_deref()))?;
     write_project_file("src/main.rs", MAIN)?;
     write_project_file(".gitignore", "/target\n/motion.html\n")?;
@@ -32,9 +32,10 @@ pub fn create_package(matches: &ArgMatches) -> Result<(), Stop> {
 
 /// Checks that Cargo accepts the name of a package.
 fn check_name(name: &str) -> Result<(), Stop> {
-    let is_known = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let is_name_character = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let is_word = syn::parse_str::<syn::Ident>(&name.replace('-', "_")).is_err();
-    if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(is_known) || is_word {
+    if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(is_name_character) || is_word
+    {
         return Err(Stop::Failure(format!(
             "`{name}` is not a name of a package: expected letters, digits, `-` and `_`, a letter first"
         )));

@@ -1,7 +1,7 @@
 //! `linkwork show`: prints the compiled model of a mechanism.
 
 use crate::Stop;
-use crate::input::{Compiled, Input};
+use crate::input::{CompiledMechanism, Input};
 use clap::ArgMatches;
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::expr::Graph;
@@ -13,11 +13,12 @@ pub fn run_show(matches: &ArgMatches) -> Result<(), Stop> {
     let mut all = Vec::new();
     for input in &Input::select_mechanisms(matches)? {
         let graph = Graph::new();
-        let Compiled { source, model, output } = input.compile_mechanism(&graph)?;
-        let shown = Shown { model: &model, output: &output, structure: source.joint_structure_lines() };
+        let CompiledMechanism { source, model, output } = input.compile_mechanism(&graph)?;
+        let shown =
+            ShownMechanism { model: &model, output: &output, structure: source.joint_structure_lines() };
         match as_json {
             true => all.push(shown.summary_as_json()),
-            false => crate::print(format_args!("{}", shown.summary_text())),
+            false => crate::print_or_exit(format_args!("{}", shown.summary_text())),
         }
     }
     if as_json {
@@ -26,16 +27,16 @@ pub fn run_show(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-struct Shown<'a, 'g> {
+struct ShownMechanism<'a, 'g> {
     model: &'a Model<'g>,
     output: &'a Output,
     structure: Vec<String>,
 }
 
-/// Title, JSON key, names and units of a list.
+/// Printed list: its title, its JSON key, and the names with their units.
 type List<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
 
-impl Shown<'_, '_> {
+impl ShownMechanism<'_, '_> {
     fn lists_of_names(&self) -> Vec<List<'_>> {
         let m = self.model;
         fn names_as_str(list: &[String]) -> Vec<&str> {

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 /// Returns the folder of the repository that the command was built from, if it still exists: for
 /// `cargo install --path`, or within the repository itself. A command installed from a registry has no such
 /// folder.
-pub fn of_command() -> Option<PathBuf> {
+pub fn repository_of_command() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?.parent()?;
-    let is_there = |crate_: &str| folder.join(crate_).join("Cargo.toml").is_file();
+    let has_manifest = |crate_: &str| folder.join(crate_).join("Cargo.toml").is_file();
     ["runtime", "runtime/view", "runtime/library"]
         .iter()
-        .all(|name| is_there(name))
+        .all(|name| has_manifest(name))
         .then(|| folder.to_path_buf())
 }
 

@@ -81,11 +81,11 @@ fn find_misaligned_brace(text: &str) -> Option<LineColumn> {
         for token in tokens {
             let TokenTree::Group(group) = token else { continue };
             let (open, close) = (group.span_open().start(), group.span_close().start());
-            let is_first = |at: LineColumn| indentation_of_line(at.line) == Some(at.column);
+            let is_first_on_line = |at: LineColumn| indentation_of_line(at.line) == Some(at.column);
             if group.delimiter() == Delimiter::Brace
                 && close.line <= last
                 && close.line > open.line
-                && is_first(close)
+                && is_first_on_line(close)
                 && indentation_of_line(open.line) != Some(close.column)
             {
                 found = found.max(Some(open));
@@ -147,7 +147,7 @@ mod tests {
     /// Compares with the positions of rustc 1.95, except for brackets that are open at the end of a file:
     /// rustc points at the end of the file and labels the bracket.
     #[test]
-    fn errors_are_located_as_rustc_locates_them() {
+    fn syntax_errors_are_located_as_by_rustc() {
         for (text, at, message) in [
             ("struct S {\n    a: f64\n    b: f64,\n}", (2, 11), "expected `,`, found `b`"),
             ("struct S {\n    a: f64 #[x] b: f64,\n}", (2, 11), "expected `,`, found `#`"),

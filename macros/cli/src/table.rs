@@ -6,20 +6,20 @@ use std::path::Path;
 
 /// Named columns of numbers, for times that do not decrease.
 pub struct Table {
-    /// Times of the rows, s.
+    /// Times of the rows of the CSV file, s.
     pub times: Vec<f64>,
-    /// Columns other than the time, with their names.
+    /// Columns of the CSV file other than the time, with their names.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Table {
-    /// Reads a file; one of its columns is `t`.
+    /// Reads a CSV file, one column of which must be `t`.
     pub fn read_table(path: &Path) -> Result<Table, Stop> {
         let text = text_of(path).map_err(Stop::Failure)?;
-        Table::parse(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
+        Table::parse_csv(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
     }
 
-    fn parse(text: &str) -> Result<Table, String> {
+    fn parse_csv(text: &str) -> Result<Table, String> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let head = lines.next().map(|(_, line)| split_csv_fields(line)).unwrap_or_default();
         let time = head.iter().position(|name| name == "t").ok_or_else(|| {
@@ -56,7 +56,7 @@ impl Table {
         }
     }
 
-    /// Returns a column by name.
+    /// Returns the column with a name.
     pub fn column_by_name(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
@@ -90,13 +90,13 @@ mod tests {
     use super::{Table, split_csv_fields};
 
     #[test]
-    fn quotes_hold_commas() {
+    fn quoted_csv_cells_may_contain_commas() {
         assert_eq!(split_csv_fields("t, q.a,\"b,\"\"c\"\"\"\r"), ["t", "q.a", "b,\"c\""]);
     }
 
     /// Checks files of spreadsheets, which begin with a byte order mark and may contain no-break spaces.
     #[test]
-    fn marks_and_strange_blanks_are_blanks() {
+    fn byte_order_marks_and_no_break_spaces_are_whitespace() {
         let file = std::env::temp_dir().join(format!("linkwork-table-{}.csv", std::process::id()));
         for text in [
             "\u{feff}t,u.a\r\n0,1\r\n2,3\r\n",
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_table_is_told() {
+    fn malformed_tables_are_rejected_with_a_message() {
         for (text, part) in [
             ("", "no column `t`"),
             ("time;u.a\n0;1\n", "there is no column `t`, but `time;u.a`"),
@@ -124,7 +124,7 @@ mod tests {
             ("t\n1\n0\n", "decrease"),
             ("t,a,a\n0,1,2\n", "two columns `a`"),
         ] {
-            assert!(Table::parse(text).is_err_and(|why| why.contains(part)), "{text}");
+            assert!(Table::parse_csv(text).is_err_and(|why| why.contains(part)), "{text}");
         }
     }
 }

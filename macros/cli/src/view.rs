@@ -1,7 +1,7 @@
 //! `linkwork view`: writes an HTML page that shows a motion.
 
 use crate::Stop;
-use crate::input::{Input, Loaded};
+use crate::input::{Input, LoadedMechanism};
 use crate::library::doc_paragraphs;
 use crate::live;
 use crate::motion::{Start, normalise_quaternions};
@@ -13,7 +13,7 @@ use linkwork_compiler::mechanism;
 use linkwork_view::{Figure, Motion, Page};
 use std::path::{Path, PathBuf};
 
-/// Time, configuration, states of first order, and inputs, if inputs are known.
+/// Plotted state: time, configuration, states of first order, and inputs if they are recorded.
 type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 
 /// Maximum number of coordinates that are plotted by default.
@@ -30,7 +30,7 @@ pub fn run_view(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Returns the mechanism's name and its page.
+/// Returns the name of the mechanism and the HTML page that shows it.
 pub fn mechanism_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
     let mut input = Input::one(matches)?;
     if !input.declaration.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
@@ -38,11 +38,11 @@ pub fn mechanism_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
     }
     let graph = Graph::new();
     let loaded = input.load_mechanism(&graph)?;
-    let Loaded { source, model, .. } = &loaded;
+    let LoadedMechanism { source, model, .. } = &loaded;
     let start = Start::new(&loaded, matches)?;
     let about = without_links(&doc_paragraphs(&source.mechanism.shell.attributes).join("\n\n"));
     let page = Page::new(&input.declaration.name).text(&about);
-    let figure = with_meshes(declared_figure(&start, model), &input, matches)?;
+    let figure = add_meshes(declared_figure(&start, model), &input, matches)?;
     let page = match matches.get_flag("live") {
         true => page.equations(&loaded.equations).motion(live::live_motion(&start, figure)?),
         false => page.motion(recorded_motion(&start, figure, matches)?),
@@ -50,11 +50,11 @@ pub fn mechanism_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
     Ok((input.declaration.name, page))
 }
 
-/// Returns the motion of a log, or a simulated one.
+/// Returns the recorded motion of a log file, or the motion of a simulation.
 fn recorded_motion(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) -> Result<Motion, Stop> {
     let model = start.model;
     let states = match matches.get_one::<PathBuf>("motion") {
-        Some(path) => from_log(path, start)?,
+        Some(path) => states_of_log(path, start)?,
         None => match start.reason_without_motion() {
             Some(why) if matches.get_one::<f64>("duration").is_none() => {
                 crate::note!("linkwork: the page shows one configuration: {why}");
@@ -90,7 +90,7 @@ fn recorded_motion(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) 
 }
 
 /// Returns the drawing with the meshes that are found, and prints the paths of the others.
-fn with_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Result<Figure, Stop> {
+fn add_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Result<Figure, Stop> {
     let beside = input.file.parent().map(Path::to_path_buf);
     match matches.get_one::<PathBuf>("meshes") {
         Some(folder) => {
@@ -120,7 +120,7 @@ fn with_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Resul
 }
 
 /// Reads the states of a log: times, configurations, first-order states and inputs.
-fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
+fn states_of_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     let table = Table::read_table(path)?;
     let column = |name: &String| {
         let name = format!("q.{name}");
@@ -151,7 +151,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     table.times.iter().enumerate().map(state_of_log_row).collect()
 }
 
-/// Returns curves with their units and names.
+/// Returns the curves of a plot with their units and names.
 fn named_curves<'n>(
     names: impl IntoIterator<Item = &'n String>,
     units: &'n [String],

@@ -1,8 +1,8 @@
-//! Conversion of expressions to the text of attributes.
+//! Conversion of expressions of robot files to the text of attributes.
 
 use linkwork_compiler::syntax::{BinaryOp, Expr, ExprKind};
 
-/// Formats a number in full precision.
+/// Formats a number so that parsing the text restores it exactly.
 pub fn format_number(x: f64) -> String {
     // Removes the sign of zero.
     let x = x + 0.0;
@@ -21,7 +21,7 @@ pub fn format_angle(text: &str) -> String {
 pub enum Role {
     /// Body: in arguments of functions, and before a point or an axis.
     Body,
-    /// Coordinate of a joint.
+    /// Name of the coordinate of a joint.
     Coordinate,
 }
 
@@ -68,7 +68,7 @@ fn spell_expression(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<
     }
 }
 
-/// Returns the value of a literal expression.
+/// Returns the value of a literal expression, with its sign.
 fn literal_value(e: &Expr) -> Option<f64> {
     match &e.kind {
         ExprKind::Number(x) => Some(*x),
@@ -103,12 +103,12 @@ pub fn format_vector(e: &Expr) -> Option<String> {
     Some(if text.is_empty() { "0 * x".to_string() } else { text })
 }
 
-/// Formats gravity as a vector.
+/// Formats the gravity of a robot file as a vector expression.
 pub fn format_gravity(e: &Expr) -> String {
     format_vector(e).unwrap_or_else(|| format_expression(e, &|_, _| None))
 }
 
-/// Formats a direction, normalised to unit length.
+/// Formats a direction as a vector expression of unit length.
 pub fn format_axis(e: &Expr) -> String {
     let Some(numbers) = literal_vector(e) else { return format_expression(e, &|_, _| None) };
     let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -1,18 +1,18 @@
-//! Archives in the format ZIP, with files that are stored without compression.
+//! Archives in the ZIP format, whose files are stored without compression.
 
 use crate::Stop;
 
 /// ZIP archive under construction.
 #[derive(Default)]
 pub struct Archive {
-    /// Headers and contents of the files written so far.
+    /// Bytes of the headers and contents of the files written so far.
     contents: Vec<u8>,
     /// Central directory of the archive, which is written after the files.
     directory: Vec<u8>,
     count: u16,
 }
 
-/// Version of the format that stored files need.
+/// Version of the ZIP format that uncompressed files need.
 const VERSION: u16 = 20;
 /// Flag of a file entry whose name is in UTF-8.
 const UTF_8: u16 = 1 << 11;
@@ -20,7 +20,7 @@ const UTF_8: u16 = 1 << 11;
 const DATE: u16 = (1 << 5) | 1;
 
 impl Archive {
-    /// Adds a file.
+    /// Adds a file to the archive without compression.
     ///
     /// # Errors
     /// The file or the archive is too large for the format.
@@ -32,7 +32,7 @@ impl Archive {
         // Both headers have version, flags, method, time, date, checksum and sizes.
         let mut shared = Vec::new();
         [VERSION, UTF_8, 0, 0, DATE].iter().for_each(|x| shared.extend(x.to_le_bytes()));
-        [checksum(bytes), size, size].iter().for_each(|x| shared.extend(x.to_le_bytes()));
+        [crc32_checksum(bytes), size, size].iter().for_each(|x| shared.extend(x.to_le_bytes()));
         [length, 0].iter().for_each(|x| shared.extend(x.to_le_bytes()));
         self.contents.extend(*b"PK\x03\x04");
         self.contents.extend(&shared);
@@ -63,8 +63,8 @@ impl Archive {
     }
 }
 
-/// Returns the cyclic redundancy check of the format.
-fn checksum(bytes: &[u8]) -> u32 {
+/// Returns the cyclic redundancy check CRC-32 of the ZIP format.
+fn crc32_checksum(bytes: &[u8]) -> u32 {
     let advance_crc_by_bit = |sum: u32| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 };
     !bytes.iter().fold(!0, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), |sum, _| advance_crc_by_bit(sum)))
 }
@@ -73,7 +73,7 @@ fn checksum(bytes: &[u8]) -> u32 {
 mod tests {
     /// Checks the checksum against the published check value of CRC-32.
     #[test]
-    fn checksum_of_the_nine_digits() {
-        assert_eq!(super::checksum(b"123456789"), 0xcbf4_3926);
+    fn crc32_has_the_published_check_value() {
+        assert_eq!(super::crc32_checksum(b"123456789"), 0xcbf4_3926);
     }
 }

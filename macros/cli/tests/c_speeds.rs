@@ -10,18 +10,23 @@ use std::process::Command;
 #[path = "mechanisms/speeds.rs"]
 mod mechanisms_in_speeds;
 
-/// Formats an array in C.
+/// Formats a list of numbers as a C array.
 fn format_c_array(name: &str, numbers: &[f64]) -> String {
     let list: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
     format!("    const double {name}[] = {{{}}};\n", list.join(", "))
 }
 
 /// A function of the exported code, its call, and the results in Rust.
-type Entry = (&'static str, String, Vec<f64>);
+type ExportedEntry = (&'static str, String, Vec<f64>);
 
-/// Exports the mechanism in an arithmetic, and compiles it with the given flags. Returns the numbers that the
-/// program prints, one line per function.
-fn compile_and_run(entries: &[Entry], given: &str, arithmetic: &str, flags: &[&str]) -> Vec<Vec<f64>> {
+/// Exports the mechanism in the given arithmetic, compiles it with the given flags, and returns the numbers
+/// that the program prints.
+fn compile_and_run(
+    entries: &[ExportedEntry],
+    given: &str,
+    arithmetic: &str,
+    flags: &[&str],
+) -> Vec<Vec<f64>> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join("speeds").join(arithmetic);
     std::fs::create_dir_all(&folder).expect("a folder of the tests'");
     let exported = Command::new(env!("CARGO_BIN_EXE_linkwork"))
@@ -70,7 +75,7 @@ fn concatenate_results(parts: &[&[f64]]) -> Vec<f64> {
 }
 
 /// Returns the functions with their results in Rust, and the declarations of their arguments in C.
-fn entries() -> (Vec<Entry>, String) {
+fn exported_functions() -> (Vec<ExportedEntry>, String) {
     let m = Juggler { axial: 0.7 };
     const N: usize = Juggler::NV;
     let sample_vector = |seed: f64| SVector::<f64, N>::from_fn(|k, _| 0.6 * (seed + 1.7 * k as f64).sin());
@@ -149,13 +154,13 @@ fn entries() -> (Vec<Entry>, String) {
         ("frame_jacobian", "(self, HAND, q, r)", concatenate_results(&[m.frame_jacobian(f, &q).as_slice()])),
         ("pull", "(self, q, v, u, r)", concatenate_results(&[m.pull(&q, &v, &u).as_slice()])),
     ];
-    let step = |next: (SVector<f64, { Juggler::NQ }>, SVector<f64, N>)| {
+    let concatenated_state = |next: (SVector<f64, { Juggler::NQ }>, SVector<f64, N>)| {
         concatenate_results(&[next.0.as_slice(), next.1.as_slice()])
     };
     let rk4 = discrete::step(&m, &Rk4::step(h), 0.0, &q, &v, &u).expect("it is regular");
     let euler = discrete::step(&m, &SemiImplicitEuler::step(h), 0.0, &q, &v, &u).expect("it is regular");
-    entries.push(("rk4_step", "(self, q, v, u, 0.02, r, r + NQ)", step(rk4)));
-    entries.push(("semi_implicit_euler_step", "(self, q, v, u, 0.02, r, r + NQ)", step(euler)));
+    entries.push(("rk4_step", "(self, q, v, u, 0.02, r, r + NQ)", concatenated_state(rk4)));
+    entries.push(("semi_implicit_euler_step", "(self, q, v, u, 0.02, r, r + NQ)", concatenated_state(euler)));
     let transition_matrices = |next: discrete::Transition<f64, { Juggler::NQ }, N, 1>| {
         concatenate_results(&[next.a::<{ 2 * N }>().as_slice(), next.b::<{ 2 * N }>().as_slice()])
     };
@@ -182,7 +187,7 @@ fn entries() -> (Vec<Entry>, String) {
 }
 
 /// Checks results with a tolerance relative to the largest entry.
-fn check(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+fn check_results(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
     assert_eq!(found.len(), expected.len(), "{name}");
     for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
@@ -191,12 +196,12 @@ fn check(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 #[test]
-fn speeds_are_the_same_in_c() {
-    let (entries, given) = entries();
+fn declared_speeds_in_c_agree_with_rust() {
+    let (entries, given) = exported_functions();
     let found = compile_and_run(&entries, &given, "fast", &["-std=c99", "-O1"]);
     assert_eq!(found.len(), entries.len());
     for ((name, _, expected), found) in entries.iter().zip(found) {
-        check(name, &found, expected, 1e-11);
+        check_results(name, &found, expected, 1e-11);
     }
 }
 
@@ -204,15 +209,15 @@ fn speeds_are_the_same_in_c() {
 /// instructions for fused products its operations are those of reproducible arithmetic. Differences of
 /// configurations contain an arc tangent of the platform.
 #[test]
-fn reproducible_code_in_c_has_the_bits_of_rust() {
-    let (mut entries, given) = entries();
+fn reproducible_c_code_has_the_bits_of_rust() {
+    let (mut entries, given) = exported_functions();
     entries.retain(|(name, ..)| !name.ends_with("transition"));
     let found = compile_and_run(&entries, &given, "reproducible", &["-std=gnu11", "-O2", "-march=native"]);
     assert_eq!(found.len(), entries.len());
     let same_operations = cfg!(all(target_arch = "x86_64", not(target_feature = "fma"), debug_assertions));
     let mut others = Vec::new();
     for ((name, _, expected), found) in entries.iter().zip(found) {
-        check(name, &found, expected, 1e-11);
+        check_results(name, &found, expected, 1e-11);
         if found != *expected {
             others.push(*name);
         }

@@ -28,7 +28,7 @@ pub struct Pendulum {
 ";
 
 #[test]
-fn good_mechanisms_are_in_order() {
+fn check_accepts_valid_mechanisms() {
     let here = test_folder("good");
     std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
     assert_eq!(
@@ -43,7 +43,7 @@ fn good_mechanisms_are_in_order() {
 }
 
 #[test]
-fn mistakes_are_listed_with_their_places() {
+fn check_lists_errors_with_source_positions() {
     let here = test_folder("mistakes");
     let text = PENDULUM.replace("cos(theta)", "cos(thta)").replace("mass = 1", "mass = -1");
     std::fs::write(here.join("bad.rs"), &text).unwrap();
@@ -80,7 +80,7 @@ fn a_derive_above_the_attribute_is_an_error() {
 }
 
 #[test]
-fn what_cannot_be_done_is_said() {
+fn unsupported_requests_are_reported() {
     let here = test_folder("failures");
     std::fs::write(here.join("mujoco.urdf"), "<mujoco><worldbody/></mujoco>").unwrap();
     std::fs::write(here.join("nothing.rs"), "pub struct Plain;").unwrap();
@@ -169,7 +169,7 @@ fn what_cannot_be_done_is_said() {
 /// Checks that advice on a robot file, which has no attribute, names an option of the command, and that the
 /// file is accepted with this option.
 #[test]
-fn advice_names_options_of_the_command() {
+fn help_messages_name_options_of_the_command() {
     let here = test_folder("advice");
     let robot = "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/>\
                  <inertia ixx='1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
@@ -188,7 +188,7 @@ fn advice_names_options_of_the_command() {
 
 /// Checks that missing meshes are listed, and that a missing folder is an error.
 #[test]
-fn missing_meshes_are_listed() {
+fn missing_mesh_files_are_listed() {
     let here = test_folder("meshes");
     let robot = "<robot name='r'><link name='a'><visual><geometry><mesh filename='package://r/a.stl'/></geometry></visual></link>\
                  <link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
@@ -229,7 +229,7 @@ fn shaders_are_written_for_straight_line_functions() {
 
 /// Checks that syntax errors are reported in the format of other errors.
 #[test]
-fn syntax_errors_are_mistakes_among_others() {
+fn syntax_errors_have_the_format_of_other_errors() {
     let here = test_folder("syntax");
     std::fs::write(here.join("broken.rs"), "\npub struct {").unwrap();
     std::fs::write(here.join("broken.urdf"), "<robot name='r'>\n<link></robot>").unwrap();
@@ -252,7 +252,7 @@ fn syntax_errors_are_mistakes_among_others() {
 /// Checks that the page has the struct's documentation, and that descriptions of libraries contain no rustdoc
 /// links.
 #[test]
-fn documentation_is_for_other_readers_too() {
+fn documentation_page_suits_readers_without_rust() {
     let here = test_folder("documented");
     let about = "/// A *simple* pendulum, as [`Pendulum`](crate::Pendulum), with [`theta`].\n///\n/// - \
                  `theta`, rad\n/// - `length`, m\n";
@@ -292,7 +292,7 @@ fn documentation_is_for_other_readers_too() {
 /// Checks that with `--expanded` the crate contains the generated code instead of the attribute, and is
 /// otherwise identical. The description contains the limits of the joints.
 #[test]
-fn libraries_contain_the_attribute_or_its_code() {
+fn exported_crates_contain_the_attribute_or_its_code() {
     let here = test_folder("expanded");
     let slider = "#[mechanism] pub struct Slider { #[particle(mass = 2)] block: Particle, \
         #[joint(ground -> block, along = x)] rail: Sleeve, \
@@ -319,7 +319,7 @@ fn libraries_contain_the_attribute_or_its_code() {
 /// Checks that outputs whose names end like other forms of a function are exported, and that functions that C
 /// does not have are listed.
 #[test]
-fn functions_that_another_language_lacks_are_listed() {
+fn functions_missing_in_the_target_language_are_listed() {
     let here = test_folder("forms");
     let slider = "#[mechanism] pub struct Slider { pub m: f64, #[particle(mass = m)] block: Particle, \
         #[joint(ground -> block, along = x)] rail: Sleeve, #[limit(on = rail, to = 1)] end: Limit, \
@@ -359,7 +359,7 @@ fn readme_code_block(language: &str) -> String {
 /// Checks that every command of the README runs from the folder of the repository.
 #[test]
 #[cfg(unix)]
-fn documented_commands_run() {
+fn commands_of_the_readme_run() {
     let here = test_folder("documented_commands");
     let _ = std::fs::remove_dir_all(&here);
     std::fs::create_dir_all(&here).unwrap();
@@ -384,7 +384,7 @@ fn documented_commands_run() {
 
 /// Checks that the C example of the README compiles and succeeds.
 #[test]
-fn the_guide_runs() {
+fn c_example_of_the_readme_runs() {
     let here = test_folder("guide");
     std::fs::write(here.join("pendulum.rs"), readme_code_block("rust,ignore")).unwrap();
     std::fs::write(here.join("main.c"), readme_code_block("c")).unwrap();
@@ -402,7 +402,7 @@ fn the_guide_runs() {
 
 /// Checks that the format of a robot file follows from its extension, or otherwise from its content.
 #[test]
-fn robots_are_read_in_their_formats() {
+fn robot_file_formats_are_detected() {
     let here = test_folder("formats");
     let model = "<mujoco><worldbody><body name='b'><joint name='j'/><geom size='0.1'/></body></worldbody>\
                  <actuator><motor name='m' joint='j'/></actuator></mujoco>";
@@ -433,7 +433,7 @@ fn robots_are_read_in_their_formats() {
 
 /// Checks the errors for mechanisms that cannot become a library, and for a folder without sources.
 #[test]
-fn libraries_that_cannot_be_are_reported() {
+fn mechanisms_without_library_export_are_rejected() {
     let fighter = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
     for (arguments, words) in [

@@ -1,4 +1,4 @@
-//! Conversion of robot files to structs with the same equations of motion.
+//! Tests of the conversion of robot files to structs with the same equations of motion.
 
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
@@ -58,7 +58,7 @@ fn convert_file(file: &Path, with: &str) -> (String, String) {
     (code, stderr)
 }
 
-/// Returns the arguments of the attribute, and the struct.
+/// Splits a converted struct into the arguments of its attribute and the struct.
 fn split_attribute_and_struct(code: &str) -> (String, String) {
     let (_, rest) = code.split_once("#[mechanism(").unwrap();
     let (arguments, item) = rest.split_once(")]\n").unwrap();
@@ -71,12 +71,12 @@ fn count_frames(model: &Model<'_>) -> usize {
 }
 
 fn check_conversion(format: &str, file: &Path, with: &str) {
-    check_beside(format, file, with, &[]);
+    check_conversion_with_notes(format, file, with, &[]);
 }
 
 /// Compares a struct with its file; `notes` are expected messages in addition to the list of renamed
 /// elements.
-fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
+fn check_conversion_with_notes(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let (code, stderr) = convert_file(file, with);
     let (arguments, item) = split_attribute_and_struct(&code);
     let is_expected = |line: &str| {
@@ -110,7 +110,7 @@ fn repository_folder() -> PathBuf {
 }
 
 #[test]
-fn structs_move_as_their_files() {
+fn converted_structs_have_the_dynamics_of_their_files() {
     let urdf = repository_folder().join("models/urdf");
     for (name, with) in [
         ("ur5", "base = fixed"),
@@ -155,7 +155,7 @@ const CRANE: &str = r#"<mujoco model="crane">
 
 /// Checks names that are reserved words, springs, rotor inertias, gears and cables.
 #[test]
-fn elements_of_files_become_fields() {
+fn elements_of_robot_files_become_struct_fields() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("converted");
     std::fs::create_dir_all(&folder).unwrap();
     let file = folder.join("crane.xml");
@@ -186,7 +186,7 @@ fn write_test_file(name: &str, text: &str) -> PathBuf {
 /// Compares mass matrix and bias forces for the robot files of other tests. Mimic joints have independent
 /// velocities in structs.
 #[test]
-fn robot_files_of_the_tests_become_structs() {
+fn robot_files_convert_with_equal_dynamics() {
     for (format, file, with) in [
         ("urdf", "tests/data/urdf/arm_after.urdf", "mimic = independent"),
         ("urdf", "tests/data/urdf/limits.urdf", "mimic = independent"),
@@ -231,7 +231,7 @@ fn robot_files_of_the_tests_become_structs() {
 /// Checks a name that a body and a joint share. In expressions of the medium, of damping and of cables it
 /// means the body, in couplings the joint.
 #[test]
-fn links_and_joints_share_a_name() {
+fn names_shared_by_link_and_joint_are_resolved() {
     let file = write_test_file(
         "shared.xml",
         r#"<mujoco><option density="1.2" viscosity="0.1"/><worldbody>
@@ -260,7 +260,7 @@ fn links_and_joints_share_a_name() {
 
 /// Checks damping that adds energy, gears, elements on several joints, and lengths that do not change.
 #[test]
-fn elements_of_any_sign_and_on_several_joints_become_fields() {
+fn negative_damping_and_multi_joint_elements_are_converted() {
     let file = write_test_file(
         "signs.xml",
         r#"<mujoco><worldbody><site name="o" pos="0 0 1"/><site name="o2" pos="0 1 1"/>
@@ -286,7 +286,7 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
   </actuator></mujoco>"#,
     );
     let notes = ["acts on a constant length", "acts on a body that is fixed to the ground"];
-    check_beside("mjcf", &file, "", &notes);
+    check_conversion_with_notes("mjcf", &file, "", &notes);
     let inertia = |xx: &str, xy: &str| {
         format!(
             "<inertial><mass value='2'/><inertia ixx='{xx}' iyy='1' izz='1' ixy='{xy}' ixz='0' iyz='0'/>\
@@ -308,7 +308,7 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
 
 /// Checks names that are not valid field names, and names of motors.
 #[test]
-fn other_names_than_in_the_file_are_reported() {
+fn changed_names_of_converted_elements_are_reported() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("renamed");
     std::fs::create_dir_all(&folder).unwrap();
     let file = folder.join("arm.urdf");
@@ -351,7 +351,7 @@ fn other_names_than_in_the_file_are_reported() {
 }
 
 #[test]
-fn what_cannot_be_converted_is_reported() {
+fn inconvertible_elements_are_reported() {
     let run_command_line = |arguments: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_linkwork")).args(arguments).output().unwrap();
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
@@ -372,18 +372,19 @@ fn what_cannot_be_converted_is_reported() {
 /// mechanism shows, such as limits of a mimic joint and its leader that exclude every value, and a massless
 /// end link.
 #[test]
-fn files_with_errors_of_the_whole_mechanism_are_not_converted() {
+fn convert_rejects_mechanisms_that_check_rejects() {
     let inertial = "<inertial><mass value='1'/>\
         <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
     let alone = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
-    let file = |name: &str, tip: &str, limits: &str| {
-        let joint = |name: &str, parent: &str, child: &str, limits: &str| {
+    let two_joint_file = |name: &str, tip: &str, limits: &str| {
+        let revolute_joint_element = |name: &str, parent: &str, child: &str, limits: &str| {
             format!(
                 "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
                  {limits}</joint>"
             )
         };
-        let joints = joint("j", "base", "a", alone) + &joint("k", "a", "b", limits);
+        let joints =
+            revolute_joint_element("j", "base", "a", alone) + &revolute_joint_element("k", "a", "b", limits);
         let links = format!("<link name='base'/><link name='a'>{inertial}</link><link name='b'>{tip}</link>");
         write_test_file(name, &format!("<robot name='two'>{links}{joints}</robot>"))
     };
@@ -394,13 +395,13 @@ fn files_with_errors_of_the_whole_mechanism_are_not_converted() {
         ("near.urdf", inertial, &near, None),
         ("massless.urdf", "", alone, Some("singular")),
     ] {
-        let file = file(name, tip, limits);
-        let run = |command: &str| {
+        let file = two_joint_file(name, tip, limits);
+        let run_command = |command: &str| {
             let mut of = Command::new(env!("CARGO_BIN_EXE_linkwork"));
             let output = of.arg(command).arg(&file).output().unwrap();
             (output.status.success(), String::from_utf8(output.stderr).unwrap())
         };
-        let (check, convert) = (run("check"), run("convert"));
+        let (check, convert) = (run_command("check"), run_command("convert"));
         assert_eq!(check.0, expected.is_none(), "{check:?}");
         assert_eq!(convert.0, check.0, "{convert:?}");
         if let Some(expected) = expected {

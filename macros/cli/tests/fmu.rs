@@ -1,5 +1,5 @@
-//! FMUs of `linkwork export fmu`: their sources are compiled with a small importer, which simulates in both
-//! modes. The motions are compared with those of `linkwork simulate` and with closed forms.
+//! Tests of exported FMUs: a small importer simulates them in both modes, and the motions are compared with
+//! `linkwork simulate` and with closed forms.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ fn unpack_archive(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// An FMU whose sources are linked with the importer.
+/// Exported FMU whose C sources are linked with a small importer program.
 struct Fmu {
     /// Text of `modelDescription.xml`.
     description: String,
@@ -91,7 +91,7 @@ impl Fmu {
         text.lines().map(ToString::to_string).collect()
     }
 
-    /// Returns rows of numbers that the importer prints.
+    /// Runs the importer program and returns the rows of numbers that it prints.
     fn importer_rows(&self, kind: &str, numbers: [f64; 3]) -> Vec<Vec<f64>> {
         let parse_number = |word: &str| word.parse().unwrap_or_else(|_| panic!("expected a number: {word}"));
         let parse_numbers_of_line = |line: &String| line.split_whitespace().map(parse_number).collect();
@@ -112,7 +112,7 @@ fn simulate_states(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64
     lines.map(|line| line.split(',').take(count).map(|x| x.parse().expect("a number")).collect()).collect()
 }
 
-/// Compares the rows of states of two motions.
+/// Compares the states of two motions row by row.
 fn compare_states(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{name}");
     for (found, expected) in found.iter().zip(expected) {
@@ -142,13 +142,13 @@ fn check_derivatives(fmu: &Fmu, numbers: [f64; 3], count: usize) {
     }
 }
 
-/// Joins names and values to options of the command.
+/// Joins names and values to `--set` options of the command.
 fn set_options(values: &'static [&'static str]) -> Vec<&'static str> {
     values.iter().flat_map(|value| ["--set", value]).collect()
 }
 
 #[test]
-fn cart_pole_moves_as_in_rust_with_derivatives() {
+fn cart_pole_fmu_agrees_with_rust_including_derivatives() {
     let values = [
         "cart_mass=1",
         "pole_mass=0.1",
@@ -173,7 +173,7 @@ fn cart_pole_moves_as_in_rust_with_derivatives() {
 }
 
 #[test]
-fn arm_and_top_move_as_in_rust() {
+fn arm_and_top_fmus_agree_with_rust() {
     check_both_modes("ur5", &["../../models/urdf/ur5.urdf", "--set", "q.elbow_joint=0.4"], 0.5, 200.0);
     let values = set_options(&[
         "g=9.81",
@@ -192,7 +192,7 @@ fn arm_and_top_move_as_in_rust() {
 
 /// The boat of the guide has a state of first order; a table has its values in the sources.
 #[test]
-fn states_of_first_order_and_tables_are_in_the_sources() {
+fn fmu_sources_contain_first_order_states_and_tables() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join("drag.csv");
     fs::create_dir_all(folder.parent().expect("a folder")).expect("a folder of the tests");
     // Linear: 2 N s/m.
@@ -213,7 +213,7 @@ fn states_of_first_order_and_tables_are_in_the_sources() {
 }
 
 #[test]
-fn four_bar_keeps_its_loop_closed() {
+fn four_bar_fmu_keeps_its_loop_closed() {
     let values = set_options(&[
         "g=9.81",
         "density=1",
@@ -230,7 +230,7 @@ fn four_bar_keeps_its_loop_closed() {
 
 /// A ball that falls from 1 m bounces with 0.7 of its speed, and comes to rest.
 #[test]
-fn ball_bounces_by_its_closed_form() {
+fn ball_fmu_bounces_by_its_closed_form() {
     let values = set_options(&["bounce=0.7", "q.height=1.1"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"], &values[..]].concat();
     let Some(fmu) = Fmu::new("ball", &arguments) else { return };
@@ -267,7 +267,7 @@ fn ball_bounces_by_its_closed_form() {
 /// Checks a door that rests against its stop until the force `-cos(2 t)` opens it at π/4, and equal balls
 /// that exchange their velocities.
 #[test]
-fn stops_open_and_balls_collide_by_closed_forms() {
+fn stop_and_ball_contacts_of_fmus_have_closed_forms() {
     let values = set_options(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "Door"], &values[..]].concat();
     let Some(fmu) = Fmu::new("door", &arguments) else { return };
@@ -287,7 +287,7 @@ fn stops_open_and_balls_collide_by_closed_forms() {
 }
 
 #[test]
-fn wrong_calls_and_values_are_errors_with_messages() {
+fn invalid_fmi_calls_return_errors_with_messages() {
     let values = set_options(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
     let Some(fmu) = Fmu::new("wrong", &[&["../../models/src/cart_pole.rs"], &values[..]].concat()) else {
         return;
@@ -324,7 +324,7 @@ fn wrong_calls_and_values_are_errors_with_messages() {
 }
 
 #[test]
-fn command_rejects_what_an_fmu_cannot_have() {
+fn export_rejects_mechanisms_without_fmu_support() {
     let file = "tests/fmu/mechanisms.rs";
     for (arguments, message) in [
         (

@@ -28,14 +28,14 @@ fn run_linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().unwrap(), decode_utf8(output.stdout), decode_utf8(output.stderr))
 }
 
-/// Returns the numbers of a log, line by line.
+/// Returns the numbers of a CSV log, line by line.
 fn rows_of_log(log: &str) -> Vec<Vec<f64>> {
     log.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect()
 }
 
 /// Checks that the command's simulation agrees with generated code and a fixed-step method.
 #[test]
-fn programs_and_generated_code_move_alike() {
+fn simulate_command_agrees_with_generated_code() {
     let here = test_folder("alike");
     std::fs::write(here.join("thrust.csv"), "t,u.thrust,remark\n0,0,1\n1,40,2\n2,10,3\n").unwrap();
     let thrust_at_time = |t: f64| if t < 1.0 { 40.0 * t } else { 40.0 - 30.0 * (t - 1.0) };
@@ -71,7 +71,7 @@ const JUGGLER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/spe
 /// Checks configurations of a mechanism with declared generalized speeds, which are velocities along the
 /// ground axes and combinations of rates. A speed that is a multiple of a rate is not confused with the rate.
 #[test]
-fn declared_speeds_move_configurations() {
+fn declared_speeds_are_integrated_to_configurations() {
     let here = test_folder("speeds");
     let begin = [0.3, -0.2, 1.5, 0.4, -1.0, 2.0, 0.7, -0.6];
     let names = ["ux", "uy", "uz", "wx", "wy", "wz", "swing", "bend"];
@@ -213,7 +213,7 @@ pub struct Arm {
 
 /// Checks that a page is made from a log, and from a simulated motion.
 #[test]
-fn pages_show_motions() {
+fn pages_are_made_from_logs_and_simulations() {
     let here = test_folder("pages");
     let (status, path, stderr) =
         run_linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "one.html"]);
@@ -271,7 +271,7 @@ fn messages_of_mcap(file: &[u8]) -> Vec<serde_json::Value> {
 /// Checks that the MCAP log has the states of the table in full precision, and the placements of generated
 /// code.
 #[test]
-fn logs_hold_what_tables_hold() {
+fn mcap_logs_contain_the_states_of_the_table() {
     let here = test_folder("logs");
     let simulate_to_file = |out: &str| {
         let (set, every) =
@@ -333,7 +333,7 @@ pub struct Ball {
 /// Checks that a ball falls, lands and rests on its floor, with the methods for contacts; that surfaces which
 /// overlap at the beginning are separated; and that without its contacts it falls by `g t² / 2`.
 #[test]
-fn contacts_carry_bodies() {
+fn falling_bodies_land_and_rest_on_contacts() {
     let here = test_folder("contacts");
     std::fs::write(here.join("ball.rs"), BALL).unwrap();
     let drop = ["simulate", "ball.rs", "--set", "q.pose.z=0.5905", "--duration", "1", "--every", "0.1"];
@@ -369,7 +369,7 @@ fn contacts_carry_bodies() {
 
 /// Checks the methods of smooth motions on a pendulum of small amplitude, whose period is known, and steps.
 #[test]
-fn methods_and_steps_are_chosen() {
+fn simulate_accepts_each_method_and_step() {
     let here = test_folder("methods");
     let pendulum = "
 #[mechanism(gravity = -9.81 * y)]
@@ -432,10 +432,10 @@ pub struct Closed {
 }
 ";
 
-/// Checks that a closed loop moves as in Rust, for the same four-bar linkage. The loop remains closed, and
-/// without a motor the energy is constant.
+/// Checks that a closed four-bar linkage moves as in Rust, remains closed, and conserves its energy without a
+/// motor.
 #[test]
-fn loops_stay_closed() {
+fn closed_loops_remain_closed_in_simulations() {
     let here = test_folder("closed");
     std::fs::write(here.join("closed.rs"), CLOSED).unwrap();
     let begin =
@@ -537,7 +537,7 @@ pub struct Swing {
 /// assembly mode of the zero configuration, a parallelogram, for any amplitude. Inadmissible parameters are
 /// rejected.
 #[test]
-fn beginnings_move_what_constraints_reach() {
+fn unconstrained_joints_keep_their_initial_values() {
     let here = test_folder("swing");
     std::fs::write(here.join("swing.rs"), SWING).unwrap();
     let short = ["simulate", "swing.rs", "--duration", "0.1", "--set", "rope=2"];
@@ -568,7 +568,7 @@ fn beginnings_move_what_constraints_reach() {
 
 /// Checks the errors for a mechanism that cannot be assembled, and for missing values of tables.
 #[test]
-fn what_cannot_be_assembled_is_reported() {
+fn failed_assemblies_are_reported() {
     let here = test_folder("apart");
     let apart = CLOSED
         .replace("ground.at(3 * x)", "ground.at(base * x)")
@@ -588,7 +588,7 @@ fn what_cannot_be_assembled_is_reported() {
 /// Checks that a spline table with three points of a parabola is the parabola: the resulting spring
 /// oscillates with the expected frequency.
 #[test]
-fn tables_are_read_from_files() {
+fn spline_tables_are_read_from_files() {
     let here = test_folder("tables");
     let spring = "
 #[mechanism]
@@ -636,7 +636,7 @@ pub struct Slider {
 }
 
 #[test]
-fn what_cannot_be_done_is_reported() {
+fn unsupported_simulations_are_reported() {
     let here = test_folder("refused");
     std::fs::write(here.join("bad.csv"), "t,u.thrsut\n0,1\n").unwrap();
     std::fs::write(here.join("plain.csv"), "t,thrust\n0,1\n").unwrap();
@@ -686,7 +686,7 @@ pub struct Driven {
 /// Checks that every command accepts a mechanism without degrees of freedom, which follows its prescribed
 /// motion.
 #[test]
-fn driven_mechanisms_follow_time() {
+fn commands_accept_driven_mechanisms_without_freedom() {
     let here = test_folder("driven");
     std::fs::write(here.join("driven.rs"), DRIVEN).unwrap();
     let simulate = ["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"];
@@ -715,7 +715,7 @@ fn driven_mechanisms_follow_time() {
 /// With declared speeds a driven mechanism follows its drive. Configurations in which the speeds do not
 /// determine the rates are reported at the beginning and during the motion.
 #[test]
-fn speeds_of_driven_mechanisms_may_be_singular() {
+fn driven_mechanisms_may_have_singular_declared_speeds() {
     let here = test_folder("driven_speeds");
     let simulate_driven_with_speeds = |speeds: &str| {
         let with = DRIVEN.replace("#[output(crank)]\n    loads: FreeBody,", speeds);
@@ -793,10 +793,10 @@ struct Leg {
 }
 ";
 
-/// Checks that for any subset of given angles the others are found within half a revolution, and that the
-/// assembly mode is printed.
+/// Checks that for any subset of given angles the remaining angles are found within half a revolution, and
+/// that the assembly mode is printed.
 #[test]
-fn legs_are_assembled_within_half_a_turn() {
+fn leg_assembly_stays_within_half_a_revolution() {
     let here = test_folder("leg");
     std::fs::write(here.join("leg.rs"), LEG).unwrap();
     for (given, wanted) in [

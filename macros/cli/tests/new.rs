@@ -21,9 +21,9 @@ fn run_linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().unwrap(), decode_utf8(output.stdout), decode_utf8(output.stderr))
 }
 
-/// Checks the program of the project: one pole falls, and the other one is kept upright.
+/// Checks the program of a new project: one pole falls, and the other one is kept upright.
 #[test]
-fn the_program_does_what_it_says() {
+fn new_project_balances_one_of_two_poles() {
     let page = starter::cart_pole_page().unwrap().html();
     assert!(page.contains("It falls") && page.contains("It is kept upright"));
     let cart_pole = starter::CartPole { pole_length: 1.0 };
@@ -33,7 +33,7 @@ fn the_program_does_what_it_says() {
 }
 
 #[test]
-fn projects_are_made_once() {
+fn existing_projects_are_not_overwritten() {
     let here = test_folder("new");
     let (status, stderr, _) = run_linkwork(&here, &["new", "my-arm"]);
     assert!(status == 0 && stderr.contains("cargo run"), "{stderr}");
@@ -73,7 +73,7 @@ fn projects_are_made_once() {
 }
 
 #[test]
-fn shells_complete_all_commands() {
+fn shell_completions_cover_all_commands() {
     let here = test_folder("completions");
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let (status, text, _) = run_linkwork(&here, &["completions", shell]);
@@ -86,7 +86,7 @@ fn shells_complete_all_commands() {
 /// Checks that the command exits silently if its standard output is closed after the first bytes, or its
 /// standard error at once.
 #[test]
-fn closed_pipes_end_quietly() {
+fn commands_exit_silently_on_closed_pipes() {
     use std::io::Read;
     use std::process::Stdio;
     let here = test_folder("pipes");

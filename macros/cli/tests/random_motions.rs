@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Pseudorandom numbers (Knuth's linear congruential generator).
+/// Generator of pseudorandom numbers (Knuth's linear congruential generator).
 struct Random(u64);
 
 impl Random {
@@ -21,7 +21,7 @@ impl Random {
         self.random_bits() % n
     }
 
-    /// Returns a number between bounds, rounded to three decimals.
+    /// Returns a random number between bounds, rounded to three decimals.
     fn number_between(&mut self, low: f64, high: f64) -> f64 {
         let x = low + (high - low) * self.index_below(10_000) as f64 / 1e4;
         (x * 1e3).round() / 1e3
@@ -39,19 +39,19 @@ fn test_folder(name: &str) -> PathBuf {
 }
 
 /// Motion as printed by the command: names of the columns, and rows.
-struct Log {
+struct MotionLog {
     names: Vec<String>,
     rows: Vec<Vec<f64>>,
 }
 
-impl Log {
+impl MotionLog {
     fn last_value(&self, name: &str) -> f64 {
         let column = self.names.iter().position(|known| known == name);
         self.rows[self.rows.len() - 1][column.unwrap_or_else(|| panic!("no `{name}` in {:?}", self.names))]
     }
 }
 
-fn simulate_to_log(here: &Path, name: &str, text: &str, set: &[String], more: &[&str]) -> Log {
+fn simulate_to_log(here: &Path, name: &str, text: &str, set: &[String], more: &[&str]) -> MotionLog {
     let file = format!("{name}.rs");
     std::fs::write(here.join(&file), text).unwrap();
     let command = std::env::var_os("LINKWORK_COMMAND").unwrap_or(env!("CARGO_BIN_EXE_linkwork").into());
@@ -64,7 +64,10 @@ fn simulate_to_log(here: &Path, name: &str, text: &str, set: &[String], more: &[
     let log = String::from_utf8(output.stdout).unwrap();
     let mut lines = log.lines();
     let names = lines.next().unwrap().split(',').map(ToString::to_string).collect();
-    Log { names, rows: lines.map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect() }
+    MotionLog {
+        names,
+        rows: lines.map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect(),
+    }
 }
 
 /// Returns a chain of bodies on pins and sleeves with springs, or a slider-crank, with its coordinates.
@@ -106,9 +109,9 @@ fn mechanism_source(body: &str) -> String {
     format!("use linkwork::prelude::*;\n#[mechanism(gravity = -9.81 * y)]\npub struct Random {{\n{body}}}\n")
 }
 
-/// Checks that a mechanism with declared generalized speeds has the same motion as without them.
+/// Checks that declared generalized speeds do not change the motion of a mechanism.
 #[test]
-fn declared_speeds_lead_to_the_same_motion() {
+fn declared_speeds_leave_random_motions_unchanged() {
     let here = test_folder("random_speeds");
     for case in 0..case_count() {
         let random = &mut Random(2 * case + 1);
@@ -153,7 +156,7 @@ fn declared_speeds_lead_to_the_same_motion() {
 /// Checks that a state of first order equals the velocity of a particle of 1 kg on a separate rail, under a
 /// force equal to the rate of the state.
 #[test]
-fn states_move_as_velocities_do() {
+fn first_order_states_integrate_like_velocities() {
     let here = test_folder("random_states");
     for case in 0..case_count() {
         let random = &mut Random(2 * case + 2);
@@ -229,7 +232,7 @@ fn states_move_as_velocities_do() {
 /// Checks a cart of 1 kg under a piecewise linear force between random instants, with jumps and short pulses:
 /// velocity and position are integrals of the table.
 #[test]
-fn inputs_are_followed_exactly() {
+fn piecewise_linear_inputs_are_applied_exactly() {
     let here = test_folder("random_inputs");
     let cart = mechanism_source(
         "    #[body(mass = 1)]\n    cart: Body,\n    \
@@ -269,7 +272,7 @@ fn inputs_are_followed_exactly() {
 /// Checks a cart on a stiff, overdamped spring under a constant force, which starts at rest: the motion is
 /// the closed form of an overdamped oscillator with large `c` and `k`.
 #[test]
-fn stiff_springs_are_integrated() {
+fn stiff_overdamped_springs_follow_the_closed_form() {
     let here = test_folder("random_stiff");
     for case in 0..case_count() {
         let random = &mut Random(5 * case + 7);

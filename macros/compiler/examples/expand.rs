@@ -18,7 +18,7 @@ use linkwork_compiler::lower::{Counts, Op, Program, pipeline};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{compile, derive_with, expand, read_source};
+use linkwork_compiler::{compile, derive_with_options, expand, read_source};
 use proc_macro2::TokenStream;
 use quote::ToTokens;
 use std::cell::RefCell;
@@ -27,13 +27,13 @@ use std::process::ExitCode;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// Number of repetitions; the shortest time is printed.
+/// Number of repetitions of each measurement; the shortest time is printed.
 const REPEATS: usize = 5;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Arguments and struct of a `#[mechanism]`.
-struct Input {
+/// Mechanism to expand: the arguments of its attribute, and the struct.
+struct MechanismInput {
     arguments: TokenStream,
     item: TokenStream,
     folder: PathBuf,
@@ -71,8 +71,8 @@ fn run_expansion() -> Result<(), Failure> {
     }
     let file = file.ok_or("expected a Rust file with a `#[mechanism]` struct, or a URDF file")?;
     let input = match file.extension().and_then(|e| e.to_str()) {
-        Some("rs") => from_rust(file, name)?,
-        _ => from_urdf(file, &options)?,
+        Some("rs") => struct_of_rust_file(file, name)?,
+        _ => struct_of_urdf(file, &options)?,
     };
     if let Some(pass) = pass {
         let known = [pipeline::DRAFT, pipeline::FINISH].concat();
@@ -81,7 +81,7 @@ fn run_expansion() -> Result<(), Failure> {
         if pass != "all" && !names.contains(&pass) {
             return Err(format!("there is no pass `{pass}`: {}", names.join(", ")).into());
         }
-        return print_after(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
+        return print_after_pass(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
     }
     match mode {
         "--counts" => print_operation_counts(&input),
@@ -91,7 +91,7 @@ fn run_expansion() -> Result<(), Failure> {
 }
 
 /// Returns the struct of a Rust file; paths in it are relative to the package.
-fn from_rust(path: &Path, name: Option<&str>) -> Result<Input, Failure> {
+fn struct_of_rust_file(path: &Path, name: Option<&str>) -> Result<MechanismInput, Failure> {
     let all = mechanism_structs(path)?;
     let mut named = all.into_iter().filter(|item| name.is_none_or(|name| item.ident == name));
     split_attribute(path, named.next().ok_or("the file has no such struct with `#[mechanism]`")?)
@@ -120,7 +120,7 @@ fn mechanism_structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
 }
 
 /// Returns a struct without its attribute, together with the attribute's arguments.
-fn split_attribute(path: &Path, mut item: syn::ItemStruct) -> Result<Input, Failure> {
+fn split_attribute(path: &Path, mut item: syn::ItemStruct) -> Result<MechanismInput, Failure> {
     let mut arguments = TokenStream::new();
     item.attrs.retain(|attribute| {
         if is_mechanism(attribute)
@@ -134,21 +134,25 @@ fn split_attribute(path: &Path, mut item: syn::ItemStruct) -> Result<Input, Fail
     let package = path.ancestors().find(|folder| folder.join("Cargo.toml").is_file());
     let folder = package.or(path.parent()).unwrap_or(&path).to_path_buf();
     let item = item.to_token_stream();
-    Ok(Input { arguments, item, folder })
+    Ok(MechanismInput { arguments, item, folder })
 }
 
 /// Returns a struct without fields for a URDF file.
-fn from_urdf(path: &Path, options: &[(&str, &str)]) -> Result<Input, Failure> {
+fn struct_of_urdf(path: &Path, options: &[(&str, &str)]) -> Result<MechanismInput, Failure> {
     let path = path.canonicalize()?;
     let mut arguments = format!("urdf = {:?}", path.to_string_lossy());
     for (key, value) in options {
         arguments += &format!(", {key} = {value}");
     }
-    Ok(Input { arguments: arguments.parse()?, item: "pub struct Robot;".parse()?, folder: PathBuf::new() })
+    Ok(MechanismInput {
+        arguments: arguments.parse()?,
+        item: "pub struct Robot;".parse()?,
+        folder: PathBuf::new(),
+    })
 }
 
-impl Input {
-    fn expand(&self) -> linkwork_compiler::emit::Emitted {
+impl MechanismInput {
+    fn expand_input(&self) -> linkwork_compiler::emit::Emitted {
         expand(self.arguments.clone(), self.item.clone(), &self.folder)
     }
 }
@@ -161,22 +165,22 @@ fn print_generated_code(files: &[String]) -> Result<(), Failure> {
         for item in mechanism_structs(Path::new(file))? {
             println!("===== {file}: {}", item.ident);
             let mut input = split_attribute(Path::new(file), item)?;
-            let plain = input.expand();
+            let plain = input.expand_input();
             println!("{}\n{}", plain.tokens, plain.text);
             let given: Vec<String> = input.arguments.clone().into_iter().map(|t| t.to_string()).collect();
             let more: Vec<&str> = WORDS.into_iter().filter(|word| !given.iter().any(|g| g == word)).collect();
             let separator = if given.last().is_none_or(|last| last == ",") { "" } else { "," };
             input.arguments.extend(format!("{separator}{}", more.join(",")).parse::<TokenStream>()?);
             println!("----- with all words");
-            let whole = input.expand();
+            let whole = input.expand_input();
             println!("{}\n{}", whole.tokens, whole.text);
         }
     }
     Ok(())
 }
 
-fn print_formatted_rust(input: &Input) -> Result<(), Failure> {
-    println!("{}", prettyplease::unparse(&syn::parse2(input.expand().into_tokens()?)?));
+fn print_formatted_rust(input: &MechanismInput) -> Result<(), Failure> {
+    println!("{}", prettyplease::unparse(&syn::parse2(input.expand_input().into_tokens()?)?));
     Ok(())
 }
 
@@ -185,7 +189,7 @@ fn result_or_errors<T>(found: Option<T>, cx: &Diagnostics) -> Result<T, Failure>
     found.ok_or_else(|| cx.messages().join("\n").into())
 }
 
-fn print_operation_counts(input: &Input) -> Result<(), Failure> {
+fn print_operation_counts(input: &MechanismInput) -> Result<(), Failure> {
     let cx = &mut Diagnostics::new();
     let source = read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx);
     let source = result_or_errors(source, cx)?;
@@ -251,7 +255,7 @@ fn print_count_row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Progra
 }
 
 /// Prints the programs of one function after a pass, or after every pass.
-fn print_after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
+fn print_after_pass(input: &MechanismInput, pass: &str, function: &str) -> Result<(), Failure> {
     let (wanted, of) = (pass.to_string(), function.to_string());
     let print_after_pass = move |function: &str, pass: &str, program: &Program, _: Duration| {
         if function == of && (pass == wanted || wanted == "all") {
@@ -287,14 +291,14 @@ fn symbol_name(symbol: Symbol) -> String {
     }
 }
 
-/// Durations by name, each the minimum of several runs.
+/// Measured durations of compiler stages by name, each the minimum of several runs.
 #[derive(Default)]
 struct Stopwatch {
     stages: Vec<(String, Duration)>,
 }
 
 impl Stopwatch {
-    /// Records the duration of a stage in one run; the minimum over all runs is kept.
+    /// Records the duration of a compiler stage in one run; the minimum over all runs is stored.
     fn record_least_duration(&mut self, stage: &str, elapsed: Duration) {
         match self.stages.iter_mut().find(|(name, _)| name == stage) {
             Some((_, least)) => *least = elapsed.min(*least),
@@ -317,10 +321,10 @@ impl Stopwatch {
 
 /// Prints the time of every stage, and within `derive` that of every pass of lowering, over all functions and
 /// all their candidate programs.
-fn print_stage_times(input: &Input) -> Result<(), Failure> {
+fn print_stage_times(input: &MechanismInput) -> Result<(), Failure> {
     let (mut watch, mut passes) = (Stopwatch::default(), Stopwatch::default());
     for _ in 0..REPEATS {
-        one_run(input, &mut watch, &mut passes)?;
+        run_once(input, &mut watch, &mut passes)?;
     }
     let lowered: Duration = passes.stages.iter().map(|(_, time)| *time).sum();
     let known = ["read", "model", "derive"].map(|stage| watch.duration_of_stage(stage)).into_iter().sum();
@@ -340,9 +344,9 @@ fn print_stage_times(input: &Input) -> Result<(), Failure> {
     Ok(())
 }
 
-fn one_run(input: &Input, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Result<(), Failure> {
+fn run_once(input: &MechanismInput, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Result<(), Failure> {
     let cx = &mut Diagnostics::new();
-    watch.measure_stage("whole expansion", || input.expand());
+    watch.measure_stage("whole expansion", || input.expand_input());
     let source = watch.measure_stage("read", || {
         read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx)
     });
@@ -360,7 +364,8 @@ fn one_run(input: &Input, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Resu
         }
     };
     let output = pipeline::with_observer(Box::new(record_pass_time), || {
-        let derive_all_functions = || derive_with(&model, source.mechanism.requests, Passes::default(), cx);
+        let derive_all_functions =
+            || derive_with_options(&model, source.mechanism.requests, Passes::default(), cx);
         watch.measure_stage("derive", derive_all_functions)
     });
     result_or_errors(output, cx)?;

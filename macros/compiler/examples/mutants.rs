@@ -29,7 +29,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static CHOSEN: OnceLock<Vec<usize>> = OnceLock::new();
 static REACHED: OnceLock<Option<File>> = OnceLock::new();
 static SEEN: [AtomicBool; 10_000] = [const { AtomicBool::new(false) }; 10_000];
-/// Returns whether this mutant is the selected one.
+/// Returns whether the environment selects this mutant.
 pub fn is(mutant: usize) -> bool {
     if !SEEN[mutant].load(Ordering::Relaxed)
         && !SEEN[mutant].swap(true, Ordering::Relaxed)
@@ -45,7 +45,7 @@ pub fn is(mutant: usize) -> bool {
 /// Visitor that adds mutants to the expressions of a file.
 struct Mutator<'a> {
     file: PathBuf,
-    /// Limits of `machine` that the file imports.
+    /// Names of the limits of `machine` that the mutated file imports.
     limits: Vec<String>,
     next: usize,
     left_out: &'a [usize],
@@ -72,7 +72,7 @@ impl Mutator<'_> {
     }
 
     /// Returns whether an expression is a limit of `machine`.
-    fn is_limit(&self, expr: &Expr) -> bool {
+    fn is_limit_of_machine(&self, expr: &Expr) -> bool {
         matches!(expr, Expr::Path(path) if self.limits.iter().any(|limit| path.path.is_ident(limit)))
     }
 
@@ -90,7 +90,7 @@ impl Mutator<'_> {
                     BinOp::Le(_) => parse_quote!(<),
                     BinOp::Gt(_) => parse_quote!(>=),
                     BinOp::Ge(_) => parse_quote!(>),
-                    BinOp::And(_) if !has_let(expr) => parse_quote!(||),
+                    BinOp::And(_) if !contains_let(expr) => parse_quote!(||),
                     BinOp::Or(_) => parse_quote!(&&),
                     _ => return None,
                 }
@@ -123,7 +123,7 @@ impl Mutator<'_> {
 
 /// Returns the names that a file imports from `machine`.
 fn imported_machine_limits(file: &syn::File) -> Vec<String> {
-    let of_machine = |item: &syn::Item| match item {
+    let names_of_use_item = |item: &syn::Item| match item {
         syn::Item::Use(item) => {
             let text = item.tree.to_token_stream().to_string();
             text.strip_prefix("crate :: machine ::").map(|names| {
@@ -132,7 +132,7 @@ fn imported_machine_limits(file: &syn::File) -> Vec<String> {
         }
         _ => None,
     };
-    let names: Vec<Vec<String>> = file.items.iter().filter_map(of_machine).collect();
+    let names: Vec<Vec<String>> = file.items.iter().filter_map(names_of_use_item).collect();
     names.concat().into_iter().filter(|name| !name.is_empty()).collect()
 }
 
@@ -153,16 +153,16 @@ fn confusable_name(name: &str) -> Option<&'static str> {
     })
 }
 
-fn has_let(expr: &Expr) -> bool {
+fn contains_let(expr: &Expr) -> bool {
     match expr {
         Expr::Let(_) => true,
-        Expr::Binary(binary) => has_let(&binary.left) || has_let(&binary.right),
-        Expr::Paren(inner) => has_let(&inner.expr),
+        Expr::Binary(binary) => contains_let(&binary.left) || contains_let(&binary.right),
+        Expr::Paren(inner) => contains_let(&inner.expr),
         _ => false,
     }
 }
 
-/// Returns the first 100 characters of the tokens on one line.
+/// Returns the source text of tokens on one line, cut after 100 characters.
 fn shortened_tokens(tokens: &dyn ToTokens) -> String {
     let text = tokens.to_token_stream().to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     text.chars().take(100).collect()
@@ -171,7 +171,7 @@ fn shortened_tokens(tokens: &dyn ToTokens) -> String {
 impl VisitMut for Mutator<'_> {
     fn visit_expr_mut(&mut self, expr: &mut Expr) {
         if let Expr::Binary(binary) = expr
-            && [&binary.left, &binary.right].iter().any(|side| self.is_limit(side))
+            && [&binary.left, &binary.right].iter().any(|side| self.is_limit_of_machine(side))
         {
             return;
         }
@@ -246,7 +246,7 @@ impl VisitMut for Mutator<'_> {
     fn visit_pat_mut(&mut self, _: &mut syn::Pat) {}
     fn visit_path_mut(&mut self, _: &mut syn::Path) {}
     fn visit_attribute_mut(&mut self, _: &mut syn::Attribute) {}
-    /// Skips array lengths, which are constants.
+    /// Skips array lengths, which must remain constant expressions.
     fn visit_expr_repeat_mut(&mut self, repeat: &mut syn::ExprRepeat) {
         self.visit_expr_mut(&mut repeat.expr);
     }

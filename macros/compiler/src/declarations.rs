@@ -12,9 +12,9 @@ pub struct DeclaredStruct {
     pub name: String,
     /// Arguments of the attribute `#[mechanism]`.
     pub arguments: TokenStream,
-    /// The struct without the attribute.
+    /// The struct without the attribute `#[mechanism]`.
     pub item: TokenStream,
-    /// The attribute, if a `#[derive(…)]` precedes it.
+    /// Position of the attribute, if a `#[derive(…)]` precedes it.
     pub derive_above: Option<Span>,
 }
 
@@ -51,7 +51,7 @@ impl DeclaredStruct {
         let name = type_name(path);
         let ident = syn::Ident::new(&name, Span::call_site());
         let written = path.to_string_lossy().into_owned();
-        let format = syn::Ident::new(format_of(path, text).format_option(), Span::call_site());
+        let format = syn::Ident::new(robot_file_format(path, text).format_option(), Span::call_site());
         DeclaredStruct {
             name,
             arguments: quote::quote!(#format = #written),
@@ -60,7 +60,7 @@ impl DeclaredStruct {
         }
     }
 
-    /// Appends arguments to those of the attribute.
+    /// Appends arguments to those of the attribute `#[mechanism]`.
     pub fn add(&mut self, more: TokenStream) {
         if more.is_empty() {
             return;
@@ -97,7 +97,7 @@ pub fn mechanism_declarations(text: &str) -> syn::Result<Vec<DeclaredStruct>> {
 
 /// Returns the format of a robot file: from the ending of its name if that is unambiguous, else from its
 /// root element.
-fn format_of(path: &Path, text: &str) -> FileFormat {
+fn robot_file_format(path: &Path, text: &str) -> FileFormat {
     let has_extension = |end: &str| path.extension().is_some_and(|known| known.eq_ignore_ascii_case(end));
     match () {
         () if has_extension("urdf") => FileFormat::Urdf,

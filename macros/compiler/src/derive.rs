@@ -45,11 +45,11 @@ const MOST_PRODUCTS: usize = 100_000;
 /// Derives all functions except the optional ones. Returns `None` with the error in `cx` if the mass matrix
 /// is singular.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
-    derive_with(model, Requests::default(), Passes::default(), cx)
+    derive_with_options(model, Requests::default(), Passes::default(), cx)
 }
 
 /// Like [`derive()`], with optional functions and a choice of optimisation passes.
-pub fn derive_with<'g>(
+pub fn derive_with_options<'g>(
     model: &Model<'g>,
     requests: Requests,
     passes: Passes,
@@ -68,7 +68,7 @@ pub fn derive_with<'g>(
     }
     let mass = crba::mass_matrix(model, &joints);
     if !singular::check_mass_matrix(model, &joints, &mass, cx)
-        || !singular::check_effective(model, &joints, &mass, cx)
+        || !singular::check_effective_mass(model, &joints, &mass, cx)
     {
         return None;
     }
@@ -76,18 +76,18 @@ pub fn derive_with<'g>(
         return None;
     }
     let cyclic = requested_cyclic_coordinates(model, requests, &joints, cx)?;
-    let extras = Extras {
+    let extras = OptionalData {
         identification: requests.regressor.then(|| Identification::new(model, &joints)),
         entries: requests.packed.then(|| match &speeds {
             Some(speeds) => nonzero_mass_entries(&speeds.transform_mass_matrix(&mass)),
             None => nonzero_mass_entries(&mass),
         }),
-        hamilton: (requests.hamilton && !has_massless(model))
+        hamilton: (requests.hamilton && !has_massless_coordinates(model))
             .then(|| hamilton::derive(model, &joints, &mass)),
         routh: cyclic.clone().filter(|_| requests.routh).map(|c| routh::derive(model, &joints, &mass, c)),
         conserved: requests
             .conserved
-            .then(|| in_speeds(conserved::conserved_quantities(model, &joints), speeds.as_deref())),
+            .then(|| conserved_in_speeds(conserved::conserved_quantities(model, &joints), speeds.as_deref())),
     };
     let own = (model, speeds.as_ref());
     let functions_with_specialisation =
@@ -148,7 +148,8 @@ fn derive_kinematic<'g>(
     }
     let asked = Requests { drawing: requests.drawing, ..Requests::default() };
     let own = (model, speeds);
-    let functions = derive_functions(own, asked, passes, joints, &Extras::default(), Specialisation::None);
+    let functions =
+        derive_functions(own, asked, passes, joints, &OptionalData::default(), Specialisation::None);
     let constants = drawing_constants(model, requests);
     check_derived_output(model, Output { constants, ..output_with_steps(model, joints, functions) }, cx)
 }
@@ -156,7 +157,9 @@ fn derive_kinematic<'g>(
 /// Checks that the requested functions exist for a mechanism and are not too long; reports an error and
 /// returns false otherwise.
 fn check_requests(model: &Model<'_>, requests: Requests, cx: &mut Diagnostics) -> bool {
-    if let ([force, ..], Some(what)) = (model.acceleration_forces.as_slice(), without_momentum(requests)) {
+    if let ([force, ..], Some(what)) =
+        (model.acceleration_forces.as_slice(), request_excluded_without_momentum(requests))
+    {
         cx.report_error(
             force.place.clone(),
             format!("a force that depends on accelerations excludes {what}"),
@@ -164,7 +167,7 @@ fn check_requests(model: &Model<'_>, requests: Requests, cx: &mut Diagnostics) -
         .add_help("remove the option that requests them, or these terms of the force");
         return false;
     }
-    if let Some(what) = too_long(model, requests) {
+    if let Some(what) = overlong_request(model, requests) {
         cx.report_error(model.place.clone(), format!("{what} would be too long")).add_help(
             "the generated code has no loops, and a line for each of them: request it for a smaller \
              mechanism",
@@ -175,7 +178,10 @@ fn check_requests(model: &Model<'_>, requests: Requests, cx: &mut Diagnostics) -
 }
 
 /// Writes the values of conserved quantities in generalized speeds, if the mechanism defines any.
-fn in_speeds<'g>(mut kept: Vec<Conserved<'g>>, speeds: Option<&InSpeeds<'g>>) -> Vec<Conserved<'g>> {
+fn conserved_in_speeds<'g>(
+    mut kept: Vec<Conserved<'g>>,
+    speeds: Option<&InSpeeds<'g>>,
+) -> Vec<Conserved<'g>> {
     if let Some(speeds) = speeds {
         kept.iter_mut().for_each(|c| c.value = speeds.express_in_speeds(&[c.value])[0]);
     }
@@ -243,7 +249,7 @@ fn remaining_passes(passes: Passes, skipped: Skipped) -> Passes {
 
 /// Returns the first requested quantity that exists only if forces do not depend on accelerations: canonical
 /// momenta or second derivatives. Returns `None` if no such quantity is requested.
-fn without_momentum(requests: Requests) -> Option<&'static str> {
+fn request_excluded_without_momentum(requests: Requests) -> Option<&'static str> {
     let canonical = requests.hamilton || requests.equations == Printed::Hamilton;
     let reduced = requests.routh || requests.equations == Printed::Routh;
     let asked = [
@@ -260,7 +266,7 @@ fn without_momentum(requests: Requests) -> Option<&'static str> {
 const MOST_DERIVATIVES: usize = 300_000;
 
 /// Returns the requested derivatives whose code would be too long for rustc, if there are any.
-fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
+fn overlong_request(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
     let squared = model.nv() * model.nv();
     let elements = model.potentials.len()
         + model.loads.len()
@@ -276,7 +282,7 @@ fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
 
 /// Data that optional functions need in addition to the model.
 #[derive(Default)]
-struct Extras<'a, 'g> {
+struct OptionalData<'a, 'g> {
     /// Base parameters; present if the option `regressor` is set.
     identification: Option<Identification<'a, 'g>>,
     /// Row and column of each nonzero entry; present if the option `packed` is set.
@@ -316,13 +322,13 @@ fn requested_cyclic_coordinates<'g>(
     None
 }
 
-/// Returns whether constraints determine coordinates without inertia. Momenta do not determine the velocities
-/// of such coordinates.
-fn has_massless(model: &Model<'_>) -> bool {
+/// Returns whether constraints determine coordinates without inertia, so that momenta do not determine the
+/// velocities.
+fn has_massless_coordinates(model: &Model<'_>) -> bool {
     model.constraints.iter().any(|c| c.determines)
 }
 
-impl<'g> Extras<'_, 'g> {
+impl<'g> OptionalData<'_, 'g> {
     fn facts_of_model(&self, model: &Model<'g>, requests: Requests) -> Facts {
         let [bodies, base] =
             self.identification.as_ref().map(Identification::body_and_parameter_counts).unwrap_or_default();
@@ -341,13 +347,13 @@ fn nonzero_mass_entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
     all.filter(|(i, j)| !mass[*i][*j].is_zero()).collect()
 }
 
-/// Derives all functions with their programs.
+/// Derives all functions of a mechanism and lowers them to programs.
 fn derive_functions<'g>(
     (model, speeds): (&Model<'g>, Option<&Rc<InSpeeds<'g>>>),
     requests: Requests,
     passes: Passes,
     joints: &[Joint<'g>],
-    extras: &Extras<'_, 'g>,
+    extras: &OptionalData<'_, 'g>,
     specialisation: Specialisation,
 ) -> Vec<Function> {
     let given = match speeds {
@@ -358,17 +364,17 @@ fn derive_functions<'g>(
     let facts = extras.facts_of_model(model, requests);
     let passes = Passes { free_parameters: specialisation == Specialisation::ByParameters, ..passes };
     let derivation = Derivation::new(model, joints, speeds, passes, specialisation, &facts);
-    let functions = derivation.derive(catalogue::before_outputs(&facts), Vec::new());
-    let functions = derivation.derive(outputs::declared_output_functions(model, &facts), functions);
+    let functions = derivation.derive_declared(catalogue::functions_before_outputs(&facts), Vec::new());
+    let functions = derivation.derive_declared(outputs::declared_output_functions(model, &facts), functions);
     let by_variants = facts.requests.derivatives && speeds.is_none();
     let variants = if by_variants { derivatives::model_variants(model, passes) } else { Vec::new() };
     let derivatives = Derivatives::new(model, &variants, passes, specialisation);
     // The structure of the derivatives of a large mechanism is known only at this point.
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls_other_functions);
-    let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);
+    let calls_linear = derivatives.as_ref().is_some_and(Derivatives::linearization_calls_functions);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
     let derivation = derivation.with_option_data(&facts, extras, derivatives.as_ref());
-    let mut functions = derivation.derive(catalogue::after_outputs(&facts), functions);
+    let mut functions = derivation.derive_declared(catalogue::functions_after_outputs(&facts), functions);
     finish_lowering(&mut functions, requests.reproducible);
     functions
 }
@@ -380,7 +386,7 @@ fn finish_lowering(functions: &mut [Function], reproducible: bool) {
         pipeline::begin_function(&f.name);
         f.program = std::mem::take(&mut f.program).run_passes(pipeline::FINISH);
         if let Some(simd) = f.program.simd.take_if(|_| reproducible) {
-            let program = simd.without_lanes().run_passes(&[pipeline::SCHEDULE]);
+            let program = simd.expand_lanes().run_passes(&[pipeline::SCHEDULE]);
             f.program = Program { simd: Some(simd), ..program };
         }
     }
@@ -389,15 +395,15 @@ fn finish_lowering(functions: &mut [Function], reproducible: bool) {
 /// Returns the equations of motion as plain text, one line per equation. The text is empty if the equations
 /// are too long to be readable.
 pub fn equations_as_text(model: &Model<'_>) -> String {
-    written_alone(model).plain
+    equations_without_speeds(model).plain
 }
 
 /// Returns the equations of motion as LaTeX: an `aligned` environment for math mode, with `amsmath`.
 pub fn equations_latex(model: &Model<'_>) -> String {
-    written_alone(model).latex
+    equations_without_speeds(model).latex
 }
 
-fn written_alone(model: &Model<'_>) -> Written {
+fn equations_without_speeds(model: &Model<'_>) -> Written {
     let speeds = InSpeeds::new(model);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints_of_model(model);
@@ -519,7 +525,7 @@ fn written_equations<'g>(
         .map_or_else(Written::default, |e| equations::format_equations(named, &e))
 }
 
-/// Lowers the outputs of one step of the recursion from link to link.
+/// Lowers the outputs of one step of the kinematic recursion from link to link.
 fn lower_recursion_step(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).run_passes(pipeline::PART)
 }

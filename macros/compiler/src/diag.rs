@@ -10,9 +10,9 @@ use std::rc::Rc;
 pub struct Place {
     /// First token at which an error is shown; for an imported file, the token of its path.
     pub span: Span,
-    /// Last token at which an error is shown.
+    /// Last token of the range at which an error is shown.
     pub end: Span,
-    /// Position in the imported file, if the error is in one.
+    /// Position of the error in the imported file, if it concerns one.
     pub file: Option<FilePosition>,
 }
 
@@ -40,7 +40,7 @@ impl From<Span> for Place {
     }
 }
 
-/// One error: its message, its position, and notes and help for the user.
+/// Compiler error: its message, its position, and notes and help for the user.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     place: Place,
@@ -50,7 +50,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Creates an error without notes and help.
+    /// Creates an error without notes and help lines.
     pub fn new(place: impl Into<Place>, message: impl Into<String>) -> Diagnostic {
         Diagnostic { place: place.into(), message: message.into(), notes: Vec::new(), help: Vec::new() }
     }
@@ -157,12 +157,12 @@ impl Diagnostics {
         Diagnostics { unread: true, ..Diagnostics::default() }
     }
 
-    /// Returns true if the list will be printed.
+    /// Returns true if the errors of this list will be printed.
     pub fn is_read(&self) -> bool {
         !self.unread
     }
 
-    /// Returns the number of errors.
+    /// Returns the number of reported errors.
     pub fn len(&self) -> usize {
         self.errors.len()
     }
@@ -204,7 +204,7 @@ impl Diagnostics {
     /// Sets the names of lists of elements. Errors that differ only in the index of an element, for example
     /// `leg_0` and `leg_1` of the list `leg`, are then printed once, because both refer to the same source
     /// text.
-    pub fn count_alike(&mut self, lists: Vec<String>) {
+    pub fn set_list_names(&mut self, lists: Vec<String>) {
         self.lists = lists;
     }
 
@@ -214,11 +214,11 @@ impl Diagnostics {
         let mut said = std::collections::BTreeSet::new();
         self.errors
             .iter()
-            .filter(move |one| self.lists.is_empty() || said.insert(self.without_numbers(&one.message)))
+            .filter(move |one| self.lists.is_empty() || said.insert(self.remove_list_indices(&one.message)))
     }
 
     /// Replaces the index of each list element in a message by `[]`.
-    fn without_numbers(&self, message: &str) -> String {
+    fn remove_list_indices(&self, message: &str) -> String {
         let is_word_character = |c: char| c.is_alphanumeric() || c == '_';
         let words = message.split_inclusive(|c| !is_word_character(c)).map(|word| {
             let name = word.trim_end_matches(|c| !is_word_character(c));
@@ -236,7 +236,7 @@ impl Diagnostics {
         self.distinct_errors().map(Diagnostic::complete_message).collect()
     }
 
-    /// Returns one `compile_error!` per error, at its tokens.
+    /// Returns the `compile_error!` invocations of all errors, at their tokens.
     pub fn into_tokens(self) -> TokenStream {
         self.distinct_errors().flat_map(Diagnostic::compile_error_tokens).collect()
     }
@@ -319,7 +319,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_finds_its_name_and_a_stranger_does_not() {
+    fn misspelt_names_get_suggestions_and_unrelated_names_none() {
         assert_eq!(nearest_candidate("Sleve", &["Pin", "Sleeve", "Slot"]), Some("Sleeve"));
         assert_eq!(nearest_candidate("cart_mas", &["cart_mass", "pole_mass"]), Some("cart_mass"));
         assert_eq!(nearest_candidate("abuot", &["about", "along"]), Some("about"));

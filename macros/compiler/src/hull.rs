@@ -8,7 +8,7 @@
 /// Point in space.
 pub type Point = [f64; 3];
 
-/// Maximum number of vertices of a hull.
+/// Maximum number of vertices of a convex hull.
 pub const MAX_VERTICES: usize = 32;
 
 /// Distance below which a point is treated as part of a face, relative to the size of the hull.
@@ -20,25 +20,25 @@ const COPLANAR: f64 = 1e-7;
 /// Twice the area below which a triangle does not determine a plane, relative to the squared size.
 const SLENDER: f64 = 1e-8;
 
-/// Convex hull.
+/// Convex hull of points: vertices, faces and edges.
 #[derive(Clone, Debug)]
 pub struct Hull {
-    /// Vertices, which are some of the points.
+    /// Vertices of the hull, a subset of the given points.
     pub vertices: Vec<Point>,
-    /// Planes of the faces.
+    /// Planes of the faces of the hull.
     pub faces: Vec<HullFace>,
-    /// Edges, as pairs of vertices.
+    /// Edges of the hull, as pairs of indices of vertices.
     pub edges: Vec<[usize; 2]>,
-    /// Largest extent along an axis.
+    /// Largest extent of the hull along a coordinate axis.
     pub size: f64,
-    /// Maximum distance of a point from the hull.
+    /// Maximum distance of a given point from the hull.
     pub error: f64,
 }
 
-/// Face of a hull.
+/// Face of a convex hull, by its plane.
 #[derive(Clone, Copy, Debug)]
 pub struct HullFace {
-    /// Outward unit normal.
+    /// Outward unit normal of the face.
     pub normal: Point,
     /// Distance of the plane from the origin along the normal.
     pub offset: f64,
@@ -46,12 +46,12 @@ pub struct HullFace {
     corners: u32,
 }
 
-/// Reason why points have no hull.
+/// Reason why a set of points has no convex hull.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HullError {
-    /// A coordinate is infinite or not a number.
+    /// A coordinate of a point is infinite or not a number.
     NotFinite,
-    /// Number of different points, which is less than four.
+    /// The number of distinct points is less than four.
     TooFew(usize),
     /// All points are in one plane.
     Coplanar,
@@ -59,7 +59,7 @@ pub enum HullError {
 
 impl HullFace {
     /// Returns the distance of a point from the plane, positive outside of the hull.
-    fn distance(&self, p: Point) -> f64 {
+    fn distance_from_plane(&self, p: Point) -> f64 {
         dot(self.normal, p) - self.offset
     }
 }
@@ -73,20 +73,20 @@ impl Hull {
         let mut outside = points.to_vec();
         outside.sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
         outside.dedup();
-        let size = extent(&outside);
+        let size = largest_extent(&outside);
         let mut vertices = first_vertices(&outside, size)?;
         let maximum = maximum.clamp(4, MAX_VERTICES);
         // After superfluous vertices are removed, others may take their place.
         for _ in 0..3 {
-            grow(&mut vertices, &mut outside, maximum, size);
+            add_farthest_points(&mut vertices, &mut outside, maximum, size);
             let before = vertices.len();
             remove_superfluous(&mut vertices, size);
             if vertices.len() == before || outside.is_empty() {
                 break;
             }
         }
-        let faces = faces(&vertices, size);
-        let edges = edges(&vertices, &faces);
+        let faces = hull_faces(&vertices, size);
+        let edges = hull_edges(&vertices, &faces);
         let mut hull = Hull { vertices, faces, edges, size, error: 0.0 };
         hull.error = outside.iter().map(|p| hull.distance(*p)).fold(0.0, f64::max);
         Ok(hull)
@@ -96,47 +96,48 @@ impl Hull {
     pub fn distance(&self, p: Point) -> f64 {
         let Some((face, height)) = farthest_face(&self.faces, p) else { return f64::NAN };
         let foot = sub(p, face.normal.map(|x| x * height));
-        if self.faces.iter().all(|face| face.distance(foot) <= FLAT * self.size) {
+        if self.faces.iter().all(|face| face.distance_from_plane(foot) <= FLAT * self.size) {
             return height;
         }
-        let to_edge = |edge: &[usize; 2]| distance_from_segment(p, edge.map(|k| self.vertices[k]));
-        self.edges.iter().map(to_edge).fold(f64::INFINITY, f64::min)
+        let distance_to_edge = |edge: &[usize; 2]| distance_from_segment(p, edge.map(|k| self.vertices[k]));
+        self.edges.iter().map(distance_to_edge).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// Returns the largest extent along an axis.
-fn extent(points: &[Point]) -> f64 {
-    let range = |k: usize| {
-        let bound = |f: fn(f64, f64) -> f64, from: f64| points.iter().map(|p| p[k]).fold(from, f);
-        bound(f64::max, f64::NEG_INFINITY) - bound(f64::min, f64::INFINITY)
+/// Returns the largest extent of a set of points along a coordinate axis.
+fn largest_extent(points: &[Point]) -> f64 {
+    let extent_along_axis = |k: usize| {
+        let bound_of_coordinate =
+            |f: fn(f64, f64) -> f64, from: f64| points.iter().map(|p| p[k]).fold(from, f);
+        bound_of_coordinate(f64::max, f64::NEG_INFINITY) - bound_of_coordinate(f64::min, f64::INFINITY)
     };
-    (0..3).map(range).fold(0.0, f64::max)
+    (0..3).map(extent_along_axis).fold(0.0, f64::max)
 }
 
 /// Returns four points that are not coplanar, each as far as possible from the hull of the previous ones.
 fn first_vertices(points: &[Point], size: f64) -> Result<Vec<Point>, HullError> {
     let [a, _, _, _, ..] = points else { return Err(HullError::TooFew(points.len())) };
-    let farthest = |distance: &dyn Fn(Point) -> f64| {
+    let farthest_point = |distance: &dyn Fn(Point) -> f64| {
         let found = points.iter().copied().max_by(|p, q| distance(*p).total_cmp(&distance(*q)));
         found.filter(|p| distance(*p) > FLAT * size).ok_or(HullError::Coplanar)
     };
-    let b = farthest(&|p| norm(sub(p, *a)))?;
+    let b = farthest_point(&|p| norm(sub(p, *a)))?;
     let along = sub(b, *a).map(|x| x / norm(sub(b, *a)));
-    let c = farthest(&|p| norm(cross(along, sub(p, *a))))?;
+    let c = farthest_point(&|p| norm(cross(along, sub(p, *a))))?;
     let normal = cross(along, sub(c, *a));
     let normal = normal.map(|x| x / norm(normal));
-    let d = farthest(&|p| dot(normal, sub(p, *a)).abs())?;
+    let d = farthest_point(&|p| dot(normal, sub(p, *a)).abs())?;
     Ok(vec![*a, b, c, d])
 }
 
 /// Adds the points that are farthest outside, and removes points inside of the hull from `outside`.
-fn grow(vertices: &mut Vec<Point>, outside: &mut Vec<Point>, maximum: usize, size: f64) {
+fn add_farthest_points(vertices: &mut Vec<Point>, outside: &mut Vec<Point>, maximum: usize, size: f64) {
     loop {
-        let faces = faces(vertices, size);
-        let height = |p: &Point| farthest_face(&faces, *p).map_or(0.0, |(_, height)| height);
+        let faces = hull_faces(vertices, size);
+        let height_above_hull = |p: &Point| farthest_face(&faces, *p).map_or(0.0, |(_, height)| height);
         let mut next: Option<(f64, Point)> = None;
         outside.retain(|p| {
-            let height = height(p);
+            let height = height_above_hull(p);
             if height > FLAT * size && next.is_none_or(|(known, _)| height > known) {
                 next = Some((height, *p));
             }
@@ -154,9 +155,10 @@ fn remove_superfluous(vertices: &mut Vec<Point>, size: f64) {
     let mut k = 0;
     while k < vertices.len() && vertices.len() > 4 {
         let p = vertices.remove(k);
-        let faces = faces(vertices, size);
+        let faces = hull_faces(vertices, size);
         // Coplanar vertices have no faces or faces on both sides.
-        let is_inside = faces.len() > 3 && faces.iter().all(|face| face.distance(p) <= FLAT * size);
+        let is_inside =
+            faces.len() > 3 && faces.iter().all(|face| face.distance_from_plane(p) <= FLAT * size);
         if !is_inside {
             vertices.insert(k, p);
             k += 1;
@@ -165,7 +167,7 @@ fn remove_superfluous(vertices: &mut Vec<Point>, size: f64) {
 }
 
 /// Returns the planes through three vertices or more that have no vertex outside of them.
-fn faces(vertices: &[Point], size: f64) -> Vec<HullFace> {
+fn hull_faces(vertices: &[Point], size: f64) -> Vec<HullFace> {
     let tolerance = COPLANAR * size;
     let mut found: Vec<HullFace> = Vec::new();
     for (i, a) in vertices.iter().enumerate() {
@@ -182,7 +184,7 @@ fn faces(vertices: &[Point], size: f64) -> Vec<HullFace> {
                 found.extend([normal, normal.map(|x| -x)].into_iter().find_map(|normal| {
                     let mut face = HullFace { normal, offset: dot(normal, *a), corners: 0 };
                     for (k, p) in vertices.iter().enumerate() {
-                        match face.distance(*p) {
+                        match face.distance_from_plane(*p) {
                             height if height > tolerance => return None,
                             height if height >= -tolerance => face.corners |= 1 << k,
                             _ => {}
@@ -196,8 +198,8 @@ fn faces(vertices: &[Point], size: f64) -> Vec<HullFace> {
     found
 }
 
-/// Returns the edges between two faces: the vertices of both that are farthest from each other.
-fn edges(vertices: &[Point], faces: &[HullFace]) -> Vec<[usize; 2]> {
+/// Returns the edges between pairs of faces: the two common vertices that are farthest apart.
+fn hull_edges(vertices: &[Point], faces: &[HullFace]) -> Vec<[usize; 2]> {
     let mut found: Vec<[usize; 2]> = Vec::new();
     for (k, face) in faces.iter().enumerate() {
         for other in &faces[k + 1..] {
@@ -214,7 +216,7 @@ fn edges(vertices: &[Point], faces: &[HullFace]) -> Vec<[usize; 2]> {
 
 /// Returns the face whose plane is farthest below a point, with the height of the point above it.
 fn farthest_face(faces: &[HullFace], p: Point) -> Option<(HullFace, f64)> {
-    let heights = faces.iter().map(|face| (*face, face.distance(p)));
+    let heights = faces.iter().map(|face| (*face, face.distance_from_plane(p)));
     heights.max_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
@@ -245,34 +247,34 @@ mod tests {
     use super::*;
 
     /// Returns the points of a grid in a box with these edges, with `n` points along each.
-    fn grid(edges: Point, n: usize) -> Vec<Point> {
-        let coordinate = |k: usize, edge: f64| edge * (k as f64 / (n - 1) as f64 - 0.5);
+    fn box_grid_points(edges: Point, n: usize) -> Vec<Point> {
+        let grid_coordinate = |k: usize, edge: f64| edge * (k as f64 / (n - 1) as f64 - 0.5);
         (0..n * n * n)
             .map(|k| {
                 [
-                    coordinate(k % n, edges[0]),
-                    coordinate(k / n % n, edges[1]),
-                    coordinate(k / n / n, edges[2]),
+                    grid_coordinate(k % n, edges[0]),
+                    grid_coordinate(k / n % n, edges[1]),
+                    grid_coordinate(k / n / n, edges[2]),
                 ]
             })
             .collect()
     }
 
     /// Returns points on a sphere of radius one, evenly distributed.
-    fn sphere(count: usize) -> Vec<Point> {
-        let point = |k: usize| {
+    fn sphere_points(count: usize) -> Vec<Point> {
+        let spiral_point = |k: usize| {
             let z = 1.0 - (2.0 * k as f64 + 1.0) / count as f64;
             let (sine, cosine) = (k as f64 * 2.399_963_229_728_653).sin_cos();
             let radius = (1.0 - z * z).sqrt();
             [radius * cosine, radius * sine, z]
         };
-        (0..count).map(point).collect()
+        (0..count).map(spiral_point).collect()
     }
 
     #[test]
-    fn hull_of_a_grid_has_the_corners_of_its_box() {
+    fn hull_of_a_grid_is_its_box() {
         for (edges, n) in [([2.0, 3.0, 4.0], 5), ([0.1, 0.1, 0.1], 2), ([1e-3, 1.0, 2.0], 4)] {
-            let hull = Hull::new(&grid(edges, n), 32).expect("a hull");
+            let hull = Hull::new(&box_grid_points(edges, n), 32).expect("a hull");
             assert_eq!((hull.vertices.len(), hull.faces.len(), hull.edges.len()), (8, 6, 12), "{hull:?}");
             assert!(hull.error < 1e-6 * hull.size);
             let corner = edges.map(|x| x / 2.0);
@@ -288,8 +290,8 @@ mod tests {
     }
 
     #[test]
-    fn reduced_hulls_state_their_error() {
-        let points = sphere(2000);
+    fn reduced_hulls_report_their_error() {
+        let points = sphere_points(2000);
         for (count, largest) in [(12, 0.42), (32, 0.13)] {
             let hull = Hull::new(&points, count).expect("a hull");
             assert_eq!(hull.vertices.len(), count);
@@ -303,8 +305,8 @@ mod tests {
     }
 
     #[test]
-    fn points_without_a_hull() {
-        let flat = grid([1.0, 1.0, 0.0], 3);
+    fn degenerate_points_have_no_hull() {
+        let flat = box_grid_points([1.0, 1.0, 0.0], 3);
         for (points, expected) in [
             (&[[0.0; 3]; 5][..], HullError::TooFew(1)),
             (&[[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]], HullError::Coplanar),

@@ -33,7 +33,7 @@ use std::path::Path;
 use syntax::{Description, Mechanism};
 
 pub use declarations::{DeclaredStruct, mechanism_declarations};
-pub use derive::{derive, derive_with, equations_as_text, equations_latex};
+pub use derive::{derive, derive_with_options, equations_as_text, equations_latex};
 pub use source::{Source, read_source};
 pub use syntax::second_definition;
 
@@ -50,7 +50,7 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     let graph = Graph::new();
     let output = compile(&source, &graph, &mut cx);
     if let Some((model, output)) = &output {
-        return source.emit(model, output);
+        return source.emit_mechanism(model, output);
     }
     // If an imported file could not be read, even the sizes of the mechanism are unknown. An interface with
     // guessed sizes would only cause errors that follow from the first one.
@@ -103,9 +103,10 @@ pub fn export_c(
     let passes = passes::Passes { lanes: reproducible, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options = &export::c::Options { left_out: rust_only(source), reproducible, ..options.clone() };
+    let options =
+        &export::c::Options { left_out: rust_only_functions(source), reproducible, ..options.clone() };
     export::c::export_c_source(&model, &output, &tables, options)
-        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
 }
 
@@ -119,9 +120,9 @@ pub fn export_cuda(
     let graph = Graph::new();
     let (model, output) = compile_for_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options = &export::c::Options { left_out: rust_only(source), ..options.clone() };
+    let options = &export::c::Options { left_out: rust_only_functions(source), ..options.clone() };
     export::cuda::export_cuda_kernels(&model, &output, &tables, options)
-        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
 }
 
@@ -132,9 +133,9 @@ pub fn export_wgsl(source: &Source, prefix: &str, cx: &mut Diagnostics) -> Optio
     let (model, output) = compile_for_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
     let prefix = prefix.to_string();
-    let options = export::c::Options { prefix, left_out: rust_only(source), ..Default::default() };
+    let options = export::c::Options { prefix, left_out: rust_only_functions(source), ..Default::default() };
     export::wgsl::export_wgsl_shaders(&model, &output, &tables, &options)
-        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
 }
 
@@ -157,7 +158,7 @@ pub fn export_fmu(
     let tables = source.mechanism.shell.table_names();
     let options = export::c::Options { prefix: prefix.to_string(), ..Default::default() };
     export::fmu::export_fmu(&model, &output, &tables, &options, start)
-        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
 }
 
@@ -213,7 +214,7 @@ fn check_tree(model: &mechanism::Model<'_>, output: &derive::Output, cx: &mut Di
 }
 
 /// Returns the functions that options request and that exist in Rust only.
-fn rust_only(source: &Source) -> Vec<String> {
+fn rust_only_functions(source: &Source) -> Vec<String> {
     let requests = source.mechanism.requests;
     let rust_only = [
         (requests.prepare, "the functions of `prepare`"),
@@ -224,7 +225,7 @@ fn rust_only(source: &Source) -> Vec<String> {
 }
 
 /// Reports why a mechanism or the options of an export are not supported.
-fn report_unfit(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut Diagnostics) {
+fn report_unsupported_export(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut Diagnostics) {
     let (what, help) = match unfit {
         export::c::Unfit::NoParameter(name) => (
             format!("there is no parameter `{name}` to be fixed"),
@@ -285,7 +286,7 @@ pub fn compile_with<'g>(
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::Output)> {
     if !cx.is_empty() {
-        check_rest(source, graph, cx);
+        check_valid_elements(source, graph, cx);
         return None;
     }
     let compiled = model_and_functions(source, graph, passes, cx);
@@ -313,18 +314,18 @@ fn model_and_functions<'g>(
 ) -> Option<(mechanism::Model<'g>, derive::Output)> {
     let model = resolve::build_model(&source.mechanism.description, graph, cx)?;
     let requests = source.mechanism.requests;
-    let mut output = derive_with(&model, requests, passes, cx)?;
+    let mut output = derive_with_options(&model, requests, passes, cx)?;
     insert_user_documentation(&mut output, &source.mechanism);
     let description = &source.mechanism.description;
-    let good = check_rates(description, &output.functions, cx);
+    let good = check_state_rates(description, &output.functions, cx);
     let good =
-        check_outputs(description, &output.functions, &Facts::from_model(&model, requests), cx) && good;
+        check_output_names(description, &output.functions, &Facts::from_model(&model, requests), cx) && good;
     good.then_some((model, output))
 }
 
 /// Checks the elements of a mechanism that syntax errors do not affect. Elements that depend on wrong ones
 /// are not checked, because their errors would only follow from the syntax errors.
-pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
+pub fn check_valid_elements(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
     if let Some(rest) = reading.readable_part(description).filter(|_| source.imported) {
         resolve::build_model(&rest, graph, cx);
@@ -346,7 +347,11 @@ fn insert_user_documentation(output: &mut derive::Output, mechanism: &Mechanism)
 
 /// Reports rates of states that depend on accelerations or reactions: accelerations depend on the rates of
 /// states, which would be circular. Returns true if no rate is wrong.
-fn check_rates(description: &Description, functions: &[derive::Function], cx: &mut Diagnostics) -> bool {
+fn check_state_rates(
+    description: &Description,
+    functions: &[derive::Function],
+    cx: &mut Diagnostics,
+) -> bool {
     let before = cx.len();
     for (state, _) in &description.states {
         let name = format!("{}{}", state.text, syntax::RATE_OF_STATE);
@@ -367,7 +372,7 @@ fn check_rates(description: &Description, functions: &[derive::Function], cx: &m
 
 /// Reports outputs whose functions would have the name of another function, or a name that no function can
 /// have.
-fn check_outputs(
+fn check_output_names(
     description: &Description,
     functions: &[derive::Function],
     facts: &Facts,
@@ -390,7 +395,7 @@ fn check_outputs(
             .flat_map(|suffix| outputs.iter().map(move |output| (suffix, &output.name.text)))
             .find(|((suffix, ..), other)| name.strip_suffix(suffix) == Some(other.as_str()))
     };
-    let is_taken = |name: &str| {
+    let is_function_name_taken = |name: &str| {
         let other = outputs.iter().map(|output| output.name.text.as_str());
         let mut in_lanes = other.filter(|_| facts.requests.batch).map(|other| format!("{other}_lanes"));
         catalogue::has_function(name, facts) || in_lanes.any(|other| other == name)
@@ -416,13 +421,13 @@ fn check_outputs(
             .add_help(
                 "keywords, names of its constants and names that begin with two underscores are reserved",
             );
-        } else if is_taken(text) {
+        } else if is_function_name_taken(text) {
             cx.report_error(
                 name.place.clone(),
                 format!("the name `{text}` is taken: every mechanism has this function"),
             )
             .add_help("choose another name for the output");
-        } else if let Some(other) = names_of_derivatives(text).find(|other| is_taken(other)) {
+        } else if let Some(other) = names_of_derivatives(text).find(|other| is_function_name_taken(other)) {
             cx.report_error(
                 name.place.clone(),
                 format!("the name `{text}` is taken: every mechanism has `{other}`"),

@@ -12,17 +12,17 @@ pub const CYCLE: u32 = 3;
 pub const ADD: u32 = 3 * CYCLE;
 /// Latency of a multiplication or a fused multiply-add.
 pub const MULTIPLY: u32 = 4 * CYCLE;
-/// Latency of a division.
+/// Latency of a division, in time units.
 pub const DIVIDE: u32 = 13 * CYCLE;
-/// Latency of a negation.
+/// Latency of a negation, in time units.
 pub const NEGATE: u32 = CYCLE;
-/// Latency of a move of a value between lanes.
+/// Latency of moving a value between SIMD lanes, in time units.
 pub const MOVE_LANE: u32 = 2 * CYCLE;
 /// Latency of adding the upper half of a vector's lanes to the lower half: a move and an addition.
 pub const HALVE: u32 = 5 * CYCLE;
 /// Latency of sines and cosines, which are evaluated in lanes for all angles at the start.
 pub const SINE: u32 = 60 * CYCLE;
-/// Latency of other elementary functions, which are library calls.
+/// Latency of elementary functions that are library calls, in time units.
 pub const CALL: u32 = 50 * CYCLE;
 
 /// Maximum number of instructions per cycle of the critical path for which a program is scheduled. With more
@@ -42,13 +42,13 @@ pub fn cost_of_lanes(lanes: usize) -> usize {
         _ => 25,
     }
 }
-/// Cost of gathering one lane of an input, in tenths of an instruction.
+/// Cost of gathering one SIMD lane of an input, in tenths of an instruction.
 pub const GATHER_COST: usize = 8;
-/// Cost of extracting a lane, in tenths of an instruction.
+/// Cost of extracting a SIMD lane, in tenths of an instruction.
 pub const LANE_COST: usize = 5;
-/// Cost of summing lanes, per lane, in tenths of an instruction.
+/// Cost of summing SIMD lanes, per lane, in tenths of an instruction.
 pub const SUM_COST: usize = 10;
-/// Cost of a library call, per lane, in tenths of an instruction.
+/// Cost of a library call, per SIMD lane, in tenths of an instruction.
 pub const CALL_COST: usize = 20;
 /// Cost of fetching an instruction that is not in the first-level cache.
 pub const FETCH_COST: usize = 15;

@@ -8,9 +8,9 @@ use crate::{derive, import, mechanism, resolve};
 use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
 
-/// A mechanism as read, with its imported file.
+/// Parsed source of a mechanism with its imported file.
 pub struct Source {
-    /// Contents of the struct and of the file.
+    /// Contents of the struct and of the imported file.
     pub mechanism: Mechanism,
     /// Paths of all files that were read for the mechanism.
     files: Vec<PathBuf>,
@@ -30,8 +30,8 @@ pub fn read_source(
     let (mut files, before) = (Vec::new(), cx.len());
     mechanism.description.drawing = mechanism.requests.drawing;
     if let Some(options) = &mut mechanism.file {
-        options.collisions =
-            options.contacts || mechanism.description.contacts.iter().any(syntax::Contact::names_collisions);
+        options.collisions = options.contacts
+            || mechanism.description.contacts.iter().any(syntax::Contact::uses_file_collisions);
         options.visuals = mechanism.requests.drawing;
         let path = folder.join(&options.path.text);
         let text = import::read_file(&path, options, cx);
@@ -142,17 +142,17 @@ impl Source {
 
     /// Returns one line per joint with its type and the bodies that it connects.
     pub fn joint_structure_lines(&self) -> Vec<String> {
-        self.mechanism.description.joints.iter().map(structure_line).collect()
+        self.mechanism.description.joints.iter().map(joint_documentation_line).collect()
     }
 
-    /// Emits the code of the compiled mechanism.
-    pub fn emit(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Emitted {
+    /// Emits the Rust code of the compiled mechanism.
+    pub fn emit_mechanism(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Emitted {
         emit::emit_mechanism(&self.public_interface(m, output), output)
     }
 
     /// Returns the public interface of the compiled mechanism.
     fn public_interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
-        let bare = self.bare_interface();
+        let bare = self.model_independent_interface();
         let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
         let base = base.map_or(0, |constant| constant.list.len());
         let facts = Facts { base, ..Facts::from_model(m, self.mechanism.requests) };
@@ -178,7 +178,7 @@ impl Source {
     }
 
     /// Returns the part of the interface that does not depend on the model.
-    fn bare_interface(&self) -> Interface<'_> {
+    fn model_independent_interface(&self) -> Interface<'_> {
         let d = &self.mechanism.description;
         Interface {
             shell: &self.mechanism.shell,
@@ -209,7 +209,7 @@ impl Source {
     pub(crate) fn emit_failed(&self) -> Emitted {
         let outline = resolve::outline_of_description(&self.mechanism.description);
         let facts = self.guess_facts(&outline);
-        let mut functions = catalogue::before_outputs(&facts);
+        let mut functions = catalogue::functions_before_outputs(&facts);
         for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
             if output.has_contact_forces && !catalogue::has_function(&output.name, &facts) {
                 functions.push(catalogue::contact_force_function(&output.name, output.size, &facts));
@@ -224,7 +224,7 @@ impl Source {
                 }
             }
         }
-        functions.extend(catalogue::after_outputs(&facts));
+        functions.extend(catalogue::functions_after_outputs(&facts));
         let functions: Vec<derive::Function> =
             functions.into_iter().map(derive::Function::empty_function).collect();
         let mut constants = Vec::new();
@@ -254,7 +254,7 @@ impl Source {
         if facts.requests.packed {
             constants.push(derive::Constant::packed_entry_constant(&facts.entries));
         }
-        let bare = self.bare_interface();
+        let bare = self.model_independent_interface();
         let interface = Interface {
             absent: emit::absent_items(&facts, &functions, &bare.outputs),
             configuration: outline.configuration,
@@ -332,7 +332,7 @@ pub(crate) fn can_be_a_function(name: &str) -> bool {
 }
 
 /// Returns the documentation line of a joint: its type and the bodies that it connects.
-fn structure_line(joint: &syntax::Joint) -> String {
+fn joint_documentation_line(joint: &syntax::Joint) -> String {
     let kind = joint.kind.name();
     let (parent, child) = (&joint.parent.body.text, &joint.child.body.text);
     format!("`{}`: {kind}, `{parent}` → `{child}`", joint.name.text)

@@ -19,7 +19,7 @@ fn generated_code(arguments: &str, fields: &str) -> String {
 const NONE: [String; 0] = [];
 
 #[test]
-fn a_field_is_there_always() {
+fn conditional_struct_fields_are_rejected() {
     let help = "= help: put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for \
                 each case";
     let used = "#[body(mass = m)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
@@ -33,7 +33,7 @@ fn a_field_is_there_always() {
 }
 
 #[test]
-fn the_runtime_may_have_another_name() {
+fn runtime_crate_may_be_renamed() {
     let fields = format!("{CART} #[output(r(cart / ground))] place: Vector,");
     let words = "derivatives, centroidal, regressor, packed, batch";
     let usual = generated_code(words, &fields);
@@ -68,7 +68,7 @@ fn the_runtime_may_have_another_name() {
 }
 
 #[test]
-fn doc_comments_stand_beside_what_they_describe() {
+fn doc_comments_of_fields_are_copied_to_functions() {
     let text = generated_code(
         "",
         "/// Mass | of all.\n m: f64,
@@ -95,7 +95,7 @@ fn doc_comments_stand_beside_what_they_describe() {
 }
 
 #[test]
-fn functions_say_what_determines_the_motion() {
+fn documentation_states_what_determines_the_motion() {
     let fields =
         "#[body(mass = 1, inertia = sphere(1, 1))] stone: Body, #[joint(ground -> stone)] flight: Free,
         #[output(stone)] diagram: FreeBody, #[output(reaction_force(flight))] load: Vector,";
@@ -121,7 +121,7 @@ fn functions_say_what_determines_the_motion() {
 
 /// The mechanism of a file is a constant, unless the struct is generic.
 #[test]
-fn a_mechanism_of_a_file_is_a_constant() {
+fn robot_file_mechanism_is_a_constant() {
     let expand_file_mechanism = |item: &str| {
         let arguments = "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial]";
         let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
@@ -144,7 +144,7 @@ fn a_mechanism_of_a_file_is_a_constant() {
 }
 
 #[test]
-fn what_has_no_equations_says_why() {
+fn documentation_explains_empty_equations() {
     let equations_doc = |arguments: &str, fields: &str| {
         let text = generated_code(arguments, fields);
         let before = text.split("pubconstEQUATIONS:&'staticstr=").next().unwrap().to_string();
@@ -168,7 +168,7 @@ fn what_has_no_equations_says_why() {
 
 /// After an error the set of frames is unknown, so every frame name is accepted.
 #[test]
-fn a_mistake_leaves_every_frame() {
+fn frame_names_are_accepted_after_an_error() {
     let any = "None=>::core::option::Option::Some(0)";
     assert!(!generated_code("", CART).contains(any));
     assert!(generated_code("", &format!("{CART} #[output(unknown)] mistake: Scalar,")).contains(any));
@@ -177,7 +177,7 @@ fn a_mistake_leaves_every_frame() {
 /// An input that only the rate of a state contains has no generalized force, even if a force depends on
 /// velocities.
 #[test]
-fn inputs_of_states_have_no_generalized_force() {
+fn inputs_of_state_rates_have_no_generalized_force() {
     let fields = "lag: f64, command: Input, #[state(rate = (command - level) / lag)] level: State, \
                   #[body(mass = 1, com = x)] arm: Body, #[joint(ground -> arm, about = z)] pin: Pin, \
                   #[acts(on = cable(arm.at(x) / ground.at(2 * y), ground.cylinder(0.1, z)), value = -3 * \

@@ -87,7 +87,7 @@ fn expected_function_names(facts: &Facts, outputs: &[String]) -> BTreeSet<String
 }
 
 #[test]
-fn every_function_is_a_row_and_every_row_a_function() {
+fn catalogue_rows_and_functions_correspond() {
     let mut seen = BTreeSet::new();
     for mechanism in MECHANISMS {
         let (attribute, item) = mechanism_tokens(mechanism);
@@ -108,7 +108,7 @@ fn every_function_is_a_row_and_every_row_a_function() {
 
 /// Checks that each function absent from a mechanism is listed once, with one reason.
 #[test]
-fn what_is_not_there_has_a_reason() {
+fn absent_functions_have_one_reason_each() {
     for mechanism in MECHANISMS {
         with_compiled_mechanism(mechanism, |_, facts, _| {
             let present: BTreeSet<&str> = catalogue::catalogue_rows()
@@ -134,7 +134,7 @@ fn what_is_not_there_has_a_reason() {
 
 /// A missing or additional value in the program of a function, a link or a frame is detected.
 #[test]
-fn a_program_that_does_not_fit_is_found() {
+fn programs_with_wrong_result_counts_are_detected() {
     let mut in_lanes = 0;
     let limb_declarations = |k: usize| {
         format!(

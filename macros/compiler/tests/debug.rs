@@ -32,7 +32,7 @@ fn debug_and_release_bodies(code: &str) -> Vec<(&str, &str)> {
 }
 
 #[test]
-fn debug_builds_have_operators_for_calls() {
+fn debug_builds_use_operators_instead_of_calls() {
     for names in [&["one"][..], &["left", "right"]] {
         let code = floating_body_code("", names);
         let bodies = debug_and_release_bodies(&code);
@@ -49,7 +49,7 @@ fn debug_builds_have_operators_for_calls() {
 /// Checks that batch functions of debug builds evaluate one state at a time, because SIMD lanes would take
 /// too much stack.
 #[test]
-fn debug_builds_compute_one_state_after_another() {
+fn debug_batches_evaluate_states_sequentially() {
     let code = floating_body_code("batch, derivatives", &["one"]);
     let bodies = debug_and_release_bodies(&code);
     for call in [
@@ -65,7 +65,7 @@ fn debug_builds_compute_one_state_after_another() {
 /// Batched derivatives of outputs have names in debug builds, too. Second derivatives with respect to
 /// configuration, velocities and inputs have six blocks.
 #[test]
-fn debug_builds_have_all_derivatives_of_each_state() {
+fn debug_batches_have_all_derivatives() {
     let mut item = "struct S {".to_string();
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
         let parent = if k == 0 { "ground".to_string() } else { format!("arm{}.at(x)", k - 1) };

@@ -24,7 +24,7 @@ fn chain_code(n: usize) -> String {
 }
 
 #[test]
-fn a_long_chain_is_read_once() {
+fn generated_code_of_chains_grows_linearly() {
     let (short, long) = (chain_code(16), chain_code(32));
 
     // Jacobians of frames grow linearly with the number of links.

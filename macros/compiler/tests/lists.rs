@@ -24,7 +24,7 @@ fn assert_same_code(arguments: [&str; 2], fields: [&str; 2]) {
 }
 
 #[test]
-fn a_list_stands_for_its_elements() {
+fn list_macro_expands_to_its_elements() {
     let hull = "pub m: f64, pub l: f64, pub k: f64,
         #[body(mass = m, inertia = sphere(m, l))] hull: Body,
         #[joint(ground -> hull)] pose: Free,";
@@ -52,7 +52,7 @@ fn a_list_stands_for_its_elements() {
 }
 
 #[test]
-fn a_chain_leads_from_one_to_the_next() {
+fn chain_macro_connects_consecutive_elements() {
     let with = "#[body(mass = 1, com = -y, inertia = rod(1, 2, y))] link: [Body; 4],
         #[joint(ground -> link[0], about = z)] first: Pin,
         #[joint(link[i].at(-2 * y) -> link[i + 1], about = z)] hinge: [Pin; 3],
@@ -76,7 +76,7 @@ fn a_chain_leads_from_one_to_the_next() {
 }
 
 #[test]
-fn lists_do_not_explode() {
+fn nested_lists_do_not_explode() {
     let many = "#[body(mass = 1)] a: [Body; 4096], #[body(mass = 1)] b: [Body; 1],";
     assert_eq!(compiler_messages("", many), ["the lists of a mechanism have at most 4096 elements"]);
     let long = "x + ".repeat(2000) + "x";

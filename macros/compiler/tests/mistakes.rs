@@ -45,7 +45,7 @@ mod speeds;
 mod tables;
 
 /// Source text, first line of the message and part of the help.
-type Row = (&'static str, &'static str, &'static str);
+type ErrorRow = (&'static str, &'static str, &'static str);
 
 /// Function that inserts a source text into the arguments of the attribute or the fields.
 type Setting = fn(&str) -> (String, String);
@@ -66,8 +66,8 @@ fn compiler_messages(attribute: &str, fields: &str) -> Vec<String> {
     }
 }
 
-/// Checks that each row causes exactly the expected error.
-fn check_error_rows(setting: Setting, rows: &[Row]) {
+/// Checks that the mechanism of each table row causes exactly the expected error.
+fn check_error_rows(setting: Setting, rows: &[ErrorRow]) {
     let mut wrong = Vec::new();
     for (said, message, help) in rows {
         let (attribute, fields) = setting(said);
@@ -87,7 +87,7 @@ fn check_error_rows(setting: Setting, rows: &[Row]) {
     assert!(wrong.is_empty(), "{} of {}:\n\n{}", wrong.len(), rows.len(), wrong.join("\n\n"));
 }
 
-/// Checks the number of errors of each row.
+/// Checks the number of errors that the mechanism of each table row causes.
 fn check_error_counts(rows: &[(&str, &str, usize)]) {
     for (attribute, fields, count) in rows {
         let found = compiler_messages(attribute, fields);

@@ -6,7 +6,7 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{check_rest, read_source};
+use linkwork_compiler::{check_valid_elements, read_source};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
@@ -25,14 +25,14 @@ const LARGEST: usize = 1500;
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Source of a mechanism of the gallery, to which mutations are applied.
-struct Subject {
+struct MutatedMechanism {
     name: String,
     arguments: TokenStream,
     item: TokenStream,
 }
 
-/// Reads the mechanisms of the gallery.
-fn gallery_mechanisms() -> Vec<Subject> {
+/// Reads the mechanisms of the gallery of models.
+fn gallery_mechanisms() -> Vec<MutatedMechanism> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/src");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
@@ -50,7 +50,7 @@ fn gallery_mechanisms() -> Vec<Subject> {
             };
             item.attrs.clear();
             let name = item.ident.to_string();
-            all.push(Subject { name, arguments, item: item.into_token_stream() });
+            all.push(MutatedMechanism { name, arguments, item: item.into_token_stream() });
         }
     }
     all.retain(|subject| {
@@ -83,7 +83,7 @@ impl Random {
 
 /// Kind of mutation of one token, which imitates a typing error.
 #[derive(Clone, Copy, Debug)]
-enum Slip {
+enum TypingError {
     Lost,
     Doubled,
     Exchanged,
@@ -93,9 +93,15 @@ enum Slip {
     Mistaken,
 }
 
-const SLIPS: [Slip; 5] = [Slip::Lost, Slip::Doubled, Slip::Exchanged, Slip::Misspelt, Slip::Mistaken];
+const SLIPS: [TypingError; 5] = [
+    TypingError::Lost,
+    TypingError::Doubled,
+    TypingError::Exchanged,
+    TypingError::Misspelt,
+    TypingError::Mistaken,
+];
 
-/// Collects all tokens that are not groups.
+/// Collects all tokens of a stream that are not groups.
 fn collect_leaf_tokens(tokens: &TokenStream, found: &mut Vec<TokenTree>) {
     for token in tokens.clone() {
         match &token {
@@ -109,7 +115,7 @@ fn collect_leaf_tokens(tokens: &TokenStream, found: &mut Vec<TokenTree>) {
 fn mutate_token_at(
     tokens: TokenStream,
     at: &mut usize,
-    slip_: Slip,
+    slip_: TypingError,
     others: &[TokenTree],
     random: &mut Random,
 ) -> TokenStream {
@@ -120,14 +126,14 @@ fn mutate_token_at(
         *at = at.wrapping_sub(1);
         if here {
             match slip_ {
-                Slip::Lost => {}
-                Slip::Doubled => out.extend([token.clone(), token]),
-                Slip::Exchanged => {
+                TypingError::Lost => {}
+                TypingError::Doubled => out.extend([token.clone(), token]),
+                TypingError::Exchanged => {
                     out.extend(rest.next());
                     out.push(token);
                 }
-                Slip::Misspelt => out.push(misspell_token(token, random)),
-                Slip::Mistaken => out.push(others[random.index_below(others.len())].clone()),
+                TypingError::Misspelt => out.push(misspell_token(token, random)),
+                TypingError::Mistaken => out.push(others[random.index_below(others.len())].clone()),
             }
             continue;
         }
@@ -164,7 +170,7 @@ fn parser_and_model_messages(arguments: &TokenStream, item: TokenStream) -> Vec<
     if let Some(source) = read_source(arguments.clone(), item, Path::new(""), &mut cx) {
         match cx.is_empty() {
             true => drop(build_model(&source.mechanism.description, &Graph::new(), &mut cx)),
-            false => check_rest(&source, &Graph::new(), &mut cx),
+            false => check_valid_elements(&source, &Graph::new(), &mut cx),
         }
     }
     cx.messages()
@@ -177,7 +183,7 @@ fn message_class(message: &str) -> String {
 }
 
 #[test]
-fn slips_of_the_hand_are_answered_in_few_words() {
+fn single_token_mutations_get_short_errors() {
     let number_from_environment = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
     let cases = number_from_environment("MUTATIONS").unwrap_or(CASES);
     let gallery = gallery_mechanisms();
@@ -245,7 +251,7 @@ fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
 }
 
 #[test]
-fn a_field_that_cannot_be_read_makes_no_other_wrong() {
+fn unreadable_field_causes_no_other_errors() {
     let mut wrong = Vec::new();
     let mut tried = 0;
     for subject in gallery_mechanisms() {
@@ -264,7 +270,7 @@ fn a_field_that_cannot_be_read_makes_no_other_wrong() {
 }
 
 #[test]
-fn a_name_that_is_declared_otherwise_is_told_once() {
+fn wrongly_declared_name_is_reported_once() {
     let mut wrong = Vec::new();
     for subject in gallery_mechanisms() {
         let item: syn::ItemStruct = syn::parse2(subject.item).unwrap();

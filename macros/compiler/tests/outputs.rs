@@ -24,7 +24,7 @@ fn function_names(code: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn names_of_functions_are_taken() {
+fn outputs_cannot_have_names_of_functions() {
     let empty_tokens = || "".parse().unwrap();
     let mechanism_tokens = |name: &str| mechanism_text(name).parse().unwrap();
     assert_eq!(
@@ -34,8 +34,8 @@ fn names_of_functions_are_taken() {
     let emitted = expand(empty_tokens(), mechanism_tokens("place"), Path::new(""));
     let code = format!("{}{}", emitted.tokens, emitted.text);
     // Absent functions reserve no names, because they are visible only if no other function matches.
-    let is_there = |part: &&str| !part.contains("::__private::absent::");
-    let code: String = code.split("#[automatically_derived]").filter(is_there).collect();
+    let is_present_function = |part: &&str| !part.contains("::__private::absent::");
+    let code: String = code.split("#[automatically_derived]").filter(is_present_function).collect();
     let names = function_names(&code);
     assert!(names.contains("mass_matrix") && names.contains("place_jacobian"), "{names:?}");
     // Methods of the traits for frames and parameters are not functions of the mechanism.
@@ -59,7 +59,7 @@ fn names_of_functions_are_taken() {
 
 /// Passes of the program may divide constants with another sign, whose result is finite.
 #[test]
-fn accelerations_are_outputs_whatever_the_figures() {
+fn accelerations_may_be_outputs_for_any_coefficients() {
     let item = "struct Drone {
         #[body(mass = 0.8, inertia = diagonal(0.006, 0.007, 0.012))] frame: Body,
         #[joint(ground -> frame)] flight: Free,

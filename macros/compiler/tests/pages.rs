@@ -8,7 +8,7 @@ use std::path::Path;
 /// Files by their paths in the repository, each with the form in which `NAME` appears.
 type Places = &'static [(&'static str, &'static str)];
 
-/// Fails with the files in which names are missing.
+/// Checks that names are on pages, and fails with the files in which names are missing.
 fn check_names_on_pages(names: &[String], places: Places) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut missing = Vec::new();
@@ -23,7 +23,7 @@ fn check_names_on_pages(names: &[String], places: Places) {
 /// Joints are listed in the guide, the runtime's tables, the book, the error for the type `Joint`, and the
 /// lists for random mechanisms.
 #[test]
-fn joints_are_listed() {
+fn joints_are_listed_in_all_pages() {
     let names: Vec<String> = JointKind::names().map(ToString::to_string).collect();
     check_names_on_pages(
         &names,
@@ -44,7 +44,7 @@ fn joints_are_listed() {
 /// Elements are listed in the guide, the runtime's tables and types; force elements also in the random
 /// mechanisms of the oracle.
 #[test]
-fn elements_are_listed() {
+fn elements_are_listed_in_all_pages() {
     let names: Vec<String> = ElementKind::element_names().map(ToString::to_string).collect();
     assert!(names.iter().all(|name| ElementKind::of_name(name).is_some()));
     check_names_on_pages(
@@ -70,7 +70,7 @@ fn option_spelling(word: Word) -> String {
 }
 
 #[test]
-fn words_are_listed() {
+fn language_words_are_listed_in_the_guide() {
     let names: Vec<String> = Word::ALL.into_iter().map(option_spelling).collect();
     check_names_on_pages(
         &names,
@@ -93,7 +93,7 @@ fn words_are_listed() {
 }
 
 #[test]
-fn passes_are_listed() {
+fn compiler_passes_are_listed_in_the_readme() {
     let rows: Vec<String> =
         DRAFT.iter().chain(FINISH).map(|pass| format!("| `{}` | {} |", pass.name, pass.about)).collect();
     check_names_on_pages(&rows, &[("macros/compiler/README.md", "NAME")]);

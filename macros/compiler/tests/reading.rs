@@ -23,14 +23,14 @@ fn chain_code(pins: usize) -> String {
     format!("{}{}", emitted.tokens, emitted.text)
 }
 
-/// Returns the identifiers in a text.
+/// Returns the identifiers that occur in a text of Rust code.
 fn identifiers_in_text(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|name| !name.is_empty())
 }
 
 /// rustc searches all definitions of a crate for each unused variable.
 #[test]
-fn no_input_is_bound_that_nothing_reads() {
+fn unused_inputs_are_not_bound() {
     let code = chain_code(6);
     let mut bound = 0;
     for function in code.split("fn ") {
@@ -53,11 +53,12 @@ fn no_input_is_bound_that_nothing_reads() {
 /// Checks that the statements of a long function are generated once: the function that returns matrices calls
 /// the function that fills matrices of the caller.
 #[test]
-fn a_long_function_is_written_once() {
+fn statements_of_long_functions_are_generated_once() {
     let head = "fn inverse_dynamics_derivatives(";
-    let body =
+    let body_of_function =
         |code: &str| code.split(head).nth(1).and_then(|rest| rest.split("fn ").next()).map(str::to_string);
-    let (short, long) = (body(&chain_code(3)).unwrap(), body(&chain_code(18)).unwrap());
+    let (short, long) =
+        (body_of_function(&chain_code(3)).unwrap(), body_of_function(&chain_code(18)).unwrap());
     assert!(long.contains("self.inverse_dynamics_derivatives_into("), "{long}");
     assert!(!short.contains("self.inverse_dynamics_derivatives_into("), "{short}");
 }

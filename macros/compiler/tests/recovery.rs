@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{ImplItem, Item, ItemImpl, Type};
 
-/// Field with an error that affects no other field.
+/// Declaration of a field with an error that affects no other field.
 const MISTAKE: &str = "#[output(unknown)] mistake: Scalar,";
 
 const WORDS: &str = "derivatives, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \
@@ -75,7 +75,7 @@ type Names = BTreeMap<String, Option<String>>;
 struct Generated {
     /// Names of the functions and constants that each generated struct has.
     present: Names,
-    /// Absent names, with the bound that names the reason.
+    /// Absent functions of a mechanism, with the bound that names the reason.
     absent: BTreeMap<String, String>,
     /// Traits that the generated structs implement.
     traits: BTreeSet<String>,
@@ -122,8 +122,8 @@ fn signature_text(f: &syn::ImplItemFn) -> String {
     if !UNSIZED.iter().any(|start| name.starts_with(start)) {
         return text;
     }
-    let is_size = |word: &str| word.trim_end_matches([']', ')']).parse::<usize>().is_ok();
-    let words = text.split(' ').map(|word| if is_size(word) { "_" } else { word });
+    let is_size_argument = |word: &str| word.trim_end_matches([']', ')']).parse::<usize>().is_ok();
+    let words = text.split(' ').map(|word| if is_size_argument(word) { "_" } else { word });
     words.collect::<Vec<_>>().join(" ")
 }
 
@@ -202,7 +202,7 @@ const MEASURED: &str = "command: Input,
 
 /// An error elsewhere does not change the arguments of outputs, for every function of the language.
 #[test]
-fn an_error_keeps_the_arguments_of_every_measure() {
+fn errors_elsewhere_preserve_output_arguments() {
     let listed: Vec<&str> = FunctionId::names().collect();
     assert_eq!(listed, MEASURES.map(|(name, ..)| name));
     for (function, value, kind) in MEASURES {
@@ -262,7 +262,7 @@ impl Generated {
 
 /// Functions that only generated code calls are hidden from the documentation, also from that of binaries.
 #[test]
-fn internals_are_hidden() {
+fn internal_functions_are_hidden_from_documentation() {
     for (name, fields) in MECHANISMS {
         for words in ["", WORDS] {
             let item = format!("pub struct {name} {{ {fields} }}");
@@ -286,7 +286,7 @@ fn internals_are_hidden() {
 }
 
 #[test]
-fn a_mistake_leaves_every_name() {
+fn all_names_remain_defined_after_an_error() {
     for (name, fields) in MECHANISMS {
         for words in ["", "derivatives", "batch", WORDS] {
             let whole = generate_code(words, name, fields);
@@ -308,7 +308,7 @@ fn a_mistake_leaves_every_name() {
 }
 
 #[test]
-fn every_word_is_named_by_what_needs_it() {
+fn missing_option_is_named_by_every_dependent_function() {
     let function_name = |name: &str| name.split_once("::").unwrap().1.to_string();
     for (name, fields) in MECHANISMS {
         let (bare, all) = (generate_code("", name, fields), generate_code(WORDS, name, fields));
@@ -356,7 +356,7 @@ fn every_word_is_named_by_what_needs_it() {
 }
 
 #[test]
-fn kinematics_alone_say_what_they_lack() {
+fn kinematic_mechanisms_explain_missing_functions() {
     let kinematic = generate_code(
         "inertia = none",
         "CartPole",
@@ -453,7 +453,7 @@ fn names_by_availability(arguments: &str, name: &str, fields: &str) -> String {
 /// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test recovery` regenerates the file; review the
 /// difference.
 #[test]
-fn names_are_those_of_the_table() {
+fn generated_names_equal_the_recorded_list() {
     let others = [
         ("Stopped", STOPPED),
         ("Sped", SPED),

@@ -310,7 +310,7 @@ fn code_of_functions(text: &str, functions: &[&str]) -> String {
 }
 
 /// Compares a text with a file of this folder, or writes the file. Returns the first difference.
-fn difference(name: &str, text: &str) -> Option<String> {
+fn snapshot_difference(name: &str, text: &str) -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots").join(format!("{name}.txt"));
     if std::env::var_os("LINKWORK_WRITE").is_some() {
         fs::write(&path, text).unwrap();
@@ -347,14 +347,14 @@ fn is_as_written(name: &str) {
     let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
     assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
     assert_eq!(
-        difference(name, &code_of_functions(&emitted.text, functions)),
+        snapshot_difference(name, &code_of_functions(&emitted.text, functions)),
         None,
         "generated code differs; with `LINKWORK_WRITE=1` it is written anew"
     );
 }
 
 #[test]
-fn every_mechanism_has_a_test() {
+fn every_snapshot_mechanism_has_a_test() {
     assert!(MECHANISMS.iter().map(|(name, ..)| *name).eq(TESTS.iter().copied()));
 }
 
@@ -375,7 +375,7 @@ const DOCUMENTED: [(&str, &str); 7] = [
 ];
 
 #[test]
-fn documentation_of_structs() {
+fn struct_documentation_equals_the_snapshot() {
     let mut text = String::new();
     for (attribute, fields) in DOCUMENTED {
         let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
@@ -399,5 +399,5 @@ fn documentation_of_structs() {
             lines.for_each(|line| text += &format!("{line}\n"));
         }
     }
-    assert_eq!(difference("documentation", &text), None, "documentation differs");
+    assert_eq!(snapshot_difference("documentation", &text), None, "documentation differs");
 }

@@ -106,9 +106,9 @@ mechanisms!(targeted: processor = target, arithmetic = reproducible);
 use linkwork::prelude::*;
 
 /// Pseudo-random numbers in [-2, 2], and occasionally an angle beyond the range of the vectorised sine.
-struct Numbers(u64);
+struct RandomNumbers(u64);
 
-impl Numbers {
+impl RandomNumbers {
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let unit = (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
@@ -126,12 +126,15 @@ impl Numbers {
     }
 }
 
-/// Returns the largest difference relative to the largest entry.
-fn difference<const R: usize, const C: usize>(a: &SMatrix<f64, R, C>, b: &SMatrix<f64, R, C>) -> f64 {
+/// Returns the largest difference of two matrices, relative to the largest entry.
+fn relative_difference<const R: usize, const C: usize>(
+    a: &SMatrix<f64, R, C>,
+    b: &SMatrix<f64, R, C>,
+) -> f64 {
     (a - b).amax() / (1.0 + b.amax())
 }
 
-/// Whether all instructions give the same bits.
+/// Whether the compiled feature makes results the same bits with all processor instructions.
 const REPRODUCIBLE: bool = cfg!(feature = "reproducible");
 
 /// Whether this program selects instructions at run time that give other bits.
@@ -148,7 +151,7 @@ where
     A: Mechanism<NQ, NV, NU, Scalar = f64> + Batch<NQ, NV, NU, Scalar = f64>,
     B: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let mut numbers = Numbers(1);
+    let mut numbers = RandomNumbers(1);
     let mut differ = false;
     for _ in 0..64 {
         let states: [_; 4] = std::array::from_fn(|_| {
@@ -172,14 +175,14 @@ where
             );
             let expected =
                 (b.mass_matrix(0.0, q), b.inverse_dynamics(0.0, q, v, x), b.forward_dynamics(0.0, q, v, x));
-            assert!(difference(&found.0, &expected.0) < 1e-13, "mass matrix");
-            assert!(difference(&found.1, &expected.1) < 1e-12, "inverse dynamics");
-            assert!(difference(&found.2, &expected.2) < 1e-9, "forward dynamics");
+            assert!(relative_difference(&found.0, &expected.0) < 1e-13, "mass matrix");
+            assert!(relative_difference(&found.1, &expected.1) < 1e-12, "inverse dynamics");
+            assert!(relative_difference(&found.2, &expected.2) < 1e-9, "forward dynamics");
             differ |= found != expected;
             let lane = (mass.map(|m| m.0[k]), tau.map(|m| m.0[k]), motion.map(|m| m.0[k]));
-            assert!(difference(&lane.0, &found.0) < 1e-13, "mass matrix in lanes");
-            assert!(difference(&lane.1, &found.1) < 1e-12, "inverse dynamics in lanes");
-            assert!(difference(&lane.2, &found.2) < 1e-9, "forward dynamics in lanes");
+            assert!(relative_difference(&lane.0, &found.0) < 1e-13, "mass matrix in lanes");
+            assert!(relative_difference(&lane.1, &found.1) < 1e-12, "inverse dynamics in lanes");
+            assert!(relative_difference(&lane.2, &found.2) < 1e-9, "forward dynamics in lanes");
             let same = lane.1 == found.1 && lane.2 == found.2;
             assert!(!(bits || REPRODUCIBLE) || same, "lanes hold the bits of single states");
         }
@@ -193,7 +196,7 @@ macro_rules! compare_derivatives {
     ($a:expr, $b:expr) => {{
         let (a, b) = ($a, $b);
         let (one, other) = (&a, &b);
-        let mut numbers = Numbers(2);
+        let mut numbers = RandomNumbers(2);
         for _ in 0..64 {
             let q = one.integrate(&one.neutral(), &numbers.moderate_random_vector());
             let (v, x, u) = (
@@ -206,18 +209,27 @@ macro_rules! compare_derivatives {
                 |(a, b): (f64, f64)| assert!(a <= most && b <= most, "derivatives: {a:e}, {b:e}");
             let found = one.inverse_dynamics_derivatives(&q, &v, &x);
             let expected = other.inverse_dynamics_derivatives(&q, &v, &x);
-            assert_small_differences((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            assert_small_differences((
+                relative_difference(&found.0, &expected.0),
+                relative_difference(&found.1, &expected.1),
+            ));
             let found = one.forward_dynamics_derivatives(&q, &v, &x);
             let expected = other.forward_dynamics_derivatives(&q, &v, &x);
-            assert_small_differences((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            assert_small_differences((
+                relative_difference(&found.0, &expected.0),
+                relative_difference(&found.1, &expected.1),
+            ));
             let inverses = (one.mass_matrix_inverse(&q), other.mass_matrix_inverse(&q));
             assert_small_differences((
-                difference(&found.2, &expected.2),
-                difference(&inverses.0, &inverses.1),
+                relative_difference(&found.2, &expected.2),
+                relative_difference(&inverses.0, &inverses.1),
             ));
-            assert!(difference(&inverses.1, &expected.2) < 1e-9, "the inverse of the mass matrix");
+            assert!(relative_difference(&inverses.1, &expected.2) < 1e-9, "the inverse of the mass matrix");
             let (found, expected) = (one.linearize(&q, &v, &u), other.linearize(&q, &v, &u));
-            assert_small_differences((difference(&found.0, &expected.0), difference(&found.1, &expected.1)));
+            assert_small_differences((
+                relative_difference(&found.0, &expected.0),
+                relative_difference(&found.1, &expected.1),
+            ));
         }
     }};
 }

@@ -103,7 +103,7 @@ fn check_random_branches(kind: &str, usual: u64, case: impl Fn(&mut Random, &Sty
 }
 
 #[test]
-fn parallelograms_accelerate_as_pendulums() {
+fn parallelograms_accelerate_like_pendulums() {
     check_random_branches("parallelogram", 4000, |random, style| {
         let (base, l1) = (1.0 + random.uniform_number(0.7), 1.0 + random.uniform_number(0.7));
         let flat = if random.uniform_number(1.0) > 0.0 { PI } else { 0.0 };
@@ -117,7 +117,7 @@ fn parallelograms_accelerate_as_pendulums() {
 }
 
 #[test]
-fn flat_linkages_accelerate_along_their_branch() {
+fn singular_linkages_accelerate_along_their_assembly_mode() {
     check_random_branches("four-bar", 4000, |random, style| {
         let (lengths, at_pi, angle) = flat_lengths(random);
         let side = random.uniform_number(1.0).signum();
@@ -137,7 +137,7 @@ fn flat_linkages_accelerate_along_their_branch() {
 }
 
 #[test]
-fn windows_accelerate_as_pendulums() {
+fn windows_accelerate_like_pendulums() {
     check_random_branches("row", 2000, |random, style| {
         let flat = if random.uniform_number(1.0) > 0.0 { PI } else { 0.0 };
         let (angle, rate) = random_approach(random, flat);
@@ -174,7 +174,7 @@ fn stacked_windows_branch(angles: [f64; 2], rates: [f64; 2]) -> Branch<6, 2> {
 
 /// One of the windows is in a singular configuration, or both are.
 #[test]
-fn stacked_windows_accelerate_as_two_pendulums() {
+fn stacked_windows_accelerate_like_two_pendulums() {
     check_random_branches("stack", 2000, |random, style| {
         // If the posts are in line, the heavy bodies move almost equally: two coordinates are then nearly
         // dependent.
@@ -217,7 +217,7 @@ const HARD_MOTIONS: [u64; 6] = [836, 2_353, 7_612, 10_079, 14_783, 17_831];
 
 /// Checks that motions which pass singular configurations at random fractions of their steps conserve energy.
 #[test]
-fn random_linkages_keep_their_energy_through_flat_positions() {
+fn random_linkages_conserve_energy_through_singularities() {
     for seed in test_case_seeds(60).chain(HARD_MOTIONS) {
         let mut random = Random::new(1000 + seed);
         let style = Style { masses: 0.3 + (seed % 3) as f64, springs: 2.0 + 2.0 * (seed % 3) as f64 };
@@ -261,7 +261,7 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
 /// deviation is no larger than its distance from the singular configuration. For a deviation as large as the
 /// distance between assembly modes, the directions of the constraints are arbitrary.
 #[test]
-fn states_beside_their_branch_keep_its_velocity() {
+fn slightly_inconsistent_states_keep_the_mode_velocity() {
     for seed in test_case_seeds(300) {
         let mut random = Random::new(2000 + seed);
         let style = &STYLES[seed as usize % 4];

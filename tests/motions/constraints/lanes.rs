@@ -45,7 +45,7 @@ fn largest_angle_error<S: Lockstep<f64>>(method: S, steps: usize, time: f64) -> 
 }
 
 #[test]
-fn lanes_pass_singular_positions() {
+fn batched_states_pass_singular_configurations() {
     for steps in [400, 1500, 4000] {
         let step = 2.0 / steps as f64;
         let error = largest_angle_error(Rk4::step(step), steps, 2.0);

@@ -78,7 +78,7 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
     }
 
     /// Returns the observed order of convergence from the errors with steps of `h` and `h / 2`.
-    fn order<const NU: usize, S: Method<f64>>(&self, method: fn(f64) -> S, h: f64) -> f64
+    fn observed_order<const NU: usize, S: Method<f64>>(&self, method: fn(f64) -> S, h: f64) -> f64
     where
         M: Mechanism<NQ, NV, NU, Scalar = f64>,
     {
@@ -127,11 +127,14 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
 
 /// The methods have orders 1 and 2 for loops, quaternions and rolling.
 #[test]
-fn methods_keep_their_order() {
+fn constrained_methods_have_their_orders() {
     macro_rules! check {
         ($($start:expr, $h:expr;)+) => {$({
             let start = $start;
-            let orders = [start.order(SemiImplicitEuler::step, $h), start.order(ImplicitMidpoint::step, $h)];
+            let orders = [
+                start.observed_order(SemiImplicitEuler::step, $h),
+                start.observed_order(ImplicitMidpoint::step, $h),
+            ];
             assert!((orders[0] - 1.0).abs() < 0.1 && (orders[1] - 2.0).abs() < 0.05, "{orders:?}");
         })+};
     }
@@ -146,7 +149,7 @@ fn methods_keep_their_order() {
 
 /// The energy oscillates with an amplitude of the method's order and does not drift.
 #[test]
-fn energy_does_not_drift() {
+fn constrained_energy_does_not_drift() {
     macro_rules! check {
         ($($start:expr, $euler:expr, $midpoint:expr;)+) => {$({
             let start = $start;
@@ -169,7 +172,7 @@ fn energy_does_not_drift() {
 
 /// A pendulum of 1 m released at 0.6 rad never moves faster than √(2 g (1 − cos 0.6)) = 1.85 m/s.
 #[test]
-fn a_pendulum_is_not_pumped() {
+fn constrained_pendulum_gains_no_energy() {
     let pendulum = Bob {};
     let run = simulate(&pendulum).from([0.6_f64.sin(), -0.6_f64.cos()], [0.0, 0.0]).duration(100.0);
     for sample in run.method(SemiImplicitEuler::step(0.01)) {
@@ -179,7 +182,7 @@ fn a_pendulum_is_not_pumped() {
 
 /// A four-bar linkage with 26.8 J keeps its energy; it once gained 0.19 J in 4 s and 45 J in 12 s.
 #[test]
-fn a_linkage_keeps_its_energy() {
+fn four_bar_linkage_conserves_energy() {
     let start = Start::on(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);
     let (worst, _) = start.energy_errors(ImplicitMidpoint::step(1e-3), 1e-3, 12_000);
     assert!(worst[1] < 1e-2, "{worst:?}");
@@ -211,7 +214,7 @@ fn midpoint_rule_is_reversible() {
 
 /// Steps that are too long for the curvature of the constraints return an error.
 #[test]
-fn steps_that_are_too_long_are_errors() {
+fn overlong_constrained_steps_are_errors() {
     let pendulum = Bob {};
     let simulate_pendulum = || simulate(&pendulum).from([1.0, 0.0], [0.0, 50.0]).duration(10.0);
     for end in [
@@ -225,7 +228,7 @@ fn steps_that_are_too_long_are_errors() {
 /// Checks that the midpoint rule, for constraints stabilized by feedback, converges to the motion of other
 /// methods.
 #[test]
-fn feedback_is_integrated_by_the_midpoint_rule() {
+fn midpoint_rule_integrates_constraint_feedback() {
     let pendulum = Bob {};
     let steady = linkwork::constraint::stabilized(&pendulum, 20.0);
     let simulate_steady = || simulate(&steady).from([0.6, -0.8], [0.4, 0.3]).duration(1.0);
@@ -237,7 +240,7 @@ fn feedback_is_integrated_by_the_midpoint_rule() {
 
 /// The motion of a state in a rollout is independent of the other states.
 #[test]
-fn constrained_rollouts_do_not_mix() {
+fn constrained_rollout_states_are_independent() {
     let linkage = FourBar {};
     let states: Vec<_> =
         [1.2, 1.3, 1.5].map(|crank| Start::on(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0])).into();

@@ -30,7 +30,7 @@ struct Slides<T> {
 }
 
 #[test]
-fn light_bodies_between_heavy_ones_hold_them() {
+fn light_bodies_between_heavy_ones_stay_constrained() {
     fn check_light_masses<T: Real>(lightest: i32, tolerance: T) {
         let ten = T::one() * linkwork::nalgebra::convert(10.0);
         for k in 0..=lightest {
@@ -65,7 +65,7 @@ fn acceleration_error(angle: f64, rate: f64) -> f64 {
 /// Checks that accelerations are continuous through a singular configuration. At 90° all links are on one
 /// line, and the rank of the constraints decreases from four to two.
 #[test]
-fn accelerations_go_on_through_singular_positions() {
+fn accelerations_are_continuous_through_singularities() {
     for exponent in 1..=16 {
         for side in [-1.0, 1.0] {
             let distance = side * 10_f64.powi(-exponent);
@@ -87,7 +87,7 @@ fn accelerations_go_on_through_singular_positions() {
 
 /// Returns the distance between the top of a post at this angle and the exact position of the first post's
 /// top after ten seconds.
-fn off_top(angle: f64) -> f64 {
+fn distance_from_post_top(angle: f64) -> f64 {
     // IFToMM benchmark A02, integrated in 160 bits.
     (angle.sin() + 0.328_458_111_540_815).hypot(angle.cos() - 0.944_518_538_078_601)
 }
@@ -95,14 +95,14 @@ fn off_top(angle: f64) -> f64 {
 /// Returns the error of the first post's top after ten seconds, and the change of the energy.
 fn window_errors<M: Method<f64>>(method: M) -> (f64, f64) {
     let (q, v) = state_of_posts(0.0, 1.0);
-    let energy =
+    let total_energy =
         |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
     let end = simulate(&WINDOWS).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    (off_top(end.q[0]), (energy(&end.q, &end.v) - energy(&q, &v)).abs())
+    (distance_from_post_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
 }
 
 #[test]
-fn runge_kutta_keeps_its_order_through_singular_positions() {
+fn runge_kutta_keeps_its_order_through_singularities() {
     for (step, most) in [(1e-2, 1e-6), (5e-3, 7e-8), (2e-3, 2e-9), (1e-3, 3e-10)] {
         let (top, energy) = window_errors(Rk4::step(step));
         assert!(top < most && energy < 2.0 * most, "{top} m and {energy} J with {step} s");
@@ -119,19 +119,19 @@ struct Swing {
     pin: Pin,
 }
 
-/// Returns the same errors as [`turned`], for the equivalent pendulum.
+/// Returns the same errors as [`window_errors`], for the equivalent pendulum.
 fn pendulum_errors<M: Method<f64>>(method: M) -> (f64, f64) {
     let swing = Swing {};
     let total_energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
     let (q, v) = (SVector::from([0.0]), SVector::from([-1.0]));
     let end = simulate(&swing).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    (off_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
+    (distance_from_post_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
 }
 
 /// Implicit methods have the accuracy of the equivalent pendulum while the windows pass their singular
 /// configuration eight times in ten seconds.
 #[test]
-fn implicit_steps_are_as_good_in_singular_positions_as_without() {
+fn implicit_steps_keep_accuracy_through_singularities() {
     fn check_window_errors<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
         for step in [2e-3, 1e-3] {
             let ((top, energy), (own, least)) = (window_errors(method(step)), pendulum_errors(method(step)));
@@ -145,7 +145,7 @@ fn implicit_steps_are_as_good_in_singular_positions_as_without() {
 }
 
 #[test]
-fn adaptive_steps_go_through_singular_positions() {
+fn adaptive_steps_pass_singular_configurations() {
     for tolerance in [1e-7, 1e-9, 1e-12] {
         let (top, energy) = window_errors(DormandPrince::new().tolerance(tolerance, tolerance));
         assert!(top < 1e4 * tolerance && energy < 1e4 * tolerance, "{top} m, {energy} J with {tolerance}");
@@ -155,7 +155,7 @@ fn adaptive_steps_go_through_singular_positions() {
 /// Released at rest near the singular configuration, the linkage moves slowly away and swings back on its
 /// assembly mode.
 #[test]
-fn linkages_are_released_near_singular_positions() {
+fn linkages_swing_back_from_near_singular_release() {
     for (exponent, side) in [(2, 1.0), (4, -1.0), (6, 1.0), (8, -1.0)] {
         let (q, v) = state_of_posts(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
         let start = WINDOWS.potential_energy(&q);
@@ -223,7 +223,7 @@ flat!(ChangePoint, [2, 1, 3, 2]);
 /// Checks that every method passes singular configurations in each revolution without a change of direction,
 /// with an error of its order.
 #[test]
-fn cranks_turn_through_flat_positions() {
+fn cranks_pass_singular_configurations_in_each_revolution() {
     fn check_motion_from<M: Mechanism<3, 3, 0, Scalar = f64>>(
         m: &M,
         q: SVector<f64, 3>,
@@ -302,7 +302,7 @@ four_bar!(BySpeeds, formulation = speeds, independent = (third));
 /// Checks the fallback to multipliers. With crank and coupler on one line, the rocker is instantaneously at
 /// rest while they move, so that its velocity does not determine theirs.
 #[test]
-fn speeds_are_left_where_others_do_not_follow_from_them() {
+fn singular_elimination_falls_back_to_multipliers() {
     let (plain, speeds) = (ByMultipliers {}, BySpeeds {});
     for exponent in 0..=9 {
         let bend = 10_f64.powi(-exponent);
@@ -341,7 +341,7 @@ struct Sprung<T> {
 /// The parallelogram is equivalent to a pendulum with the spring at its pin:
 /// `(1 + 2/3) m l² θ̈ = −2 m g l cos θ − k θ`.
 #[test]
-fn stiff_springs_act_in_singular_positions() {
+fn stiff_springs_act_in_singular_configurations() {
     for stiffness in [0.0, 1e3, 1e6] {
         let m = Sprung { stiffness };
         for exponent in 1..=16 {
@@ -388,7 +388,7 @@ fn largest_energy_change<T: Real, M: Method<T>>(
 
 /// A stiff spring oscillates six times through the singular configuration, in double and in single precision.
 #[test]
-fn stiff_springs_swing_through_singular_positions() {
+fn stiff_springs_oscillate_through_singularities() {
     for stiffness in [1e4, 1e6] {
         let rate = (stiffness * 6.0_f64).sqrt();
         let (h, time) = (0.05 / rate, 40.0 / rate);
@@ -420,7 +420,7 @@ fn stiff_springs_swing_through_singular_positions() {
 /// Checks that every method in single precision passes singular configurations as closely as in double
 /// precision, up to rounding.
 #[test]
-fn single_precision_passes_singular_positions() {
+fn single_precision_passes_singular_configurations() {
     for start in [(1.0, 6.0), (1.0, 12.0), (0.7, 0.0)] {
         for h in [1e-3, 1e-2] {
             macro_rules! all {
@@ -446,7 +446,7 @@ fn single_precision_passes_singular_positions() {
 /// constraints cause larger errors: bars that miss each other by the drift form a linkage without the
 /// singular configuration.
 #[test]
-fn single_precision_turns_through_singular_positions_again_and_again() {
+fn single_precision_passes_singularities_for_many_revolutions() {
     for start in [(1.0, 12.0), (1.0, 37.0), (1.0, -37.0), (0.9, 40.0)] {
         for tolerance in [1e-4_f32, 1e-5] {
             let method = DormandPrince::new().tolerance(tolerance, tolerance);
@@ -463,7 +463,7 @@ fn single_precision_turns_through_singular_positions_again_and_again() {
 /// Steps that rotate a linkage by up to a radian stay on its assembly mode, in double and in single
 /// precision.
 #[test]
-fn fast_turns_keep_to_their_branch() {
+fn fast_rotations_stay_on_their_assembly_mode() {
     let first =
         [21.15, 29.7, 31.125, 39.2, 42.7625, 47.5125, 51.075, 56.3, 76.4875, 86.4625, 96.4375, 99.7625];
     let more = (0..20).map(|k| 5.0 + 4.7 * f64::from(k));

@@ -23,11 +23,11 @@ struct Dice {
 /// Checks impacts of a block on its face and against a wall, with up to eight corners in contact, some in two
 /// contacts. Impulses are not unique; friction ranges from zero to unphysically large values.
 #[test]
-fn a_block_in_a_corner_obeys_the_laws() {
+fn corner_impacts_of_a_block_satisfy_contact_conditions() {
     let mut random = Random(1);
     for _ in 0..400 {
-        let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
-        let m = Dice { friction, restitution: random.one_of([0.0, 0.0, 0.4, 1.0]) };
+        let friction = random.random_choice([0.0, 0.05, 0.3, 0.8, 2.0]);
+        let m = Dice { friction, restitution: random.random_choice([0.0, 0.0, 0.4, 1.0]) };
         let mut q = m.neutral();
         q[2] = 0.05;
         if random.next() > 0.3 {
@@ -41,11 +41,11 @@ fn a_block_in_a_corner_obeys_the_laws() {
 /// Checks impacts of a heavy ball on a light one and another: all pairs, and two of the contacts with the
 /// floor, are closed.
 #[test]
-fn balls_in_a_pile_obey_the_laws() {
+fn pile_impacts_of_balls_satisfy_contact_conditions() {
     let mut random = Random(2);
     for _ in 0..400 {
-        let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
-        let m = Pile { friction, restitution: random.one_of([0.0, 0.0, 0.4, 1.0]) };
+        let friction = random.random_choice([0.0, 0.05, 0.3, 0.8, 2.0]);
+        let m = Pile { friction, restitution: random.random_choice([0.0, 0.0, 0.4, 1.0]) };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.1, 0.1, 0.1, 0.1, 0.1 + 0.03_f64.sqrt());
         let v = random.random_vector(2.0);
@@ -56,7 +56,7 @@ fn balls_in_a_pile_obey_the_laws() {
 /// Checks that an impact of a double pendulum's tip on the floor adds no energy. Newton's restitution with
 /// friction alone could (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8).
 #[test]
-fn a_double_pendulum_that_strikes_the_floor_gains_no_energy() {
+fn double_pendulum_impact_gains_no_energy() {
     let mut random = Random(3);
     let mut tempered = 0;
     for _ in 0..4000 {
@@ -64,8 +64,8 @@ fn a_double_pendulum_that_strikes_the_floor_gains_no_energy() {
         let q = SVector::from([a, b]);
         let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
         let m = Chain {
-            friction: random.one_of([0.0, 0.3, 0.7]),
-            restitution: random.one_of([0.5, 0.9, 1.0]),
+            friction: random.random_choice([0.0, 0.3, 0.7]),
+            restitution: random.random_choice([0.5, 0.9, 1.0]),
             height,
         };
         let v = random.random_vector(3.0);

@@ -43,7 +43,7 @@ macro_rules! error {
 }
 
 #[test]
-fn between_impacts_the_order_is_two() {
+fn midpoint_steps_between_impacts_have_order_two() {
     let chain = Chain { friction: 0.5, restitution: 0.5, height: 5.0 };
     let swing = (SVector::from([0.3, -0.8]), SVector::from([1.0, 2.0]));
     let block = Block {};
@@ -63,7 +63,7 @@ fn between_impacts_the_order_is_two() {
 /// conserves `(1 − ω² h²/4) v² + ω² x²`, so that the relative energy error is at most `ω² h²/4` for any
 /// number of oscillations.
 #[test]
-fn the_energy_of_oscillations_does_not_drift() {
+fn midpoint_energy_of_oscillations_does_not_drift() {
     let (m, h) = (Cart {}, 0.01);
     let run = simulate(&m).from([1.0], [0.0]).method(TimeStepping::step(h).midpoint());
     let part = 4.0 * h * h;
@@ -80,7 +80,7 @@ fn the_energy_of_oscillations_does_not_drift() {
 /// A block that falls on its face slides, comes to rest at the distance of Coulomb's law, and stays at rest
 /// to rounding.
 #[test]
-fn a_block_slides_and_rests() {
+fn fallen_block_slides_and_rests() {
     let m = Block {};
     let mut q = m.neutral();
     q[2] = 0.05;

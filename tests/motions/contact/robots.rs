@@ -33,7 +33,7 @@ fn servo_torques(q: &SVector<f64, 19>, v: &SVector<f64, 18>) -> SVector<f64, 12>
 /// A quadruped falls on its feet and stands on a slope of 10°: it neither sinks nor creeps, while other
 /// engines creep by millimetres a second.
 #[test]
-fn a_quadruped_stands() {
+fn quadruped_stands_on_a_slope_without_creep() {
     let m = Solo { slope: 10.0_f64.to_radians() };
     let mut q = m.neutral();
     q[2] = 0.26;
@@ -81,7 +81,7 @@ struct Humanoid {
 /// A humanoid drops onto its soles and stands, with springs and dampers at its joints. It does not creep, its
 /// soles carry the whole weight, and the centre of pressure is below its centre of mass.
 #[test]
-fn a_humanoid_stands() {
+fn humanoid_stands_without_creep() {
     let m = Humanoid {};
     let holding_torques = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
         SVector::from_fn(|k, _| -1e4 * (q[7 + k] + 0.05 * v[6 + k]))
@@ -167,7 +167,7 @@ where
 /// The contact-space inverse inertia with limbs as SIMD lanes equals that of the mass matrix. The cases have
 /// legs with contacts, arms without contacts, and contacts on two groups of limbs.
 #[test]
-fn responses_of_limbs_are_those_of_the_mass_matrix() {
+fn limb_contact_responses_agree_with_the_mass_matrix() {
     let mut random = Random(11);
     for _ in 0..20 {
         let m = Solo { slope: 0.1 };

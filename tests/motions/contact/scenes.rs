@@ -4,7 +4,7 @@ use linkwork::contact::Contacts;
 use linkwork::prelude::*;
 use std::thread;
 
-/// Five dominoes in a row on the ground.
+/// Five dominoes that stand in a row on the ground.
 #[mechanism(gravity = -9.81 * z)]
 struct Dominoes {
     friction: f64,
@@ -100,7 +100,7 @@ fn check_brick_wall() {
 
 /// The matrices of a step with many contacts need more stack than a test's thread has in unoptimised builds.
 #[test]
-fn dominoes_and_a_wall_fall() {
+fn falling_dominoes_and_wall_fit_the_stack() {
     for scene in [check_falling_dominoes, check_brick_wall] {
         thread::Builder::new().stack_size(128 << 20).spawn(scene).unwrap().join().unwrap();
     }

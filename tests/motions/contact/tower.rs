@@ -1,4 +1,4 @@
-//! Checks of a tower of boxes.
+//! Test of a tower of boxes that must remain standing.
 
 use linkwork::prelude::*;
 use std::thread;
@@ -40,6 +40,6 @@ fn check_standing_tower() {
 /// The matrices of 240 contact velocities are on the stack: an unoptimised build needs more than the two
 /// megabytes of a test's thread.
 #[test]
-fn a_tower_of_ten_boxes_stands() {
+fn tower_of_ten_boxes_remains_standing() {
     thread::Builder::new().stack_size(32 << 20).spawn(check_standing_tower).unwrap().join().unwrap();
 }

@@ -28,7 +28,7 @@ fn control_torques(q: &Joints, v: &Joints, target: &Joints) -> Joints {
 }
 
 /// Returns the state of the arm after one step of a millisecond.
-fn step(q: &Joints, v: &Joints, u: &Joints) -> (Joints, Joints) {
+fn arm_step(q: &Joints, v: &Joints, u: &Joints) -> (Joints, Joints) {
     let v = v + Arm.forward_dynamics(q, v, &Arm.generalized_forces(q, u)) * 1e-3;
     (Arm.integrate(q, &(v * 1e-3)), v)
 }
@@ -112,7 +112,7 @@ fn agrees_on_flight(mass: f64) -> bool {
     driven.t == precise.t && fixed.iter().all(is_close_to_precise)
 }
 
-/// Crank, rod and piston in a closed loop.
+/// Engine: crank, rod and piston in a closed loop.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Engine {
     length: f64,
@@ -186,7 +186,7 @@ extern "C" fn main(_: i32, _: *const *const u8) -> i32 {
     while remaining > 0 {
         let u = control_torques(&q, &v, &target);
         sound &= is_consistent(&q, &v, &u);
-        (q, v) = step(&q, &v, &u);
+        (q, v) = arm_step(&q, &v, &u);
         remaining -= 1;
     }
     let arrived = (q - target).norm() < 1e-3;

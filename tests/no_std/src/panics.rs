@@ -1,4 +1,4 @@
-//! Program that may panic, which cannot be linked.
+//! Program that may panic, so that linking it without a panic handler fails.
 
 #![no_std]
 #![no_main]

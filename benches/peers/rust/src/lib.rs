@@ -10,7 +10,7 @@ use std::error::Error;
 use std::ffi::{CStr, c_char};
 use std::path::Path;
 
-/// Gravitational acceleration of the other peers, and of dynibo, m/s².
+/// Gravitational acceleration of Linkwork and the other peers, and of the crate dynibo, m/s².
 const G: f64 = 9.81;
 const G_OF_DYNIBO: f64 = 9.80665;
 
@@ -35,7 +35,7 @@ enum Kind {
 pub struct Peer {
     kind: Kind,
     states: Vec<State>,
-    /// Index among the joints of the other peers for each of dynibo's joints.
+    /// Index of each joint of dynibo among the joints of the other peer libraries.
     order: Vec<usize>,
     out: Vec<f64>,
 }
@@ -141,7 +141,7 @@ impl Peer {
     }
 }
 
-/// Returns the base's state in world axes.
+/// Returns pose, velocity and acceleration of the robot's base in world axes.
 fn base_state_in_world(q: &[f64], v: &[f64], a: &[f64]) -> Result<BaseState, Failure> {
     let rotation = UnitQuaternion::new_unchecked(Quaternion::new(q[6], q[3], q[4], q[5]));
     let world: Rotation3<f64> = rotation.to_rotation_matrix();
@@ -182,7 +182,7 @@ extern "C" fn evaluate_forward_dynamics(peer: &mut Peer, k: usize) {
     debug_assert!(done.is_ok());
 }
 
-/// Opens a robot; returns null if dynibo cannot read it.
+/// Opens a robot for the Rust peer; returns null if the crate dynibo cannot read it.
 ///
 /// # Safety
 ///
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn peer_open(
     }
 }
 
-/// Returns the function that evaluates one state.
+/// Returns the function that evaluates a peer library at one state.
 #[unsafe(no_mangle)]
 pub extern "C" fn peer_step(
     _: &Peer,
@@ -220,7 +220,7 @@ pub extern "C" fn peer_step(
     }
 }
 
-/// Writes the result of the last step.
+/// Writes the result of the last evaluation of a peer library.
 ///
 /// # Safety
 ///

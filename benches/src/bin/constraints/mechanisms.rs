@@ -3,7 +3,7 @@
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::{Constrained, Rk4, simulate};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::own::{Flat, Own};
+use linkwork_benches::peers::own::{Flat, GeneratedContender};
 use linkwork_benches::random::Random;
 use linkwork_benches::states::{STATES, State};
 use linkwork_models::{
@@ -12,26 +12,26 @@ use linkwork_models::{
 };
 use std::rc::Rc;
 
-/// Step size of the simulations, s.
+/// Step size of the measured simulations, s.
 const STEP: f64 = 1e-3;
 
-/// Constrained mechanism with its measured functions.
+/// Constrained mechanism whose functions are measured.
 pub struct Mechanism {
     /// Title of the mechanism in the table.
     pub title: &'static str,
     /// Name of the folder with the mechanism's peer code.
     pub name: &'static str,
-    /// Number of coordinates.
+    /// Number of coordinates of the mechanism.
     pub nq: usize,
-    /// Number of velocities.
+    /// Number of velocities of the mechanism.
     pub nv: usize,
-    /// Number of scalar constraints.
+    /// Number of scalar constraints of the mechanism.
     pub nc: usize,
     /// `q`, `v`, `v̇` and zero forces of every state, concatenated.
     pub numbers: Vec<f64>,
-    /// Contender that computes the accelerations in all states.
+    /// Contender that computes the constrained accelerations at all states.
     pub accelerations: Box<dyn Contender>,
-    /// Motion of a hundred steps from the first state.
+    /// Contender that simulates a hundred steps from the first state.
     pub motion: Box<dyn Contender>,
 }
 
@@ -44,8 +44,8 @@ impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
     }
 }
 
-/// Returns a mechanism with its states. The first state is the given configuration and velocity projected
-/// onto the constraints; the others are random, at distances up to `spread`.
+/// Returns a mechanism with its states: first the given configuration and velocity projected onto the
+/// constraints, then random ones at distances up to `spread`.
 fn mechanism_with_states<
     M,
     const NQ: usize,
@@ -79,7 +79,7 @@ where
     }
     let states = Rc::new(states);
     let numbers = states.iter().flat_map(State::all_numbers).collect();
-    let accelerations = Own {
+    let accelerations = GeneratedContender {
         owner: Owner::Linkwork,
         mechanism: m.clone(),
         states: states.clone(),
@@ -89,7 +89,7 @@ where
             Solution(a, lambda)
         },
     };
-    let motion = Own {
+    let motion = GeneratedContender {
         owner: Owner::Linkwork,
         mechanism: (m, step),
         states: Rc::new(states[..1].to_vec()),
@@ -103,7 +103,7 @@ where
     Mechanism { title, name, nq: NQ, nv: NV, nc: NC, numbers, accelerations, motion }
 }
 
-/// Returns the constructors of all mechanisms.
+/// Returns the constructors of all mechanisms that are measured.
 pub fn mechanism_constructors() -> Vec<fn() -> Mechanism> {
     vec![
         || {

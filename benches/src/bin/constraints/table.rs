@@ -11,7 +11,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Tolerance of motions: methods of the same order, with and without projection, differ by more than
+/// Tolerance for comparing motions: methods of one order, with and without projection, differ by more than
 /// rounding.
 const MOTIONS: f64 = 1e-3;
 
@@ -23,7 +23,7 @@ const LIBRARIES: [(&str, Owner); 4] = [
     ("libmujoco.so", Owner::Mujoco),
 ];
 
-/// Order of the owners' columns in the table.
+/// Order in which the columns of the implementations appear in the table.
 const COLUMNS: [Owner; 4] = [Owner::Linkwork, Owner::Sympy, Owner::Pinocchio, Owner::Mujoco];
 
 /// Writes a file for every mechanism with a state and its accelerations in each line, and prints the names of
@@ -44,7 +44,7 @@ pub fn write_mechanism_files(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Measured results of one mechanism.
+/// Measured times of one mechanism, a line of the table.
 struct Line {
     mechanism: Mechanism,
     accelerations: Vec<Measured>,
@@ -55,7 +55,7 @@ struct Line {
     soft: Option<f64>,
 }
 
-/// Measures all mechanisms and prints two tables; without a folder, only those of Linkwork.
+/// Measures all mechanisms and prints two tables; without a folder of peers, only Linkwork is measured.
 pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.3 };
     let (mut lines, mut wrong) = (Vec::new(), Vec::new());
@@ -76,7 +76,7 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
             } else {
                 &mut mechanism.accelerations
             };
-            let own = std::mem::replace(own, Box::new(Nobody));
+            let own = std::mem::replace(own, Box::new(EmptyContender));
             let (mut exact, mut others) = (vec![own], Vec::new());
             for peer in folder
                 .into_iter()
@@ -95,10 +95,10 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
         }
         let steps = found.pop().unwrap_or_default();
         let accelerations = found.pop().unwrap_or_default();
-        let python = folder.and_then(|folder| in_python(&folder.join(mechanism.name)));
+        let python = folder.and_then(|folder| python_times(&folder.join(mechanism.name)));
         lines.push(Line { mechanism, accelerations, steps, python, soft });
     }
-    print(&lines);
+    print_table(&lines);
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
@@ -117,14 +117,14 @@ fn peers_with_mechanism(
     libraries.collect()
 }
 
-/// Reads the times that `derive.py` has measured.
-fn in_python(folder: &Path) -> Option<[f64; 3]> {
+/// Reads the times that the Python script `derive.py` has measured.
+fn python_times(folder: &Path) -> Option<[f64; 3]> {
     let text = fs::read_to_string(folder.join("python")).ok()?;
     let numbers: Vec<f64> = text.split_whitespace().filter_map(|x| x.parse().ok()).collect();
     numbers.try_into().ok()
 }
 
-fn print(lines: &[Line]) {
+fn print_table(lines: &[Line]) {
     let header =
         "| mechanism | v | λ | Linkwork, ns | SymPy, C | Pinocchio | MuJoCo | PyDy | SymPy, lambdify";
     let ratios =
@@ -171,10 +171,10 @@ fn format_significant_digits(value: Option<f64>, digits: i32) -> String {
     format!("{x:.decimals$}")
 }
 
-/// Placeholder for a contender that has been moved out of its list.
-struct Nobody;
+/// Placeholder in the list for a contender that has been moved out of the list.
+struct EmptyContender;
 
-impl Contender for Nobody {
+impl Contender for EmptyContender {
     fn owner(&self) -> Owner {
         Owner::Linkwork
     }

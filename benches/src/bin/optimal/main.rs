@@ -26,7 +26,7 @@ const NODES: usize = 100;
 const PERIOD: f64 = 0.01;
 const ITERATIONS: usize = 8;
 const REPEATS: usize = 300;
-/// Weights of configuration and velocity in the last state.
+/// Weights of configuration and velocity in the cost of the last state.
 const LAST: [f64; 2] = [100.0, 1.0];
 /// Weights of configuration and velocity in the other states, and of inputs, each per period.
 const RUNNING: [f64; 2] = [PERIOD, 0.1 * PERIOD];
@@ -68,7 +68,11 @@ struct Trajectory<const NQ: usize, const NV: usize, const NU: usize> {
 impl<M, const NQ: usize> Problem<'_, M, NQ> {
     /// Returns the cost of a state: half of the weighted squares of the distance to the goal and of the
     /// velocity.
-    fn of_state<const NV: usize, const NU: usize>(&self, (q, v): &State<NQ, NV>, weights: [f64; 2]) -> f64
+    fn cost_of_state<const NV: usize, const NU: usize>(
+        &self,
+        (q, v): &State<NQ, NV>,
+        weights: [f64; 2],
+    ) -> f64
     where
         M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
@@ -159,7 +163,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     }
 
     /// Simulates the motion under the policies, and returns its cost.
-    fn rollout<const NV: usize, const NU: usize>(
+    fn simulate_policies<const NV: usize, const NU: usize>(
         &self,
         all: &Trajectory<NQ, NV, NU>,
         next: &mut (Vec<State<NQ, NV>>, Vec<SVector<f64, NU>>),
@@ -173,14 +177,14 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         for ((policy, u), old) in all.policies.iter().zip(&all.inputs).zip(&all.states) {
             let off = self.mechanism.difference(&old.0, &state.0);
             let u = u + policy.inputs(1.0, &off, &(state.1 - old.1));
-            costs += self.of_state(&state, RUNNING) + 0.5 * EFFORT * u.norm_squared();
+            costs += self.cost_of_state(&state, RUNNING) + 0.5 * EFFORT * u.norm_squared();
             next.0.push(state);
             next.1.push(u);
             state =
                 discrete::step(self.mechanism, &self.method, 0.0, &state.0, &state.1, &u).expect("it moves");
         }
         next.0.push(state);
-        costs + self.of_state(&state, LAST)
+        costs + self.cost_of_state(&state, LAST)
     }
 
     fn measure_optimal_control<const NV: usize, const NU: usize>(
@@ -199,12 +203,12 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         };
         let mut next = (Vec::with_capacity(NODES + 1), Vec::with_capacity(NODES));
         let inputs: Vec<_> = all.inputs.iter().map(|u| u.as_slice().to_vec()).collect();
-        self.rollout(&all, &mut next);
+        self.simulate_policies(&all, &mut next);
         (all.states, all.inputs) = next.clone();
         let mut costs = Vec::new();
         for _ in 0..ITERATIONS {
             self.backward_sweep(&mut all);
-            costs.push(self.rollout(&all, &mut next));
+            costs.push(self.simulate_policies(&all, &mut next));
             (all.states, all.inputs) = next.clone();
         }
         let linearise = minimum_time_per_node(NODES, || {
@@ -223,7 +227,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         });
         let sweep = minimum_time_per_node(NODES, || self.backward_sweep(&mut all));
         let rollout = minimum_time_per_node(NODES, || {
-            black_box(self.rollout(&all, &mut next));
+            black_box(self.simulate_policies(&all, &mut next));
         });
         format!(
             "\"{name}\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \

@@ -1,5 +1,5 @@
-//! Trot with a known contact sequence: phases in which feet stick, separated by touchdowns. The gait and its
-//! costs are those of Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
+//! Trot with a prescribed contact sequence: phases in which feet stick, separated by touchdowns. The gait and
+//! its costs are those of Crocoddyl's example `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
 
 use super::{ITERATIONS, State, minimum_time_per_node};
 use linkwork::contact::{self, Held, HeldDerivatives, Touch};
@@ -48,11 +48,11 @@ const PERIOD: f64 = 0.01;
 /// Number of nodes of a swing phase, and of the preceding stance on four feet.
 const SWING: usize = 25;
 const STAND: usize = 2;
-/// Step length and step height of a foot, m.
+/// Step length and height of a swinging foot, m.
 const REACH: f64 = 0.1;
 const LIFT: f64 = 0.05;
 const FRICTION: f64 = 0.7;
-/// Gain with which velocities of sticking feet decay, 1/s.
+/// Gain of the constraint stabilization, by which velocities of sticking feet decay, 1/s.
 const DAMPING: f64 = 50.0;
 /// Weights of the errors of the centre of mass, of feet in the air, and of feet at touchdown.
 const OF_CENTRE: f64 = 1e6;
@@ -66,11 +66,11 @@ const OF_INPUTS: f64 = 1e-1;
 /// Node of the gait: contact states and targets at one instant.
 struct Phase {
     touches: [Touch; 4],
-    /// Target position of the centre of mass.
+    /// Target position of the centre of mass at this node, if any.
     centre: Option<Place>,
-    /// Target positions of the feet.
+    /// Target positions of the feet at this node.
     feet: [Option<Place>; 4],
-    /// Whether feet touch down at this node.
+    /// Whether swinging feet touch down at this node.
     lands: bool,
 }
 
@@ -96,7 +96,7 @@ fn foot_jacobian(k: usize, q: &Configuration) -> SMatrix<f64, 3, 18> {
 }
 
 /// Returns two steps of diagonal pairs of feet; the first step has half the length.
-fn gait(start: &Configuration) -> Vec<Phase> {
+fn trot_gait(start: &Configuration) -> Vec<Phase> {
     let mut feet: [Place; 4] = std::array::from_fn(|k| position_of_foot(k, start));
     let mut centre: Place = feet.iter().sum::<Place>() / 4.0;
     centre.z = Walker {}.center_of_mass(start).z;
@@ -132,7 +132,7 @@ fn gait(start: &Configuration) -> Vec<Phase> {
 
 /// Returns the inputs that hold the robot at rest on its feet, up to the wrench that two feet cannot
 /// transmit.
-fn quasi_static(q: &Configuration, phase: &Phase) -> Inputs {
+fn quasi_static_inputs(q: &Configuration, phase: &Phase) -> Inputs {
     let m = Walker {};
     let bias = m.bias_forces(q, &Motion::zeros());
     let jacobian = m.contact_jacobian(q);
@@ -148,7 +148,7 @@ fn quasi_static(q: &Configuration, phase: &Phase) -> Inputs {
 }
 
 /// Returns the columns of the joints, on which the inputs act.
-fn of_joints<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12> {
+fn joint_columns<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12> {
     let mut by_u = SMatrix::zeros();
     by_u.data.0.copy_from_slice(&by_tau.data.0[6..]);
     by_u
@@ -180,12 +180,12 @@ struct Node {
     step: Transition,
     cost: Cost,
     held: HeldDerivatives<f64, 18, 12>,
-    /// Whether the cost couples configuration, velocity and inputs.
+    /// Whether the cost has second derivatives that couple configuration, velocity and inputs.
     is_mixed: bool,
 }
 
 impl Node {
-    fn zeros() -> Self {
+    fn zero_node() -> Self {
         let (step, cost, held) = (Transition::zeros(), Quadratic::zeros(), HeldDerivatives::zeros());
         Self { step, cost, held, is_mixed: false }
     }
@@ -199,7 +199,7 @@ struct Trot {
 }
 
 /// Trajectory with its feedback policies.
-struct Plan {
+struct TrajectoryPlan {
     states: Vec<State<19, 18>>,
     inputs: Vec<Inputs>,
     policies: Vec<Policy<f64, 18, 12>>,
@@ -281,7 +281,7 @@ impl Trot {
         self.write_cost_derivatives(k, state, PERIOD, cost);
         let held = contact::hold(&Walker {}, phase.touches).with_gains(0.0, DAMPING);
         held.held_derivatives_into(0.0, q, v, &Walker {}.generalized_forces(q, u), found)?;
-        let by_u = of_joints(&found.by_tau);
+        let by_u = joint_columns(&found.by_tau);
         let by = (&found.by_q, &found.by_v, &by_u);
         discrete::semi_implicit_into(&held, PERIOD, (q, v), &found.a, by, step);
         cost.u = u * (OF_INPUTS * PERIOD);
@@ -299,7 +299,7 @@ impl Trot {
             }
         }
         if *is_mixed {
-            let by = (&found.forces_by_q, &found.forces_by_v, &of_joints(&found.forces_by_tau));
+            let by = (&found.forces_by_q, &found.forces_by_v, &joint_columns(&found.forces_by_tau));
             cost.add_costs_of(&gradient, &hessian, by);
         }
         Ok(())
@@ -315,8 +315,8 @@ impl Trot {
 
     /// Linearises the trajectory and runs the backward recursion. Returns the coefficients of the step
     /// length, and of its square, in the expected change of the cost.
-    fn backward_sweep(&self, plan: &mut Plan) -> [f64; 2] {
-        let mut node = Node::zeros();
+    fn backward_sweep(&self, plan: &mut TrajectoryPlan) -> [f64; 2] {
+        let mut node = Node::zero_node();
         let mut to_go = self.final_state_cost(&plan.states[plan.inputs.len()]);
         let mut expected = [0.0; 2];
         for (k, policy) in plan.policies.iter_mut().enumerate().rev() {
@@ -328,7 +328,12 @@ impl Trot {
     }
 
     /// Simulates the motion under the policies, and returns its cost.
-    fn rollout(&self, plan: &Plan, length: f64, next: &mut (Vec<State<19, 18>>, Vec<Inputs>)) -> f64 {
+    fn simulate_policies(
+        &self,
+        plan: &TrajectoryPlan,
+        length: f64,
+        next: &mut (Vec<State<19, 18>>, Vec<Inputs>),
+    ) -> f64 {
         let (m, mut state, mut sum) = (Walker {}, plan.states[0], 0.0);
         next.0.clear();
         next.1.clear();
@@ -356,7 +361,7 @@ impl Trot {
         sum + self.cost_of_node(plan.inputs.len(), &state, None)
     }
 
-    /// Returns the gait as JSON for a program with the same costs.
+    /// Returns the gait as JSON, for an external program that solves the problem with the same costs.
     fn gait_as_json(&self) -> String {
         let format_optional_point = |place: &Option<Place>| {
             place.map_or("null".to_owned(), |place| format!("{:?}", place.as_slice()))
@@ -384,39 +389,39 @@ pub fn measure_trot() -> String {
     {
         start.fixed_rows_mut::<3>(7 + 3 * k).copy_from_slice(&angles);
     }
-    let phases = gait(&start);
+    let phases = trot_gait(&start);
     let trot = Trot { start, weights: phases.iter().map(state_cost_weights).collect(), phases };
     let nodes = trot.phases.len() - 1;
-    let mut plan = Plan {
+    let mut plan = TrajectoryPlan {
         states: vec![(start, Motion::zeros()); nodes + 1],
         inputs: trot.phases[..nodes]
             .iter()
             .map(|phase| match phase.lands {
                 true => Inputs::zeros(),
-                false => quasi_static(&start, phase),
+                false => quasi_static_inputs(&start, phase),
             })
             .collect(),
         policies: vec![Policy::zeros(); nodes],
     };
     let inputs: Vec<_> = plan.inputs.iter().map(|u| u.as_slice().to_vec()).collect();
     let mut next = (Vec::with_capacity(nodes + 1), Vec::with_capacity(nodes));
-    let mut cost = trot.rollout(&plan, 1.0, &mut next);
+    let mut cost = trot.simulate_policies(&plan, 1.0, &mut next);
     (plan.states, plan.inputs) = next.clone();
     let mut costs = Vec::new();
     for _ in 0..ITERATIONS {
         let [linear, quadratic] = trot.backward_sweep(&mut plan);
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
-        let shorter = lengths.map(|length| (length, trot.rollout(&plan, length, &mut next)));
+        let shorter = lengths.map(|length| (length, trot.simulate_policies(&plan, length, &mut next)));
         let mut shorter = shorter.collect::<Vec<_>>().into_iter();
         let found = shorter
             .find(|(length, found)| cost - found > -0.1 * (length * linear + length * length * quadratic));
         let Some((length, found)) = found else { break };
-        cost = trot.rollout(&plan, length, &mut next);
+        cost = trot.simulate_policies(&plan, length, &mut next);
         assert_eq!(cost, found);
         costs.push(cost);
         (plan.states, plan.inputs) = next.clone();
     }
-    let mut node = Node::zeros();
+    let mut node = Node::zero_node();
     let linearise = minimum_time_per_node(nodes, || {
         for k in 0..nodes {
             trot.evaluate_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
@@ -439,7 +444,7 @@ pub fn measure_trot() -> String {
         black_box(trot.backward_sweep(&mut plan));
     });
     let rollout = minimum_time_per_node(nodes, || {
-        black_box(trot.rollout(&plan, 1.0, &mut next));
+        black_box(trot.simulate_policies(&plan, 1.0, &mut next));
     });
     format!(
         "\"trot\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": \

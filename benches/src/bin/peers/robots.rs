@@ -3,38 +3,38 @@
 use linkwork::nalgebra::{ArrayStorage, SMatrix};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::own::{Call, Flat, Keeping, Own};
+use linkwork_benches::peers::own::{Call, Flat, GeneratedContender, MatrixContender};
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
 use linkwork_benches::states::{State, random_states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::rc::Rc;
 
-/// A function, and the contender that evaluates it.
+/// A measured function, and the contender that evaluates it with generated code.
 pub type Generated = (Function, Box<dyn Contender>);
 
 /// Robot with the generated functions that are compared.
 pub struct Robot {
-    /// Name of the robot and of its folder.
+    /// Name of the robot and of its folder of peer code.
     pub name: &'static str,
-    /// Text of its URDF file.
+    /// Text of the robot's URDF file.
     pub urdf: String,
-    /// Names of the file's locked joints.
+    /// Names of the joints of the file that are locked.
     pub lock: &'static [&'static str],
-    /// Whether its base is free.
+    /// Whether the robot's base is free.
     pub free: bool,
-    /// Names of its moving joints in order, without that of the base.
+    /// Names of the robot's moving joints in order, without the joint of the base.
     pub joints: &'static [&'static str],
     /// Number of coordinates of the robot.
     pub nq: usize,
     /// Number of velocities of the robot.
     pub nv: usize,
-    /// `q`, `v`, `a` and `τ` of every state, concatenated.
+    /// `q`, `v`, `a` and `τ` of every sample state, concatenated.
     pub numbers: Vec<f64>,
-    /// Generated functions of the robot.
+    /// Generated functions of the robot that are measured.
     pub functions: Vec<Generated>,
 }
 
-/// Returns a generated function as a contender.
+/// Returns a generated function of Linkwork as a contender of the comparison.
 fn linkwork_contender<M: 'static, R: Flat + 'static, const NQ: usize, const NV: usize>(
     (owner, mechanism): (Owner, M),
     states: &Rc<Vec<State<NQ, NV>>>,
@@ -42,10 +42,13 @@ fn linkwork_contender<M: 'static, R: Flat + 'static, const NQ: usize, const NV: 
     call: Call<M, R, NQ, NV>,
 ) -> Generated {
     let states = states.clone();
-    (function, Box::new(Own { owner, mechanism, states, name: function.function_name(), call }))
+    (
+        function,
+        Box::new(GeneratedContender { owner, mechanism, states, name: function.function_name(), call }),
+    )
 }
 
-/// Returns the functions of a mechanism as contenders.
+/// Expands to the generated functions of a mechanism as contenders.
 macro_rules! functions {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
         let from = (Owner::$owner, $value);
@@ -61,7 +64,7 @@ macro_rules! functions {
     }};
 }
 
-/// Returns the derivatives of a mechanism's functions as contenders.
+/// Expands to the generated derivatives of a mechanism as contenders.
 macro_rules! derivatives {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
         let from = (Owner::$owner, $value);
@@ -86,7 +89,7 @@ macro_rules! kept {
             ($function:ident, $name:ident, $count:literal, $call:expr) => {
                 (
                     Function::$function,
-                    Box::new(Keeping {
+                    Box::new(MatrixContender {
                         mechanism: $value,
                         states: $states.clone(),
                         name: stringify!($name),
@@ -148,7 +151,7 @@ macro_rules! robot {
     }};
 }
 
-/// Returns a robot from a file.
+/// Expands to the robot of a URDF file with its generated functions.
 macro_rules! file {
     ($name:literal, $file:literal, $options:expr, $type:ident) => {
         robot!(

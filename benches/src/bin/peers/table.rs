@@ -40,7 +40,7 @@ pub fn measure_robots(folder: &Path, quick: bool) -> Result<(), String> {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
-/// Returns the implementations of a function by all libraries that have it.
+/// Returns the implementations of a function in all libraries that have the function.
 fn contenders_for_function(
     folder: &Path,
     robot: &mut Robot,
@@ -67,7 +67,7 @@ fn contenders_for_function(
     all
 }
 
-/// Returns a line of the table, for one of Linkwork's functions.
+/// Returns a line of the table with the times of one of Linkwork's functions.
 fn format_table_line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) -> String {
     let fastest_of_owner =
         |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
@@ -75,7 +75,7 @@ fn format_table_line(robot: &Robot, function: Function, owner: Owner, measured: 
     let others = [Owner::Pinocchio, Owner::Casadi, Owner::Dynibo].map(fastest_of_owner);
     let format_optional_number =
         |value: Option<f64>, digits| value.map_or("–".to_string(), |x| format!("{x:.digits$}"));
-    let time = |m: Option<&Measured>| {
+    let format_time = |m: Option<&Measured>| {
         format_optional_number(m.map(|m| m.time), usize::from(m.is_some_and(|m| m.time < 100.0)))
     };
     let format_time_ratio =
@@ -83,8 +83,10 @@ fn format_table_line(robot: &Robot, function: Function, owner: Owner, measured: 
     let kept = if owner == Owner::Kept { ", zeros kept" } else { "" };
     let mut cells =
         vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.table_title())];
-    cells.extend([own, fastest_of_owner(Owner::Parameters), fastest_of_owner(Owner::Prepared)].map(time));
-    cells.extend(others.map(time));
+    cells.extend(
+        [own, fastest_of_owner(Owner::Parameters), fastest_of_owner(Owner::Prepared)].map(format_time),
+    );
+    cells.extend(others.map(format_time));
     cells.extend(others.map(format_time_ratio));
     cells.push(format_optional_number(own.and_then(|m| m.bytes).map(|bytes| bytes as f64), 0));
     if let Some(casadi) = fastest_of_owner(Owner::Casadi) {

@@ -1,4 +1,4 @@
-//! Writes the robots as files for the peers.
+//! Writes the robots of the comparison to files that the peer libraries read.
 
 use crate::robots::{Robot, robot_constructors};
 use linkwork_benches::peers::contender::Function;
@@ -14,7 +14,7 @@ pub fn write_robot_folders(folder: &Path) -> io::Result<()> {
         let robot = make();
         let folder = folder.join(robot.name);
         fs::create_dir_all(&folder)?;
-        fs::write(folder.join("robot.urdf"), as_meant(&robot)?)?;
+        fs::write(folder.join("robot.urdf"), urdf_with_options(&robot)?)?;
         fs::write(folder.join("joints"), robot.joints.join("\n"))?;
         let derivatives =
             robot.functions.iter().any(|(function, _)| *function == Function::InverseDerivatives);
@@ -30,7 +30,7 @@ pub fn write_robot_folders(folder: &Path) -> io::Result<()> {
 
 /// Returns the file with the robot's options applied: locked joints become fixed, and no joint follows
 /// another.
-fn as_meant(robot: &Robot) -> io::Result<String> {
+fn urdf_with_options(robot: &Robot) -> io::Result<String> {
     let document = Document::parse(&robot.urdf).map_err(|error| io::Error::other(error.to_string()))?;
     let joints = document.root_element().children().filter(|node| node.has_tag_name("joint"));
     let mut changes = Vec::new();

@@ -1,12 +1,12 @@
 //! Self-description of the library: names, shapes, units and documentation as JSON.
 
-use super::{Function, Kind, Known};
+use super::{Function, Kind, LibraryData};
 use linkwork_compiler::export::without_links;
 use linkwork_compiler::mechanism::Limit;
 use serde_json::{Value, json};
 
-/// Returns the description of the mechanism as JSON.
-pub fn description_as_json(known: &Known<'_, '_>) -> String {
+/// Returns the description of an exported library as JSON.
+pub fn description_as_json(known: &LibraryData<'_, '_>) -> String {
     let m = known.model;
     let names_with_units = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
         let units = units.iter().map(String::as_str).chain(std::iter::repeat(""));
@@ -21,7 +21,7 @@ pub fn description_as_json(known: &Known<'_, '_>) -> String {
         m.units.outputs.get(at).cloned()
     };
     let functions: Vec<Value> =
-        known.functions.iter().map(|f| of_function(f, unit_of_output(&f.name))).collect();
+        known.functions.iter().map(|f| describe_function(f, unit_of_output(&f.name))).collect();
     let all = json!({
         "name": known.input.declaration.name,
         "prefix": known.prefix,
@@ -60,7 +60,7 @@ fn limits_as_json(limit: &Limit<'_>) -> Value {
     json!({ "index": limit.v.0, "lower": lower, "upper": upper, "velocity": velocity, "effort": effort })
 }
 
-fn of_function(f: &Function, unit: Option<String>) -> Value {
+fn describe_function(f: &Function, unit: Option<String>) -> Value {
     let (docs, errors) = super::functions::plain_docs(&f.docs);
     let arguments: Vec<Value> = f
         .arguments

@@ -10,7 +10,7 @@ use syn::{FnArg, GenericArgument, ImplItem, Item, PathArguments, ReturnType, Typ
 pub enum Kind {
     /// Number passed by value.
     Number,
-    /// Matrix with this number of rows and columns.
+    /// Matrix with these numbers of rows and columns.
     Matrix(usize, usize),
     /// Selection of velocities: nonzero entries are selected.
     Marks,
@@ -21,11 +21,11 @@ pub enum Kind {
 /// Function of the exported library, with an interface of plain arrays.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// Name of the function.
+    /// Name of the library function.
     pub name: String,
-    /// Paragraphs of the function's documentation.
+    /// Paragraphs of the library function's documentation.
     pub docs: Vec<String>,
-    /// Names and kinds of the arguments.
+    /// Names and kinds of the library function's arguments.
     pub arguments: Vec<(String, Kind)>,
     /// Names and shapes of the results: an empty shape for a number, otherwise the lengths of its dimensions.
     pub results: Vec<(String, Vec<usize>)>,
@@ -46,7 +46,8 @@ impl Function {
     }
 }
 
-/// Returns all functions of the struct that can be called with plain arrays, and the names of the others.
+/// Returns all functions of the struct that can be called with plain arrays, and the names of the functions
+/// that cannot.
 pub fn read_struct_functions(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
     let (mut found, mut left_out, mut names) = (Vec::new(), Vec::new(), Vec::new());
     for item in items {
@@ -69,7 +70,7 @@ pub fn read_struct_functions(items: &[Item], mechanism: &str) -> (Vec<Function>,
                 names.push(one.to_string());
             } else if let Some(function) = one(&name, function) {
                 found.push(function);
-            } else if !is_known(&name) {
+            } else if !is_available_elsewhere(&name) {
                 left_out.push(name);
             }
         }
@@ -91,8 +92,8 @@ fn has_lanes(function: &syn::ImplItemFn) -> bool {
     function.sig.generics.const_params().next().is_some()
 }
 
-/// Returns whether a function is available under another name.
-fn is_known(name: &str) -> bool {
+/// Returns whether a generated function is exported under another name.
+fn is_available_elsewhere(name: &str) -> bool {
     name.ends_with("_into") || name.starts_with("frame_")
 }
 
@@ -105,7 +106,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
         let FnArg::Typed(typed) = input else { return None };
         let kind = match &*typed.ty {
             Type::Reference(reference) if reference.mutability.is_none() => referenced_kind(&reference.elem)?,
-            plain => (is_number(plain)).then_some(Kind::Number)?,
+            plain => (is_number_type(plain)).then_some(Kind::Number)?,
         };
         arguments.push((typed.pat.to_token_stream().to_string(), kind));
     }
@@ -130,7 +131,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
     Some(Function { name: name.to_string(), docs, arguments, results, call, lanes: None })
 }
 
-/// Returns the paragraphs of doc comments.
+/// Returns the text of documentation comments as paragraphs.
 pub fn doc_paragraphs(attributes: &[syn::Attribute]) -> Vec<String> {
     let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
         syn::Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
@@ -151,18 +152,19 @@ pub fn doc_paragraphs(attributes: &[syn::Attribute]) -> Vec<String> {
     paragraphs.filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
-/// Converts documentation for readers without Rust: the paragraphs, and the description of errors.
+/// Converts documentation for readers without Rust: returns the paragraphs, and the description of errors.
 pub fn plain_docs(docs: &[String]) -> (Vec<String>, String) {
-    let plain: Vec<String> = docs.iter().map(|paragraph| without_links(&without_trait(paragraph))).collect();
+    let plain: Vec<String> =
+        docs.iter().map(|paragraph| without_links(&remove_trait_reference(paragraph))).collect();
     let begin = plain.iter().position(|paragraph| paragraph.starts_with(ERRORS)).unwrap_or(plain.len());
     let (about, errors) = plain.split_at(begin);
-    (about.to_vec(), without_variants(errors.join(" ").trim_start_matches(ERRORS).trim()))
+    (about.to_vec(), remove_variant_names(errors.join(" ").trim_start_matches(ERRORS).trim()))
 }
 
 const ERRORS: &str = "# Errors";
 
 /// Removes the reference to a trait from a paragraph.
-fn without_trait(paragraph: &str) -> String {
+fn remove_trait_reference(paragraph: &str) -> String {
     let end = " of the trait.";
     match (paragraph.find(" See ["), paragraph.find(end)) {
         (Some(from), Some(to)) if from < to => {
@@ -174,7 +176,7 @@ fn without_trait(paragraph: &str) -> String {
 
 /// Returns the condition of an error without the names of its variants in Rust: `` `Held` for an index ``
 /// becomes "for an index".
-fn without_variants(text: &str) -> String {
+fn remove_variant_names(text: &str) -> String {
     let parts: Vec<&str> = text.split('`').collect();
     let has_condition = |k: usize| {
         parts.get(k + 1).is_some_and(|next| [" if ", " for "].iter().any(|word| next.starts_with(word)))
@@ -193,10 +195,10 @@ fn without_variants(text: &str) -> String {
     out
 }
 
-/// Type names that are not the mechanism's scalar type.
+/// Names of types that are never the scalar type of the mechanism.
 const OTHERS: [&str; 5] = ["Self", "bool", "str", "u64", "usize"];
 
-fn is_number(kind: &Type) -> bool {
+fn is_number_type(kind: &Type) -> bool {
     matches!(kind, Type::Path(path) if path.path.get_ident().is_some_and(|name| !OTHERS.iter().any(|other| name == other)))
 }
 
@@ -239,9 +241,9 @@ fn type_name_with_arguments(kind: &Type) -> Option<(String, Vec<Type>, Vec<usize
     Some((last.ident.to_string(), types, sizes))
 }
 
-/// Returns the dimensions of a number, vector or matrix.
+/// Returns the array dimensions of a type that is a number, a vector or a matrix.
 fn dimensions_of_type(kind: &Type) -> Option<Vec<usize>> {
-    if is_number(kind) {
+    if is_number_type(kind) {
         return Some(Vec::new());
     }
     let (name, _, sizes) = type_name_with_arguments(kind)?;

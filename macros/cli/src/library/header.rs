@@ -1,11 +1,11 @@
 //! C header of an exported library.
 
-use super::{Function, Kind, Known};
+use super::{Function, Kind, LibraryData};
 use linkwork_compiler::export::{in_comment, in_comment_lines};
 use std::fmt::Write;
 
-/// Returns the text of the header.
-pub fn header_text(known: &Known<'_, '_>) -> String {
+/// Returns the text of the C header of an exported library.
+pub fn header_text(known: &LibraryData<'_, '_>) -> String {
     let m = known.model;
     let (prefix, number) = (known.prefix, if known.is_single_precision() { "float" } else { "double" });
     let upper = prefix.to_ascii_uppercase();
@@ -58,7 +58,7 @@ pub fn header_text(known: &Known<'_, '_>) -> String {
     text
 }
 
-fn write_frames(text: &mut String, known: &Known<'_, '_>, upper: &str) {
+fn write_frames(text: &mut String, known: &LibraryData<'_, '_>, upper: &str) {
     if known.model.frames.is_empty() {
         return;
     }
@@ -72,7 +72,7 @@ fn write_frames(text: &mut String, known: &Known<'_, '_>, upper: &str) {
     text.push_str("};\n\n");
 }
 
-fn write_function(text: &mut String, f: &Function, known: &Known<'_, '_>, number: &str) {
+fn write_function(text: &mut String, f: &Function, known: &LibraryData<'_, '_>, number: &str) {
     let nv = known.model.nv();
     let (mut docs, errors) = super::functions::plain_docs(&f.docs);
     if !errors.is_empty() {

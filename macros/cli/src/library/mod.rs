@@ -10,7 +10,7 @@ mod write;
 use crate::Stop;
 use crate::commands::text_option;
 use crate::grid::{self, Grid};
-use crate::input::{Compiled, Input};
+use crate::input::{CompiledMechanism, Input};
 use crate::sources::{self, manifest_dependency};
 use clap::ArgMatches;
 pub use functions::doc_paragraphs;
@@ -30,25 +30,25 @@ pub struct Crate {
     pub prefix: String,
     /// Files of the crate: path within the crate, and text.
     pub files: Vec<(&'static str, String)>,
-    /// Rust functions that the library does not have.
+    /// Rust functions that the exported library does not have.
     pub left_out: Vec<String>,
 }
 
 /// Data of the mechanism from which the crate is generated.
-struct Known<'a, 'g> {
+struct LibraryData<'a, 'g> {
     input: &'a Input,
     source: &'a Source,
     model: &'a Model<'g>,
     prefix: &'a str,
-    /// Values of the tables of the mechanism.
+    /// Values of the interpolation tables of the mechanism.
     tables: Vec<Grid>,
-    /// Exported functions, in the order of their indices.
+    /// Exported functions of the library, in the order of their indices.
     functions: Vec<Function>,
     left_out: Vec<String>,
     equations: String,
 }
 
-impl Known<'_, '_> {
+impl LibraryData<'_, '_> {
     fn is_single_precision(&self) -> bool {
         self.source.mechanism.description.scalar == ScalarType::F32
     }
@@ -76,7 +76,7 @@ impl Known<'_, '_> {
 /// registry.
 pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
     let graph = Graph::new();
-    let Compiled { source, model, output } = input.compile_mechanism(&graph)?;
+    let CompiledMechanism { source, model, output } = input.compile_mechanism(&graph)?;
     let shell = &source.mechanism.shell;
     if shell.generics.type_params().count() > 1 || shell.generics.const_params().next().is_some() {
         return Err(Stop::Failure(format!(
@@ -85,7 +85,7 @@ pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Resu
             input.declaration.name
         )));
     }
-    let emitted = source.emit(&model, &output);
+    let emitted = source.emit_mechanism(&model, &output);
     let expansion = format!("{}\n{}", emitted.tokens, emitted.text);
     let file = syn::parse_file(&expansion)?;
     let (mut functions, left_out) = functions::read_struct_functions(&file.items, &input.declaration.name);
@@ -94,9 +94,9 @@ pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Resu
     let requests = source.mechanism.requests;
     let kinematic = model.kinematic;
     if !kinematic && model.contacts.is_empty() {
-        functions.extend(step_functions(&model, requests.derivatives && !model_slips(&functions)));
+        functions.extend(step_functions(&model, requests.derivatives && !has_sliding_contacts(&functions)));
     }
-    let known = Known {
+    let known = LibraryData {
         input,
         source: &source,
         model: &model,
@@ -110,7 +110,7 @@ pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Resu
     let linkwork = text_option(matches, "linkwork")
         .map(absolute_source_folder)
         .transpose()?
-        .or_else(sources::of_command);
+        .or_else(sources::repository_of_command);
     let manifest = manifest_text(prefix, linkwork.as_deref(), requests.reproducible);
     let text = match matches.get_flag("expanded") {
         true => write::library_text(&known, &description, "")? + &expansion,
@@ -137,7 +137,7 @@ fn absolute_source_folder(folder: &str) -> Result<PathBuf, Stop> {
 
 /// Returns whether the mechanism has sliding contacts. Their friction forces are missing from steps with
 /// Jacobians.
-fn model_slips(functions: &[Function]) -> bool {
+fn has_sliding_contacts(functions: &[Function]) -> bool {
     functions.iter().any(|f| f.name == "constraint_residuals")
         && functions.iter().all(|f| f.name != "forward_dynamics_derivatives")
 }
@@ -345,7 +345,7 @@ fn manifest_text(prefix: &str, linkwork: Option<&Path>, reproducible: bool) -> S
 }
 
 /// Returns the indices of the parameters of each field of a struct.
-fn by_field(members: &[String]) -> BTreeMap<&str, Vec<usize>> {
+fn parameters_by_field(members: &[String]) -> BTreeMap<&str, Vec<usize>> {
     let mut fields: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (k, member) in members.iter().enumerate() {
         let field = member.split(['.', '[']).next().unwrap_or(member);

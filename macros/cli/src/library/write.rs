@@ -1,11 +1,15 @@
 //! Rust source of the crate: the declaration, the table of functions, and the exported functions.
 
-use super::{Function, Kind, Known, by_field};
+use super::{Function, Kind, LibraryData, parameters_by_field};
 use crate::Stop;
 use std::fmt::Write;
 
 /// Returns the text of `lib.rs`. Without a declaration, the caller must append the generated code.
-pub fn library_text(known: &Known<'_, '_>, description: &str, declaration: &str) -> Result<String, Stop> {
+pub fn library_text(
+    known: &LibraryData<'_, '_>,
+    description: &str,
+    declaration: &str,
+) -> Result<String, Stop> {
     let m = known.model;
     let (kind, number, prefix) = (known.struct_type(), known.scalar_type_name(), known.prefix);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
@@ -73,7 +77,7 @@ pub fn library_text(known: &Known<'_, '_>, description: &str, declaration: &str)
     }
     write_exports(&mut text, known);
     for (k, f) in known.functions.iter().enumerate() {
-        write_named(&mut text, k, f, prefix, number, !m.parameters.is_empty());
+        write_function_export(&mut text, k, f, prefix, number, !m.parameters.is_empty());
     }
     Ok(prettyplease::unparse(&syn::parse_str(&text)?))
 }
@@ -101,7 +105,7 @@ fn function_table_row(f: &Function, nv: usize) -> String {
 }
 
 /// Returns the expression that constructs the mechanism from its parameters and tables.
-fn constructor_expression(known: &Known<'_, '_>) -> String {
+fn constructor_expression(known: &LibraryData<'_, '_>) -> String {
     let shell = &known.source.mechanism.shell;
     let name = &known.input.declaration.name;
     let tables = shell.tables.iter().filter_map(|f| f.ident.as_ref()).enumerate();
@@ -109,7 +113,7 @@ fn constructor_expression(known: &Known<'_, '_>) -> String {
         tables.map(|(k, field)| [field.to_string(), format!("TABLE_{k}")]).collect();
     let has_numbers = !known.model.parameters.is_empty();
     let unused = if has_numbers { "" } else { "let _ = parameter;\n" };
-    let fields = by_field(&known.model.parameters);
+    let fields = parameters_by_field(&known.model.parameters);
     let own: Vec<String> =
         shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
     let index_of_field = |field: &str| {
@@ -137,7 +141,7 @@ fn constructor_expression(known: &Known<'_, '_>) -> String {
 }
 
 /// Returns the Rust text of the mechanism's tables as constants.
-fn tables_as_constants(known: &Known<'_, '_>) -> String {
+fn tables_as_constants(known: &LibraryData<'_, '_>) -> String {
     let mut text = String::new();
     for (k, grid) in known.tables.iter().enumerate() {
         let axes: Vec<String> = grid.axes.iter().map(|axis| format!("&{axis:?}")).collect();
@@ -157,15 +161,15 @@ fn tables_as_constants(known: &Known<'_, '_>) -> String {
     text
 }
 
-fn parameter_check(known: &Known<'_, '_>) -> &'static str {
+fn parameter_check(known: &LibraryData<'_, '_>) -> &'static str {
     match known.model.parameters.is_empty() {
         true => "Ok(())",
         false => "self.validate().map_err(Failure::new)",
     }
 }
 
-/// Writes the exported functions that every library has.
-fn write_exports(text: &mut String, known: &Known<'_, '_>) {
+/// Writes the exported C functions that every library has.
+fn write_exports(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, kind, number, m) =
         (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
     let _ = write!(
@@ -215,8 +219,8 @@ fn write_exports(text: &mut String, known: &Known<'_, '_>) {
     }
 }
 
-/// Writes the exported functions for simulations and rollouts.
-fn write_motions(text: &mut String, known: &Known<'_, '_>) {
+/// Writes the exported C functions for simulations and rollouts.
+fn write_motions(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, kind, number, m) =
         (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
@@ -261,7 +265,7 @@ fn write_motions(text: &mut String, known: &Known<'_, '_>) {
 }
 
 /// Writes the exported function for the parameters of a robot file.
-fn write_defaults(text: &mut String, known: &Known<'_, '_>) {
+fn write_defaults(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, number, m) = (known.prefix, known.scalar_type_name(), known.model);
     let of_file = known.source.mechanism.shell.file_fields.is_empty();
     let values: String = match of_file {
@@ -291,8 +295,15 @@ fn write_defaults(text: &mut String, known: &Known<'_, '_>) {
     );
 }
 
-/// Writes the exported function with this name, for one state.
-fn write_named(text: &mut String, k: usize, f: &Function, prefix: &str, number: &str, has_parameters: bool) {
+/// Writes the exported C function for a generated function, for one state.
+fn write_function_export(
+    text: &mut String,
+    k: usize,
+    f: &Function,
+    prefix: &str,
+    number: &str,
+    has_parameters: bool,
+) {
     let own = has_parameters.then(|| format!("own: *const {number}"));
     let given = f.arguments.iter().map(|(name, kind)| match kind {
         Kind::Number => format!("{name}: {number}"),

@@ -1,4 +1,4 @@
-//! Cart on a rail with a pole: modify it to your own mechanism.
+//! Cart on a rail with a pole: the starting point for the user's own mechanism.
 
 use linkwork::prelude::*;
 use linkwork_view::{Motion, Page};
@@ -33,9 +33,9 @@ pub fn cart_pole_page() -> Result<Page, Box<dyn std::error::Error>> {
         || simulate(&cart_pole).from([0.0, 0.2], [0.0, 0.0]).duration(8.0).sample_every(1.0 / 60.0);
     let falls: Vec<_> = simulate_cart_pole().collect::<Result<_, _>>()?;
     // At positive angles the pole leans to the left, and the cart must follow it.
-    let controller =
+    let cart_pole_controller =
         |_t, q: &SVector<f64, 2>, v: &SVector<f64, 2>| [q[0] + 2.0 * v[0] - 30.0 * q[1] - 8.0 * v[1]].into();
-    let stands: Vec<_> = simulate_cart_pole().inputs(controller).collect::<Result<_, _>>()?;
+    let stands: Vec<_> = simulate_cart_pole().inputs(cart_pole_controller).collect::<Result<_, _>>()?;
     let page = Page::new("A cart with a pole")
         .text("Drag to rotate, scroll to zoom; the space bar plays and stops.");
     let falls = Motion::of("It falls", &cart_pole, &falls)?.trail("pole", [0.0, 1.0, 0.0], 1.0)?;

@@ -15,7 +15,7 @@ fn python_with_casadi() -> Option<String> {
 /// Checks that CasADi loads functions with the correct values and Jacobians, and that acados' functions have
 /// consistent sizes.
 #[test]
-fn casadi_loads_functions_with_their_jacobians() {
+fn casadi_functions_have_correct_values_and_jacobians() {
     let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;
@@ -61,7 +61,7 @@ fn casadi_loads_functions_with_their_jacobians() {
 /// Checks the errors for parameters that cannot be fixed, and for single precision, which CasADi does not
 /// support.
 #[test]
-fn what_casadi_cannot_have_is_reported() {
+fn options_without_casadi_support_are_rejected() {
     for (arguments, part) in [
         (["--set", "mass=1"], "there is no parameter `mass` to be fixed"),
         (["--scalar", "float"], "CasADi has no functions of single precision"),

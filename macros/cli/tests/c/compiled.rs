@@ -13,15 +13,15 @@ pub struct Entry {
     pub returned: bool,
 }
 
-/// Exported mechanism with the calls to be compared.
+/// Exported mechanism with the calls whose results in C and Rust are compared.
 pub struct Case {
     /// Prefix of identifiers and of file names.
     pub prefix: &'static str,
     pub parameters: Vec<f64>,
-    /// C initialisers of tables, and the C arrays that they refer to.
+    /// C initialisers of tables, and the C arrays to which the initialisers refer.
     pub tables: [&'static str; 2],
     pub time: Option<f64>,
-    /// Values of the arguments, by name.
+    /// Values of the arguments of the functions, by name.
     pub given: Vec<(&'static str, Vec<f64>)>,
     pub entries: Vec<Entry>,
     /// Maximum error of the results, relative to the largest entry of each.
@@ -106,7 +106,7 @@ pub fn test_folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Runs `linkwork export c`.
+/// Runs the command `linkwork export c` in a test folder.
 pub fn export_c_code(folder: &Path, arguments: &[&str]) {
     let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
@@ -163,7 +163,8 @@ pub fn compare_results(case: &Case, found: &[Vec<f64>], tolerance: f64) {
 /// the C compiler is tested with the shorter files.
 const LONG: u64 = 800_000;
 
-/// Exports, compiles and compares: without optimisation, and with optimisation for this processor.
+/// Exports C code, compiles it without and with optimisation for this processor, and compares the results
+/// with Rust.
 pub fn check_exported_code(case: &Case, arguments: &[&str]) {
     let compilers = c_compilers();
     if compilers.is_empty() {

@@ -1,14 +1,14 @@
-//! Tests of exported CUDA code: compiled as C++, the kernels run on the processor, one state after the other.
+//! Tests of exported CUDA code: compiled as C++, the kernels run on the processor, one state after another.
 
 use super::compiled::{Case, Entry, compare_results, test_folder};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
-/// Number of states of a batch; the last one is compared.
+/// Number of states of a batch; the last state is compared with Rust.
 const STATES: usize = 3;
 
-/// Returns the C++ compilers.
+/// Returns the C++ compilers that are installed.
 pub fn available_compilers() -> Vec<&'static str> {
     let is_compiler_available =
         |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
@@ -69,7 +69,7 @@ fn kernel_test_program(case: &Case, scalar: &str) -> String {
     text
 }
 
-/// Returns the initialisers of the tables in a list.
+/// Splits a list of C table initialisers into the tables.
 fn split_tables(tables: &str) -> Vec<String> {
     let parts = tables.split("{{").skip(1);
     parts.map(|part| format!("{{{{{}", part.trim_end_matches(", "))).collect()
@@ -118,7 +118,7 @@ fn compile_and_run(compiler: &str, folder: &Path, p: &str, main: &str) -> Vec<Ve
     text.lines().map(parse_numbers_of_line).collect()
 }
 
-/// Exports kernels, compiles them for the processor and compares.
+/// Exports CUDA kernels, compiles them as C++ for the processor and compares the results with Rust.
 pub fn check_exported_kernels(case: &Case, scalar: &str, arguments: &[&str]) {
     let Some(compiler) = available_compilers().into_iter().next() else {
         println!("skipped: there is no C++ compiler");

@@ -43,7 +43,7 @@ macro_rules! functions {
     };
 }
 
-/// Expands to calls of the functions of tree mechanisms.
+/// Expands to calls of the functions that tree mechanisms have.
 macro_rules! of_trees {
     ($m:ident($($t:ident)?), $q:ident, $v:ident, $a:ident, $tau:ident, $u:ident) => {{
         let (by_q, by_v) = $m.inverse_dynamics_derivatives($($t,)? &$q, &$v, &$a);
@@ -79,7 +79,7 @@ macro_rules! scalar {
     };
 }
 
-/// Test case of a mechanism at a state.
+/// Expands to a test case: a mechanism with its values at one state.
 macro_rules! case {
     ($prefix:literal, $kind:ident, $m:expr, [$($p:expr),*], time($($t:ident = $time:expr)?), $functions:ident) => {{
         let m = &$m;
@@ -118,18 +118,20 @@ macro_rules! case {
 
 /// Returns the derivative of the end state of a step with respect to the step size, by central differences of
 /// order six.
-fn by_length<const NQ: usize, const NV: usize>(
+fn derivative_by_step_size<const NQ: usize, const NV: usize>(
     end: impl Fn(f64) -> (SVector<f64, NQ>, SVector<f64, NV>),
     difference: impl Fn(&SVector<f64, NQ>, &SVector<f64, NQ>) -> SVector<f64, NV>,
 ) -> Vec<f64> {
     let d = 1e-4;
     let (start, _) = end(0.0);
-    let change_at = |x: f64| {
+    let change_after_displacement = |x: f64| {
         let (q, v) = end(x);
         [difference(&start, &q).as_slice(), v.as_slice()].concat()
     };
-    let sides: Vec<[Vec<f64>; 2]> =
-        [1.0, 2.0, 3.0].iter().map(|k| [change_at(k * d), change_at(-k * d)]).collect();
+    let sides: Vec<[Vec<f64>; 2]> = [1.0, 2.0, 3.0]
+        .iter()
+        .map(|k| [change_after_displacement(k * d), change_after_displacement(-k * d)])
+        .collect();
     let finite_difference_by_length = |i: usize| {
         let weighted_difference = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
         (weighted_difference(0, 45.0) + weighted_difference(1, -9.0) + weighted_difference(2, 1.0))
@@ -156,9 +158,9 @@ macro_rules! steps {
                 entries.push(entry!($step, "q, v, u, 0.01", next_q, next_v));
                 let mut all = entry!($transition, "q, v, u, 0.01", next_q, next_v, a, b);
                 if $case.time.is_none() {
-                    let end =
+                    let state_after_step =
                         |x: f64| discrete::step(m, &$method::step(0.01 + x), t, &q, &v, &u).expect("a step");
-                    all.results.push(by_length(end, |a, b| m.difference(a, b)));
+                    all.results.push(derivative_by_step_size(state_after_step, |a, b| m.difference(a, b)));
                 }
                 entries.push(all);
             }};
@@ -249,7 +251,7 @@ where
 }
 
 #[test]
-fn arms() {
+fn c_code_of_arms_agrees_with_rust() {
     let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
     case.entries.extend(steps!(Ur5, Ur5, case));
     check_exported_code(&case, &["../../models/urdf/ur5.urdf"]);
@@ -259,7 +261,7 @@ fn arms() {
 
 /// Compares the kernels of mechanisms with plain and curved configuration spaces, parameters and time.
 #[test]
-fn kernels_of_trees() {
+fn cuda_kernels_of_trees_agree_with_rust() {
     let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
     case.entries.extend(steps!(Ur5, Ur5, case));
     case.entries.extend(products!(Ur5, Ur5, case));
@@ -290,7 +292,7 @@ fn kernels_of_trees() {
 }
 
 #[test]
-fn quadrupeds() {
+fn c_code_of_quadrupeds_agrees_with_rust() {
     let mut case = case!("solo12", Solo12, Solo12, [], time(), of_trees);
     case.entries.extend(steps!(Solo12, Solo12, case));
     check_exported_code(&case, &["../../models/urdf/solo12.urdf", "--with", "base = free"]);
@@ -299,13 +301,13 @@ fn quadrupeds() {
 }
 
 #[test]
-fn a_humanoid() {
+fn c_code_of_a_humanoid_agrees_with_rust() {
     let case = case!("humanoid", SimpleHumanoid, SimpleHumanoid, [], time(), of_trees);
     check_exported_code(&Case { tolerance: 1e-9, ..case }, &["../../models/src/humanoid.rs"]);
 }
 
 #[test]
-fn declared_mechanisms() {
+fn c_code_of_declared_mechanisms_agrees_with_rust() {
     let m = CartPole { cart_mass: 1.2, pole_mass: 0.3, pole_length: 0.8, rail_damping: 0.4 };
     let mut case = case!("cart_pole", CartPole, m, [1.2, 0.3, 0.8, 0.4], time(), of_trees);
     case.entries.extend(steps!(CartPole, m, case));
@@ -316,7 +318,7 @@ fn declared_mechanisms() {
 }
 
 #[test]
-fn names_that_c_does_not_have() {
+fn names_reserved_in_c_are_replaced() {
     let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
     let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
     let argument_values = |name: &str| {
@@ -345,14 +347,14 @@ fn names_that_c_does_not_have() {
 }
 
 #[test]
-fn what_is_driven_in_time() {
+fn c_code_of_driven_mechanisms_agrees_with_rust() {
     let m = Balloon { mass: 3.0, buoyancy: 2.5 };
     let mut case = case!("balloon", Balloon, m, [3.0, 2.5], time(t = 0.7), of_trees);
     case.entries.extend(steps!(Balloon, m, case));
     check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
 }
 
-/// Returns tables of [`Wing`]; `ARRAYS` has the same values in C.
+/// Returns the tables of the mechanism [`Wing`]; `ARRAYS` contains the same values in C.
 fn wing_tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1], [Table<3>; 1]) {
     let drag = Table::new([&[-1.0, 0.2, 0.5, 2.0]], &[0.3, -0.1, 0.4, 0.2]);
     let lift = Table::new([&[-0.2, 0.1, 0.5], &[-1.0, 1.0]], &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9]);
@@ -382,7 +384,7 @@ const ARRAYS: &str = "    static const double d0[] = {-1.0, 0.2, 0.5, 2.0}, d[] 
     static const double m[] = {0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95};
 ";
 
-/// Initialisers of the tables in C: linear, extrapolated, smooth, and both.
+/// C initialisers of the tables: linear, extrapolated, smooth, and both smooth and extrapolated.
 const TABLES: [&str; 4] = [
     ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 0, \
      0}",
@@ -396,7 +398,7 @@ const TABLES: [&str; 4] = [
 
 /// Checks tables of every dimension within the grid and beyond it.
 #[test]
-fn tables_are_looked_up_alike() {
+fn table_lookups_in_c_agree_with_rust() {
     for (k, (prefix, c)) in
         ["wing", "wing_on", "wing_smooth", "wing_smooth_on"].into_iter().zip(TABLES).enumerate()
     {
@@ -416,7 +418,7 @@ fn tables_are_looked_up_alike() {
 /// Checks a mechanism with a closed loop. Functions that solve for constraint forces are not exported, which
 /// the header and the command report; all others are.
 #[test]
-fn closed_loops_keep_what_needs_no_solution() {
+fn closed_loops_export_functions_without_constraint_forces() {
     let m = FourBar { g: 9.8, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let mut case = case!("four_bar", FourBar, m, [9.8, 1.0, 1.0, 2.0, 2.5, 3.0], time(), nothing);
     let q = vector_from_slice(&case.given[0].1);
@@ -430,7 +432,7 @@ fn closed_loops_keep_what_needs_no_solution() {
 }
 
 #[test]
-fn in_single_precision() {
+fn c_code_in_single_precision_agrees_with_rust() {
     let case = case!("single", Ur5, Ur5, [], time(), of_trees);
     let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
@@ -446,7 +448,7 @@ fn in_single_precision() {
 /// Checks that the generated code compiles for mechanisms whose names are those of helper functions, header
 /// functions, arguments or types.
 #[test]
-fn any_name_of_a_mechanism_compiles() {
+fn c_code_compiles_for_any_mechanism_name() {
     let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;

@@ -21,7 +21,7 @@ pub struct Boat {
     useful_power: Scalar,
 }
 
-/// Ball above a floor.
+/// Ball that bounces on a floor.
 #[mechanism(gravity = -9.81 * z)]
 pub struct BouncingBall {
     pub bounce: f64,
@@ -33,7 +33,7 @@ pub struct BouncingBall {
     floor: Contact,
 }
 
-/// Box on a rough floor.
+/// Box that slides on a rough floor.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Crate {
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
@@ -44,7 +44,7 @@ pub struct Crate {
     floor: Contact,
 }
 
-/// Balls on each other with Poisson's restitution, which FMUs do not support.
+/// Two balls on top of each other with Poisson's restitution, which FMUs do not support.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Stack {
     pub bounce: f64,

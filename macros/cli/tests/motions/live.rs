@@ -21,7 +21,7 @@ Simulation.open({ ...motion.simulated, module: motion.module }).then(sim => {
 }).catch(error => { console.error(error); process.exit(1); });
 "#;
 
-/// Returns the first of these programs on the path.
+/// Returns the first of these programs that is installed.
 fn first_program_on_path(names: &[&str]) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path)
@@ -53,7 +53,7 @@ const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
 /// ball joints, of declared speeds, of a loop, of a rolling body, of sliding friction, of states of first
 /// order, and of a robot.
 #[test]
-fn pages_and_the_command_compute_the_same_trajectories() {
+fn pages_and_the_command_compute_equal_trajectories() {
     let here = test_folder("live");
     let model_path = |file: &str| format!("{MODELS}/{file}");
     let [loop_, disk, rotor, arm] =
@@ -92,7 +92,7 @@ fn pages_and_the_command_compute_the_same_trajectories() {
 /// the height. A block slides `v²/(2μg)`. A ball that slides at first rolls with 5/7 of its speed, so that
 /// its kinetic energy is `m (5/7 v)² (1 + 2/5) / 2`. All of them come to rest on the floor, not in it.
 #[test]
-fn contacts_of_pages_have_their_closed_forms() {
+fn contacts_simulated_by_pages_have_closed_forms() {
     let here = test_folder("live_contacts");
     let text = "#[mechanism(gravity = -9.81 * z)]
         struct Bouncing {
@@ -140,7 +140,7 @@ fn contacts_of_pages_have_their_closed_forms() {
 
 /// Checks that pages are self-contained, and the messages for mechanisms that a page cannot simulate.
 #[test]
-fn pages_that_simulate_need_nothing_else() {
+fn simulating_pages_are_self_contained() {
     let here = test_folder("live_page");
     let disk = format!("{MODELS}/src/double_pendulum.rs");
     let (status, _, stderr) = run_linkwork(&here, &["view", "--live", &disk, "--out", "page.html"]);
@@ -175,7 +175,7 @@ fn pages_that_simulate_need_nothing_else() {
 
 /// Checks the page in a browser, if one is installed: it simulates, draws, and reports no error.
 #[test]
-fn a_browser_simulates_the_page() {
+fn page_simulates_in_a_browser() {
     let here = test_folder("live_browser");
     let disk = format!("{MODELS}/src/double_pendulum.rs");
     let (status, _, stderr) =
@@ -209,7 +209,7 @@ fn a_browser_simulates_the_page() {
 
 /// Checks that each line of a list has a page and an entry of the index, and the message for a wrong line.
 #[test]
-fn a_gallery_has_an_index() {
+fn gallery_index_lists_every_page() {
     let here = test_folder("gallery");
     let list = "# two pages\n\ndouble.rs --set q.shoulder=1\n\
                 double.rs --set q.elbow=1 --with \"derivatives\"\n";

@@ -1,6 +1,6 @@
 //! Extraction of common factors from the items of a sum, as long as it reduces the number of printed symbols.
 
-use super::item::{Item, Order, Sum, common_number, is_close};
+use super::item::{Item, Order, Sum, common_number_factor, is_close};
 use super::polynomial::Monomial;
 
 /// Maximum number of items of a sum that are searched for common factors: longer sums are not readable
@@ -47,12 +47,12 @@ pub fn factor_sum_and_items(order: &Order, mut items: Vec<Item>, scope: FactorSc
     out
 }
 
-/// Rules for taking common factors out of a sum.
+/// Rules for extracting common factors from a sum.
 struct Rules<'a> {
     order: &'a Order,
-    /// Mask of the atoms that are not taken out.
+    /// Mask of the atoms that must not be extracted as factors.
     kept: Monomial,
-    /// Maximum nesting depth of parentheses of an item.
+    /// Maximum nesting depth of parentheses within an item.
     room: usize,
 }
 
@@ -93,8 +93,8 @@ fn unwrap_single_sums(item: &mut Item) {
     }
 }
 
-/// Extracts common factors from a sum, except the atoms in `rules.kept`. In a short sum, every group is tried
-/// as the first one, and the shortest result is used.
+/// Extracts common factors from a sum, except the atoms in `rules.kept`. In a short sum, every group of items
+/// is tried first, and the shortest result is used.
 fn factor_sum(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
     let mut best = factor_greedily(rules, items.clone());
     if items.len() > FEW {
@@ -112,7 +112,7 @@ fn factor_sum(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
 /// Repeatedly takes out the common factor that saves the most symbols.
 fn factor_greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
     while items.len() <= MOST {
-        let mut best: Option<Group> = None;
+        let mut best: Option<FactorGroup> = None;
         for group in shortening_groups(rules, &items) {
             if best.as_ref().is_none_or(|best| group.saved > best.saved) {
                 best = Some(group);
@@ -124,8 +124,8 @@ fn factor_greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
     items
 }
 
-/// Items of a sum with a common factor.
-struct Group {
+/// Group of items of a sum that have a common factor.
+struct FactorGroup {
     members: Vec<usize>,
     /// The sum of the members, with the common factor taken out.
     whole: Item,
@@ -134,8 +134,8 @@ struct Group {
 }
 
 /// Replaces the members of a group by the factored item.
-fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<Item> {
-    let Group { members, mut whole, .. } = group;
+fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: FactorGroup) -> Vec<Item> {
+    let FactorGroup { members, mut whole, .. } = group;
     if let Some(last) = whole.sums.last_mut() {
         last.items = factor_greedily(&rules.rules_in_parentheses(), std::mem::take(&mut last.items));
     }
@@ -153,13 +153,13 @@ fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<I
 
 /// Returns the groups of items whose factored form is shorter than their sum, within the allowed nesting
 /// depth.
-fn shortening_groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
+fn shortening_groups(rules: &Rules<'_>, items: &[Item]) -> Vec<FactorGroup> {
     let size_of_items = |items: &[Item]| rules.order.printed_length(items);
     let group_of_members = |members: Vec<usize>| {
         let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
         let whole = combine_items(rules, &before, members.len() == items.len())?;
         let saved = size_of_items(&before).checked_sub(size_of_items(std::slice::from_ref(&whole)))?;
-        (saved > 0 && nesting_depth(&whole) <= rules.room).then_some(Group { members, whole, saved })
+        (saved > 0 && nesting_depth(&whole) <= rules.room).then_some(FactorGroup { members, whole, saved })
     };
     candidate_item_sets(rules, items).into_iter().filter_map(group_of_members).collect()
 }
@@ -216,15 +216,15 @@ fn combine_items(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item>
         }
         sums.push(sum.clone());
     }
-    let mut inner: Vec<Item> = left.into_iter().flat_map(open_parentheses).collect();
-    let mut number = common_number(inner.iter().map(|item| item.coefficient));
+    let mut inner: Vec<Item> = left.into_iter().flat_map(remove_sign_parentheses).collect();
+    let mut number = common_number_factor(inner.iter().map(|item| item.coefficient));
     let is_negative_acceleration_term =
         |item: &Item| item.coefficient < 0.0 && item.factor.intersects_mask(rules.order.accelerations);
     if !whole && inner.first().is_some_and(is_negative_acceleration_term) {
         number = -number.abs();
     }
     inner.iter_mut().for_each(|item| item.coefficient /= number);
-    let mut inner: Vec<Item> = inner.into_iter().flat_map(open_parentheses).collect();
+    let mut inner: Vec<Item> = inner.into_iter().flat_map(remove_sign_parentheses).collect();
     if let Some(positive) = inner.iter().position(|item| item.coefficient > 0.0) {
         inner[..=positive].rotate_right(1);
     }
@@ -233,12 +233,12 @@ fn combine_items(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item>
 }
 
 /// Removes the parentheses of a sum whose only factor is a sign. Any other item is returned unchanged.
-fn open_parentheses(item: Item) -> Vec<Item> {
+fn remove_sign_parentheses(item: Item) -> Vec<Item> {
     match item.sums.as_slice() {
         [sum] if sum.power == 1 && item.factor == Monomial::ONE && is_close(item.coefficient.abs(), 1.0) => {
-            let signed =
+            let scaled_item =
                 |inner: &Item| Item { coefficient: inner.coefficient * item.coefficient, ..inner.clone() };
-            sum.items.iter().map(signed).collect()
+            sum.items.iter().map(scaled_item).collect()
         }
         _ => vec![item],
     }
@@ -250,8 +250,7 @@ fn nesting_depth(item: &Item) -> usize {
     inner.map_or(0, |n| n + 1)
 }
 
-/// Returns one if two sums are equal, minus one if they are opposite. The order of their items does not
-/// matter.
+/// Returns one if two sums are equal, minus one if they are opposite, regardless of the order of their items.
 fn sign_ratio_of_sums(a: &Sum, b: &Sum) -> Option<f64> {
     if a.power != b.power || a.items.len() != b.items.len() {
         return None;
@@ -265,7 +264,7 @@ fn sign_ratio_of_sums(a: &Sum, b: &Sum) -> Option<f64> {
     }
 }
 
-/// Returns whether the second item is the first one times this sign.
+/// Returns whether the second item equals the first item times this sign.
 fn is_equal_with_sign(a: &Item, b: &Item, sign: f64) -> bool {
     a.factor == b.factor
         && a.sums.len() == b.sums.len()

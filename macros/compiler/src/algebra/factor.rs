@@ -2,7 +2,7 @@
 //! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
 use super::common::{FactorScope, factor_sum_and_items};
-use super::item::{Item, Order, Sum, common_number, is_close};
+use super::item::{Item, Order, Sum, common_number_factor, is_close};
 use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
 
 /// Relative magnitude below which a coefficient counts as rounding error among similar terms.
@@ -10,7 +10,7 @@ const NOISE: f64 = 1e-11;
 
 /// Removes terms that are rounding error: their coefficients are small relative to other terms with the same
 /// parameters and the same degrees in velocities and accelerations.
-pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
+pub fn remove_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     let parameters = ring.mask_of_atoms(|_, rank| rank == Rank::Parameter);
     let rates = ring.mask_of_atoms(|_, rank| rank >= Rank::Rate);
     let accelerations = ring.mask_of_atoms(|_, rank| rank == Rank::Acceleration);
@@ -49,7 +49,7 @@ pub fn items_of_polynomial(ring: &Ring, order: &Order, p: &Polynomial, scope: Fa
         groups.sort_by_key(|(functions, _)| *functions != Monomial::ONE);
         for (functions, terms) in groups {
             match functions {
-                Monomial::ONE => plain_items(order, terms, &mut items),
+                Monomial::ONE => append_plain_items(order, terms, &mut items),
                 _ => items.push(factored_item(order, &terms)),
             }
         }
@@ -72,7 +72,7 @@ fn group_by_mask(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
 
 /// Appends the items of terms in parameters and positions alone: first squares of linear forms, then groups
 /// with identical positions, then groups with any common factor.
-fn plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
+fn append_plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
     order.sort_terms(&mut terms);
     while let Some(square) = terms.iter().find_map(|t| find_squared_sum(order, t, &terms)) {
         let all = expand_square(&square);
@@ -113,10 +113,10 @@ fn find_squared_sum(order: &Order, leading: &Term, terms: &[Term]) -> Option<Ite
     let factor = rest.quotient(Monomial::first_power_of_atom(x));
     let sums = vec![Sum { items: sum, power: 2 }];
     let square = Item { coefficient: leading.coefficient, factor, sums };
-    let there =
+    let is_term_of_sum =
         |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && is_close(t.coefficient, s.coefficient));
     let several = square.sums.iter().all(|sum| sum.items.len() > 1);
-    (several && expand_square(&square).iter().all(there)).then_some(square)
+    (several && expand_square(&square).iter().all(is_term_of_sum)).then_some(square)
 }
 
 /// Expands the square of a sum of single terms.
@@ -146,7 +146,7 @@ fn factored_item(order: &Order, terms: &[Term]) -> Item {
     }
     let mut terms = terms.to_vec();
     order.sort_terms(&mut terms);
-    let coefficient = common_number(terms.iter().map(|t| t.coefficient));
+    let coefficient = common_number_factor(terms.iter().map(|t| t.coefficient));
     for t in &mut terms {
         *t = Term { monomial: t.monomial.quotient(factor), coefficient: t.coefficient / coefficient };
     }

@@ -9,25 +9,25 @@ const ROUNDING: f64 = 1e-9;
 /// A term of a printed sum: `coefficient × factor × sums`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
-    /// Numeric factor of the item.
+    /// Numeric factor of a printed product.
     pub coefficient: f64,
     /// Product of the factors that are atoms.
     pub factor: Monomial,
-    /// Factors that are sums in parentheses.
+    /// Factors of a product that are sums in parentheses.
     pub sums: Vec<Sum>,
 }
 
 /// A sum in parentheses that is a factor of an item.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sum {
-    /// Summands of the sum, at least two.
+    /// Summands of a sum in parentheses, at least two.
     pub items: Vec<Item>,
-    /// Exponent of the sum: one, or two for a square.
+    /// Exponent of the sum in parentheses: one, or two for a square.
     pub power: u8,
 }
 
 impl Item {
-    /// Returns an item without sums.
+    /// Returns a product of a number and atoms, without sums.
     pub fn item_without_sums(coefficient: f64, factor: Monomial) -> Item {
         Item { coefficient, factor, sums: Vec::new() }
     }
@@ -39,7 +39,7 @@ pub struct Order {
     pub atoms: Vec<usize>,
     /// Mask of the atoms that are velocities, functions of velocities, accelerations or inputs.
     pub rates: Monomial,
-    /// Mask of the atoms that are accelerations.
+    /// Mask of the atoms that are generalized accelerations.
     pub accelerations: Monomial,
     /// Mask of the atoms that are functions of positions.
     pub functions: Monomial,
@@ -75,7 +75,7 @@ fn sort_key_of_atom(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
 }
 
 impl Order {
-    /// Returns the order of the atoms of a ring.
+    /// Creates the printing order of the atoms of a ring.
     pub fn new(ring: &Ring) -> Order {
         let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
         atoms.sort_by_cached_key(|k| sort_key_of_atom(ring, *k));
@@ -90,7 +90,7 @@ impl Order {
         }
     }
 
-    /// Returns true if a sum contains only parameters.
+    /// Returns true if all factors of a sum are parameters.
     pub fn is_constant(&self, items: &[Item]) -> bool {
         items.iter().all(|item| {
             item.factor.clear_mask(self.parameters) == Monomial::ONE
@@ -101,10 +101,10 @@ impl Order {
     /// Returns the printed length of a sum: the number of names, numbers and functions. Signs, exponents and
     /// parentheses do not count.
     pub fn printed_length(&self, items: &[Item]) -> usize {
-        items.iter().map(|item| self.size_of(item)).sum()
+        items.iter().map(|item| self.printed_item_length(item)).sum()
     }
 
-    fn size_of(&self, item: &Item) -> usize {
+    fn printed_item_length(&self, item: &Item) -> usize {
         let of_sums = item.sums.iter().map(|sum| self.printed_length(&sum.items)).sum::<usize>();
         let factors = size_of_monomial(&self.sizes, item.factor) + of_sums;
         factors + usize::from(factors == 0 || !is_close(item.coefficient.abs(), 1.0))
@@ -116,7 +116,7 @@ impl Order {
         powers.filter(|(_, n)| *n > 0).collect()
     }
 
-    /// Returns the parameters of a monomial with their powers.
+    /// Returns the parameters in a monomial with their powers.
     pub fn parameters_of_monomial(&self, m: Monomial) -> Monomial {
         m.restrict_to_mask(self.parameters)
     }
@@ -146,15 +146,15 @@ fn atom_lengths(ring: &Ring) -> Vec<usize> {
     let mut sizes = Vec::with_capacity(ring.atoms.len());
     for atom in &ring.atoms {
         let size_of_polynomial = |p: &Polynomial| -> usize {
-            let number =
+            let numeric_factor_count =
                 |t: &Term| usize::from(t.monomial == Monomial::ONE || !is_close(t.coefficient.abs(), 1.0));
-            p.terms.iter().map(|t| size_of_monomial(&sizes, t.monomial) + number(t)).sum()
+            p.terms.iter().map(|t| size_of_monomial(&sizes, t.monomial) + numeric_factor_count(t)).sum()
         };
-        let angle =
+        let angle_term_count =
             |w: &Wave| w.angle.iter().map(|n| usize::from(*n != 0) + usize::from(n.abs() > 1)).sum::<usize>();
         let size = match atom {
             Atom::Symbol(_) => 1,
-            Atom::Wave(w) => 1 + angle(w),
+            Atom::Wave(w) => 1 + angle_term_count(w),
             Atom::Inverse(p) => size_of_polynomial(p),
             Atom::Call(_, p) => 1 + size_of_polynomial(p),
             Atom::Atan2(a, b) | Atom::Power(a, b) | Atom::Extreme(_, a, b) => {
@@ -178,7 +178,7 @@ pub fn is_close(a: f64, b: f64) -> bool {
 
 /// Returns the number to factor out of a sum with these coefficients: the sign if all signs agree, times a
 /// magnitude if that leaves simpler coefficients.
-pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
+pub fn common_number_factor(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     let sign = if coefficients.clone().all(|c| c < 0.0) { -1.0 } else { 1.0 };
     let size = coefficients.clone().next().map_or(1.0, f64::abs);
     if coefficients.clone().all(|c| is_close(c.abs(), size)) {
@@ -187,14 +187,16 @@ pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     let mut common: Option<(u32, u32)> = None;
     for c in coefficients {
         let Some((p, q)) = fraction_of_number(c.abs()) else { return sign };
-        common = Some(common.map_or((p, q), |(a, b)| (gcd(a, p), gcd(b, q))));
+        common = Some(
+            common.map_or((p, q), |(a, b)| (greatest_common_divisor(a, p), greatest_common_divisor(b, q))),
+        );
     }
     sign * common.map_or(1.0, |(p, q)| f64::from(p) / f64::from(q))
 }
 
 /// Returns the greatest common divisor of two numbers.
-pub fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
+pub fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
 /// Returns numerator and denominator of a positive number that is, up to rounding, a fraction with a

@@ -10,10 +10,10 @@ const UNKNOWN: u32 = u32::MAX;
 /// Largest multiple of an angle whose sine and cosine are expanded in those of the angle itself.
 const MULTIPLE: f64 = 4.0;
 
-/// Cache of normal forms of the expressions of one graph.
+/// Cache of the polynomial normal forms of the expressions of one graph.
 pub struct Normal<'g> {
     graph: &'g Graph,
-    /// Ring of all polynomials in the cache.
+    /// Ring of all cached polynomials.
     pub ring: Ring,
     /// Index in `polynomials` of each node, `UNKNOWN` if not yet computed.
     known: Vec<u32>,

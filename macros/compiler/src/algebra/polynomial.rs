@@ -16,7 +16,7 @@ pub use monomial::{ATOMS, Monomial};
 
 /// Maximum number of terms of a polynomial.
 pub const TERMS: usize = 400;
-/// Maximum number of angles of a ring.
+/// Maximum number of distinct angles of a ring.
 pub const ANGLES: usize = 8;
 /// Maximum number of steps of a whole derivation. A step takes about a microsecond in an unoptimised build.
 const WORK: usize = 40_000;
@@ -30,7 +30,7 @@ const ROUNDING: f64 = 1e-13;
 pub struct Term {
     /// Product of powers of atoms in the term.
     pub monomial: Monomial,
-    /// Coefficient of the term, not zero.
+    /// Coefficient of the term, never zero.
     pub coefficient: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Polynomial {
 pub struct Wave {
     /// Integer multiple of each angle. The first one that is not zero is positive.
     pub angle: [i8; ANGLES],
-    /// True for the cosine, false for the sine.
+    /// True for the cosine of an angle, false for the sine.
     pub cosine: bool,
 }
 
@@ -71,13 +71,13 @@ pub enum Rank {
     Parameter,
     /// A position, or another symbol that varies in time.
     Position,
-    /// Function of positions.
+    /// Function of coordinates, such as a sine.
     Function,
     /// Velocity, or a function of velocities.
     Rate,
     /// Generalized acceleration.
     Acceleration,
-    /// Input of the mechanism.
+    /// Input of the mechanism, such as a force.
     Input,
 }
 
@@ -85,7 +85,7 @@ pub enum Rank {
 pub struct Ring {
     /// The atoms. The arguments of an atom contain earlier atoms only.
     pub atoms: Vec<Atom>,
-    /// Rank of each atom.
+    /// Printing rank of each atom.
     pub ranks: Vec<Rank>,
     /// For each atom, the number of terms written in its arguments.
     written: Vec<usize>,
@@ -94,15 +94,15 @@ pub struct Ring {
     rank: fn(Symbol) -> Rank,
     /// Atoms whose squares are replaced, with the polynomial that replaces the square.
     squares: Vec<(usize, Polynomial)>,
-    /// Mask of all powers above one of the atoms in `squares`: a monomial that meets it contains such a
-    /// square.
+    /// Mask of all powers above one of the atoms in `squares`: a monomial that intersects the mask contains
+    /// such a square.
     squared: Monomial,
-    /// Pairs of atoms whose product is one.
+    /// Pairs of atoms whose product is one, such as a root and its inverse.
     inverses: Vec<(usize, usize)>,
     /// Atoms `1 / sin` of an angle, each followed by the atoms of the cosine and the sine of the angle.
     cosecants: Vec<[usize; 3]>,
     work: usize,
-    /// Current maximum number of terms of a polynomial.
+    /// Current limit on the number of terms of a polynomial.
     terms: usize,
 }
 
@@ -112,7 +112,7 @@ impl Polynomial {
         Polynomial::single_term(Monomial::ONE, value)
     }
 
-    /// Returns the polynomial of one term; it is zero if the coefficient is zero.
+    /// Returns the polynomial of one term, which is zero if the coefficient is zero.
     pub fn single_term(monomial: Monomial, coefficient: f64) -> Polynomial {
         let terms = if coefficient == 0.0 { Vec::new() } else { vec![Term { monomial, coefficient }] };
         Polynomial { terms }
@@ -202,8 +202,8 @@ impl Ring {
         }
     }
 
-    /// Raises the limits to those for equations that the user requests.
-    pub fn allow_more(&mut self) {
+    /// Raises the limits of the ring to those for equations that the user requests.
+    pub fn raise_limits(&mut self) {
         (self.work, self.terms) = (MORE * WORK, MORE * TERMS);
     }
 
@@ -231,7 +231,7 @@ impl Ring {
         }
         if let Atom::Call(Function::Sqrt, radicand) = &atom {
             self.squares.push((index, radicand.clone()));
-            self.squared = self.squared.union_of_bits(Monomial::above_one(index));
+            self.squared = self.squared.union_of_bits(Monomial::bits_above_first_power(index));
         }
         if let Atom::Inverse(p) = &atom
             && let [term] = p.terms.as_slice()
@@ -246,8 +246,8 @@ impl Ring {
                 self.cosecants.push([index, cosine, inverse.0]);
             }
         }
-        self.ranks.push(self.rank_of(&atom));
-        self.written.push(self.terms_in(&atom));
+        self.ranks.push(self.rank_of_atom(&atom));
+        self.written.push(self.printed_argument_terms(&atom));
         self.atoms.push(atom);
         Some(index)
     }
@@ -260,7 +260,7 @@ impl Ring {
         nested.fold(p.terms.len(), usize::saturating_add)
     }
 
-    fn terms_in(&self, atom: &Atom) -> usize {
+    fn printed_argument_terms(&self, atom: &Atom) -> usize {
         match atom {
             Atom::Symbol(_) | Atom::Wave(_) => 0,
             Atom::Inverse(p) | Atom::Call(_, p) => self.written_terms(p),
@@ -273,16 +273,16 @@ impl Ring {
         }
     }
 
-    fn rank_of(&self, atom: &Atom) -> Rank {
-        let of_monomial = |m: Monomial| m.atoms_with_powers().map(|(k, _)| self.ranks[k]).max();
+    fn rank_of_atom(&self, atom: &Atom) -> Rank {
+        let highest_rank_of_monomial = |m: Monomial| m.atoms_with_powers().map(|(k, _)| self.ranks[k]).max();
         let rank_of_polynomial =
-            |p: &Polynomial| p.terms.iter().filter_map(|t| of_monomial(t.monomial)).max();
+            |p: &Polynomial| p.terms.iter().filter_map(|t| highest_rank_of_monomial(t.monomial)).max();
         let argument = match atom {
             Atom::Symbol(s) => return (self.rank)(*s),
             Atom::Inverse(p) => return rank_of_polynomial(p).unwrap_or(Rank::Parameter),
             Atom::Wave(w) => {
                 let angles = self.angles.iter().zip(w.angle).filter(|(_, n)| *n != 0);
-                angles.filter_map(|(a, _)| of_monomial(a.monomial)).max()
+                angles.filter_map(|(a, _)| highest_rank_of_monomial(a.monomial)).max()
             }
             Atom::Call(_, p) => rank_of_polynomial(p),
             Atom::Table(.., arguments) => arguments.iter().filter_map(rank_of_polynomial).max(),
@@ -316,7 +316,7 @@ impl Ring {
             Term { monomial: cosine.checked_product(cosine)?, coefficient: -1.0 },
         ]);
         self.squares.push((sine, rest));
-        self.squared = self.squared.union_of_bits(Monomial::above_one(sine));
+        self.squared = self.squared.union_of_bits(Monomial::bits_above_first_power(sine));
         Some(index)
     }
 
@@ -353,7 +353,7 @@ impl Ring {
             let is_reducible_term = |t: &Term| {
                 t.monomial.intersects_mask(self.squared)
                     || self.cancelling_factor(t.monomial).is_some()
-                    || self.over_sine(t.monomial).is_some()
+                    || self.cosine_squared_over_sine(t.monomial).is_some()
             };
             if !p.terms.iter().any(is_reducible_term) {
                 return (p.terms.len() <= self.terms).then_some(p);
@@ -375,7 +375,7 @@ impl Ring {
     /// Returns the cosecant, cosine and sine atoms of a factor `cos² / sin` in `m`, which equals
     /// `1 / sin − sin`. Elsewhere squares of sines are replaced by squares of cosines, so that without this
     /// rule such terms would not cancel.
-    fn over_sine(&self, m: Monomial) -> Option<[usize; 3]> {
+    fn cosine_squared_over_sine(&self, m: Monomial) -> Option<[usize; 3]> {
         self.cosecants
             .iter()
             .find(|[inverse, cosine, _]| m.power_of_atom(*inverse) > 0 && m.power_of_atom(*cosine) > 1)
@@ -388,7 +388,7 @@ impl Ring {
         if let Some(one) = self.cancelling_factor(monomial) {
             return Some(Polynomial::single_term(monomial.quotient(one), coefficient));
         }
-        if let Some([inverse, cosine, sine]) = self.over_sine(monomial) {
+        if let Some([inverse, cosine, sine]) = self.cosine_squared_over_sine(monomial) {
             let square = Monomial::first_power_of_atom(cosine)
                 .checked_product(Monomial::first_power_of_atom(cosine))?;
             let one = monomial.quotient(square);
@@ -420,11 +420,11 @@ impl Ring {
             .fold(Monomial::ONE, |m, (k, _)| m.union_of_bits(Monomial::all_of(k)))
     }
 
-    /// Evaluates a polynomial at the given values of the symbols.
+    /// Evaluates a polynomial at these values of the symbols.
     pub fn evaluate_polynomial(&self, p: &Polynomial, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
         let mut values: Vec<f64> = Vec::with_capacity(self.atoms.len());
         for atom in &self.atoms {
-            let value_of = |p: &Polynomial| value_at_atoms(p, &values);
+            let value_of_polynomial = |p: &Polynomial| value_at_atoms(p, &values);
             values.push(match atom {
                 Atom::Symbol(s) => symbol(*s),
                 Atom::Wave(w) => {
@@ -432,14 +432,13 @@ impl Ring {
                     let angle = angles.map(|(a, n)| f64::from(n) * term_value(a, &values)).sum::<f64>();
                     if w.cosine { libm::cos(angle) } else { libm::sin(angle) }
                 }
-                Atom::Inverse(p) => 1.0 / value_of(p),
-                Atom::Call(f, p) => f.evaluate_at(value_of(p)),
-                Atom::Atan2(y, x) => libm::atan2(value_of(y), value_of(x)),
-                Atom::Power(a, b) => libm::pow(value_of(a), value_of(b)),
-                Atom::Extreme(f, a, b) => f.evaluate_extreme(value_of(a), value_of(b)),
-                Atom::Table(_, lookup, x) => {
-                    lookup.evaluate_surrogate(std::array::from_fn(|k| x.get(k).map_or(0.0, value_of)))
-                }
+                Atom::Inverse(p) => 1.0 / value_of_polynomial(p),
+                Atom::Call(f, p) => f.evaluate_at(value_of_polynomial(p)),
+                Atom::Atan2(y, x) => libm::atan2(value_of_polynomial(y), value_of_polynomial(x)),
+                Atom::Power(a, b) => libm::pow(value_of_polynomial(a), value_of_polynomial(b)),
+                Atom::Extreme(f, a, b) => f.evaluate_extreme(value_of_polynomial(a), value_of_polynomial(b)),
+                Atom::Table(_, lookup, x) => lookup
+                    .evaluate_surrogate(std::array::from_fn(|k| x.get(k).map_or(0.0, value_of_polynomial))),
             });
         }
         value_at_atoms(p, &values)

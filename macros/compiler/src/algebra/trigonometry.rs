@@ -51,7 +51,7 @@ fn shortest_products(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<
     if degree <= Some(DEGREE) {
         let sum = fourier_sum(ring, &products)?;
         let sum = merge_product_pairs(ring, sum)?.into_iter().map(unfold_double_angle).collect();
-        let sines = in_sines(ring, products)?;
+        let sines = replace_cosine_squares(ring, products)?;
         let sines = merge_product_pairs(ring, sines)?;
         best = [sum, sines].into_iter().fold(best, |a, b| if length(&b) < length(&a) { b } else { a });
     }
@@ -59,7 +59,7 @@ fn shortest_products(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<
 }
 
 /// Replaces `cos²` by `1 − sin²` in a sum of products.
-fn in_sines(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
+fn replace_cosine_squares(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
     let mut sum = Vec::new();
     while let Some(mut product) = products.pop() {
         ring.spend_steps(1 + sum.len())?;
@@ -118,7 +118,7 @@ fn merge_product_pairs(ring: &mut Ring, mut products: Vec<Product>) -> Option<Ve
     }
 }
 
-/// Returns the sum of two products if it is a single product.
+/// Returns the sum of two products if the sum is a single product.
 fn combine_products(a: &Product, b: &Product) -> Option<Product> {
     let ratio = b.coefficient / a.coefficient;
     if a.waves == b.waves {

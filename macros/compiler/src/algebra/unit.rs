@@ -69,7 +69,7 @@ mod tests {
 
     /// Checks simplifications of polynomials in the four components of a unit quaternion.
     #[test]
-    fn squares_of_a_unit_quaternion_vanish() {
+    fn unit_quaternion_norm_simplifies_polynomials() {
         let mut ring = Ring::new(|_| Rank::Position);
         let symbols = [0, 1, 2, 3].map(Symbol);
         let q = symbols.map(|s| ring.monomial_of_atom(Atom::Symbol(s)).unwrap());

@@ -3,7 +3,7 @@
 use super::facts::{Facts, Need};
 use crate::syntax::Word;
 
-/// Constants of mechanisms, with the needs of each.
+/// Names of the associated constants of mechanisms, with the requirements of each.
 const CONSTANTS: [(&str, &[Need]); 28] = [
     ("BASE_PARAMETERS", &[Need::Inertia, Need::Asks(Word::Regressor)]),
     ("BODIES", &[Need::Inertia, Need::Asks(Word::Regressor)]),

@@ -85,8 +85,8 @@ fn bias_argument(f: &Facts) -> Argument {
     Argument::Given("bias", Supplied::Bias, constraint_facts(f).all)
 }
 
-/// Returns the argument with the signs of the normal forces of sliding contacts; the list is empty without
-/// such contacts.
+/// Returns the argument with the signs of the normal forces of sliding contacts; an empty list without such
+/// contacts.
 fn sliding_signs_argument(f: &Facts) -> Vec<Argument> {
     let slipping = constraint_facts(f).slipping;
     if slipping > 0 { vec![Argument::Given("sides", Supplied::Side, slipping)] } else { Vec::new() }

@@ -81,7 +81,7 @@ pub const ROWS: &[Row] = &[
     .without_batch(),
 ];
 
-/// Returns the argument with the forces of all contacts.
+/// Returns the argument that contains the forces of all contacts.
 pub(super) fn contact_forces(f: &Facts) -> Argument {
     Argument::Given("forces", Supplied::ContactForces, f.contacts.rates)
 }

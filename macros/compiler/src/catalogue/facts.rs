@@ -6,7 +6,7 @@ use crate::syntax::{Requests, Word};
 /// Requirement that a mechanism must meet to have a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// The mechanism has masses and inertias.
+    /// Met by mechanisms with masses and inertias.
     Inertia,
     /// The mechanism has constraints: loops, rolling or others.
     Constraints,
@@ -24,7 +24,7 @@ pub enum Need {
     Contacts,
     /// The mechanism has parameters.
     Parameters,
-    /// Values of a file, such as inertias, are parameters of the struct.
+    /// Values of the robot file, such as inertias, are parameters of the struct.
     FileParameters,
     /// Inertial parameters of links of a file are parameters of the struct.
     FileInertials,
@@ -36,7 +36,7 @@ pub enum Need {
     Terrain,
     /// The derivatives of forward dynamics call other generated functions.
     Calls,
-    /// The passive forces are a function of their own that other functions call.
+    /// The passive forces have a generated function that other functions call.
     PassiveCalls,
     /// The mechanism declares generalized speeds.
     Speeds,
@@ -122,14 +122,13 @@ pub struct Facts {
     pub speeds: bool,
     /// Options of the `#[mechanism]` attribute.
     pub requests: Requests,
-    /// Facts about the constraints, if any.
+    /// Facts about the constraints, if the mechanism has any.
     pub constraints: Option<ConstraintFacts>,
-    /// True if the derivatives of forward dynamics call other functions.
+    /// True if the generated derivatives of forward dynamics call other functions.
     pub calls: bool,
     /// True if the linear system is assembled from the derivatives of forward dynamics.
     pub calls_linear: bool,
-    /// Number of derivatives of the passive forces; `None` if these forces are too short for a function of
-    /// their own.
+    /// Number of derivatives of the passive forces; `None` if the passive forces have no separate function.
     pub passive: Option<usize>,
     /// Number of bodies with standard inertial parameters.
     pub bodies: usize,
@@ -143,11 +142,11 @@ pub struct Facts {
     pub conserved: usize,
     /// Numbers of unilateral contacts and contact velocities.
     pub contacts: ContactSizes,
-    /// Number of bounds of the limits.
+    /// Number of bounds in the declared limits.
     pub limits: usize,
-    /// Number of values in the drawing.
+    /// Number of values in the declared drawing.
     pub drawing: usize,
-    /// Number of terrains in the drawing.
+    /// Number of height fields in the declared drawing.
     pub heights: usize,
     /// Number of values derived from parameters that must satisfy conditions.
     pub figures: usize,
@@ -214,7 +213,7 @@ impl Facts {
         }
     }
 
-    /// Returns true if the mechanism meets a need.
+    /// Returns true if the mechanism meets a requirement of a function.
     pub fn meets_need(&self, need: Need) -> bool {
         match need {
             Need::Inertia => !self.kinematic,

@@ -62,12 +62,12 @@ fn declared_functions(tables: &[&'static [Row]], facts: &Facts) -> Vec<Declared>
 }
 
 /// Returns the functions of a mechanism that are derived from equations and generated before its outputs.
-pub fn before_outputs(facts: &Facts) -> Vec<Declared> {
+pub fn functions_before_outputs(facts: &Facts) -> Vec<Declared> {
     declared_functions(&TABLES[..BEFORE_OUTPUTS], facts)
 }
 
 /// Returns the functions of a mechanism that are derived from equations and generated after its outputs.
-pub fn after_outputs(facts: &Facts) -> Vec<Declared> {
+pub fn functions_after_outputs(facts: &Facts) -> Vec<Declared> {
     declared_functions(&TABLES[BEFORE_OUTPUTS..], facts)
 }
 
@@ -81,10 +81,11 @@ pub fn of_trait() -> impl Iterator<Item = (&'static Row, &'static [Argument])> {
 pub fn absent_functions(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
     let rows_lacking = |need: Need| {
         // Another row of the same name may be present.
-        let is_there =
+        let is_row_present =
             |row: &Row| catalogue_rows().any(|r| r.name == row.name && r.first_unmet_need(facts).is_none());
-        let all = catalogue_rows()
-            .filter(|row| !row.is_hidden() && row.first_unmet_need(facts) == Some(need) && !is_there(row));
+        let all = catalogue_rows().filter(|row| {
+            !row.is_hidden() && row.first_unmet_need(facts) == Some(need) && !is_row_present(row)
+        });
         let mut found: Vec<&'static Row> = Vec::new();
         for row in all {
             if found.iter().all(|known| known.name != row.name) {

@@ -21,10 +21,10 @@ pub const DERIVATIVES: &str = "_derivatives";
 /// Suffix of the parameter derivatives of an output.
 pub const BY_PARAMETERS: &str = "_by_parameters";
 
-/// Number of entries of a rotation matrix.
+/// Number of entries of a 3×3 rotation matrix.
 const MATRIX: usize = 9;
 
-fn of_size(size: usize) -> Shape {
+fn shape_of_size(size: usize) -> Shape {
     match size {
         1 => Shape::Scalar,
         MATRIX => Shape::Matrix(3, 3),
@@ -60,7 +60,7 @@ pub fn output_functions(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<D
         false => format!("The output `{name}`."),
     };
     let mut functions =
-        vec![declared_output(Id::Output, name.to_string(), &arguments, of_size(size), vec![about], f)];
+        vec![declared_output(Id::Output, name.to_string(), &arguments, shape_of_size(size), vec![about], f)];
     if size == MATRIX {
         return functions;
     }
@@ -114,7 +114,7 @@ pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", Supplied::Multiplier, c.all)));
     let touched = is_diagram && f.contacts.count > 0;
     arguments.extend(touched.then_some(contact_forces(f)));
-    declared_output(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
+    declared_output(Id::Reaction, format!("{REACTION}{name}"), &arguments, shape_of_size(size), Vec::new(), f)
 }
 
 /// Returns the hidden function of an output that contains contact forces. It takes the state, the inputs and
@@ -123,5 +123,5 @@ pub fn contact_force_function(name: &str, size: usize, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.push(contact_forces(f));
-    declared_output(Id::Touched, format!("{TOUCHED}{name}"), &arguments, of_size(size), Vec::new(), f)
+    declared_output(Id::Touched, format!("{TOUCHED}{name}"), &arguments, shape_of_size(size), Vec::new(), f)
 }

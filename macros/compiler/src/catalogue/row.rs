@@ -94,10 +94,10 @@ pub enum Id {
     Part,
 }
 
-/// Origin of a function's body.
+/// Origin of the body of a catalogued function.
 #[derive(Clone, Copy)]
 pub enum Made {
-    /// Body derived from equations, which the id selects.
+    /// Body derived from equations, which the identifier selects.
     Derived(Id),
     /// Handwritten body, which calls other functions and the runtime.
     Written,
@@ -106,47 +106,47 @@ pub enum Made {
 /// A row of the catalogue: name, origin and signature of a function that can be generated.
 #[derive(Clone, Copy)]
 pub struct Row {
-    /// Name of the function.
+    /// Name of the catalogued function.
     pub name: &'static str,
-    /// Origin of the function's body.
+    /// Origin of the catalogued function's body.
     pub made: Made,
     /// Requirements of the function. The first requirement that is not met is reported as the reason for its
     /// absence.
     pub needs: &'static [Need],
     /// Returns arguments, result and documentation for a mechanism with these facts.
     pub declare: fn(&Facts) -> Declaration,
-    /// Arguments in the runtime's mechanism trait, if the function belongs to it. The inherent function takes
-    /// only the arguments that it needs.
+    /// Arguments of the function in the runtime's mechanism trait, if the trait has the function. The
+    /// inherent function takes only the arguments that it needs.
     pub in_trait: Option<&'static [Argument]>,
     /// True if the option `batch` adds a variant for several states.
     pub batched: bool,
 }
 
-/// Arguments, result and documentation of a function.
+/// Arguments, result and documentation of a function for one mechanism.
 #[derive(Default)]
 pub struct Declaration {
     /// Arguments. For mechanisms that are driven in time, time is prepended.
     pub arguments: Vec<Argument>,
     /// True if the function depends on the parameters alone, and never takes time.
     pub timeless: bool,
-    /// Shape of the result.
+    /// Shape of the function's result.
     pub shape: Shape,
-    /// Documentation, one entry per paragraph. Empty for a hidden function.
+    /// Documentation of the function, one entry per paragraph. Empty for a hidden function.
     pub docs: Vec<&'static str>,
 }
 
-/// Function of a mechanism with its signature.
+/// Function that one mechanism has, with its signature.
 #[derive(Clone, Debug)]
 pub struct Declared {
-    /// Identifier of the function.
+    /// Identifier of the function in the catalogue.
     pub id: Id,
-    /// Name of the function.
+    /// Name of the generated function.
     pub name: String,
-    /// Documentation, one entry per paragraph. Empty for a hidden function.
+    /// Documentation of the function, one entry per paragraph. Empty for a hidden function.
     pub docs: Vec<String>,
     /// Arguments of the generated method, without `&self`.
     pub arguments: Vec<Argument>,
-    /// Shape of the result.
+    /// Shape of the function's result.
     pub shape: Shape,
 }
 
@@ -167,7 +167,7 @@ impl Row {
         Row { name, made: Made::Written, needs, declare: empty_declaration, in_trait: None, batched: false }
     }
 
-    /// Adds the function to the runtime's mechanism trait, with these arguments there.
+    /// Adds the function to the runtime's mechanism trait, with these arguments in the trait.
     pub const fn of_trait(self, arguments: &'static [Argument]) -> Row {
         Row { in_trait: Some(arguments), ..self }
     }
@@ -177,8 +177,8 @@ impl Row {
         Row { batched: false, ..self }
     }
 
-    /// Returns the row with a variant for several states.
-    pub const fn and_batched(self) -> Row {
+    /// Returns the row with a variant that evaluates several states.
+    pub const fn with_batched_variant(self) -> Row {
         Row { batched: true, ..self }
     }
 
@@ -192,7 +192,7 @@ impl Row {
         self.name.starts_with("__")
     }
 
-    /// Returns the function for a mechanism with these facts.
+    /// Returns the declaration of the function for a mechanism with these facts.
     pub fn declare_function(&self, id: Id, facts: &Facts) -> Declared {
         let Declaration { arguments, timeless, shape, docs } = (self.declare)(facts);
         let time = (facts.time && !timeless).then_some(Argument::T);

@@ -23,7 +23,7 @@ pub enum Argument {
     Standard(usize),
     /// A square matrix to which the result is written: name of the argument and number of rows.
     Into(&'static str, usize),
-    /// Factors `lambda`, one for each velocity, that forces or accelerations are multiplied by.
+    /// Factors `lambda`, one for each velocity, with which forces or accelerations are contracted.
     Factors(usize),
     /// Generalized momenta `p`, one for each velocity.
     Momenta(usize),
@@ -34,9 +34,9 @@ pub enum Argument {
 /// A function of configuration and velocity that other functions call first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Called {
-    /// Generated function of the passive forces.
+    /// The generated function that computes the passive forces.
     PassiveForces,
-    /// The function for the derivatives of passive forces.
+    /// The generated function that computes the derivatives of the passive forces.
     PassiveDerivatives,
 }
 
@@ -70,7 +70,7 @@ impl Argument {
         }
     }
 
-    /// Returns the name of the argument in the signature.
+    /// Returns the name of the argument in the generated signature.
     pub fn argument_name(self) -> &'static str {
         match self {
             Argument::T => "t",
@@ -117,9 +117,9 @@ pub enum Shape {
     Scalar,
     /// A column vector as result, with its length.
     Vector(usize),
-    /// A square matrix. The outputs are its columns one after another.
+    /// A square matrix, whose columns are the outputs one after another.
     Square(usize),
-    /// A matrix. The outputs are its columns one after another.
+    /// A matrix, whose columns are the outputs one after another.
     Matrix(usize, usize),
     /// Two square matrices as result, with their number of rows.
     Pair(usize),
@@ -249,16 +249,16 @@ pub enum Record {
 /// A field of a record: an array, or a list of arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordField {
-    /// Name of the field.
+    /// Name of the field of the runtime's struct.
     pub name: &'static str,
-    /// Length of each array.
+    /// Length of each array in the field.
     pub rows: usize,
     /// Number of arrays in a list, `None` for a single array.
     pub columns: Option<usize>,
 }
 
 impl RecordField {
-    /// Returns the number of values in the field.
+    /// Returns the number of values that the field contains.
     pub fn length(&self) -> usize {
         self.rows * self.columns.unwrap_or(1)
     }
@@ -277,7 +277,7 @@ impl Record {
         }
     }
 
-    /// Returns the fields in the order of the outputs.
+    /// Returns the fields of the runtime's struct, in the order of the program's outputs.
     pub fn record_fields(self) -> Vec<RecordField> {
         let vector_record_field = |name, rows| RecordField { name, rows, columns: None };
         let matrix_record_field = |name, rows, columns| RecordField { name, rows, columns: Some(columns) };
@@ -329,7 +329,7 @@ impl Record {
 /// Representation of the inverse mass matrix by the outputs of a program.
 #[derive(Clone, Debug, Default)]
 pub enum InverseForm {
-    /// Inverse whose columns are outputs.
+    /// Inverse mass matrix whose columns are outputs of the program.
     #[default]
     Explicit,
     /// Columns, followed by a row of factors for each velocity, in the order of the given trunk velocities.
@@ -340,7 +340,7 @@ pub enum InverseForm {
     BlockArrow {
         /// Velocities of the trunk, in the order of the entries.
         trunk: Vec<usize>,
-        /// Velocities of each limb, in order.
+        /// Indices of the velocities of each limb, in order.
         limbs: Vec<Vec<usize>>,
     },
 }
@@ -356,7 +356,7 @@ impl InverseForm {
     }
 }
 
-/// Structure of the matrices that a function returns.
+/// Structure of the matrices that a generated function returns.
 #[derive(Clone, Debug, Default)]
 pub struct Structure {
     /// Form in which the inverse mass matrix is returned.

@@ -1,4 +1,4 @@
-//! Handwritten functions, which call other generated functions and the runtime.
+//! Catalogue rows of handwritten functions, which call other generated functions and the runtime.
 
 use super::facts::Need;
 use super::row::Row;
@@ -10,7 +10,7 @@ const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
 /// Rows of the catalogue for constrained dynamics, assembly and projection.
 pub const CONSTRAINED: &[Row] = &[
-    Row::handwritten_row("forward_dynamics", &[Need::Inertia, Need::Constraints]).and_batched(),
+    Row::handwritten_row("forward_dynamics", &[Need::Inertia, Need::Constraints]).with_batched_variant(),
     Row::handwritten_row(
         "forward_dynamics_derivatives",
         &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints],
@@ -39,10 +39,10 @@ pub const CONSTRAINED: &[Row] = &[
 
 /// Rows of the configuration space, frames, and the prepared mechanism.
 pub const ROWS: &[Row] = &[
-    Row::handwritten_row("difference", &[]).and_batched(),
-    Row::handwritten_row("integrate", &[]).and_batched(),
-    Row::handwritten_row("displacement_rate", &[Need::Speeds]).and_batched(),
-    Row::handwritten_row("tangent_rate", &[Need::NoSpeeds]).and_batched(),
+    Row::handwritten_row("difference", &[]).with_batched_variant(),
+    Row::handwritten_row("integrate", &[]).with_batched_variant(),
+    Row::handwritten_row("displacement_rate", &[Need::Speeds]).with_batched_variant(),
+    Row::handwritten_row("tangent_rate", &[Need::NoSpeeds]).with_batched_variant(),
     Row::handwritten_row("generalized_forces_derivatives", ASKED),
     Row::handwritten_row(
         "forward_dynamics_second_derivatives",

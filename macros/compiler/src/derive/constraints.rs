@@ -12,8 +12,8 @@ use crate::mechanism::{Model, Quantity};
 pub(super) use crate::mechanics::constraints::{constraint_biases, constraint_velocities, residuals};
 
 /// Returns the constraint Jacobian column by column.
-pub(super) fn jacobian<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    by_columns(model, &constraints::jacobian(model))
+pub(super) fn constraint_jacobian<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    matrix_by_columns(model, &constraints::jacobian(model))
 }
 
 /// Returns the derivatives of the contact velocities with respect to the velocities: a row for each contact
@@ -52,7 +52,7 @@ impl<'g> ContactDerivatives<'g> {
         let rates = model.contact_rates();
         let accelerations = motion_rates(model.configuration_space(), &rates, true);
         let accelerations = symbolic::force_derivatives(model, &accelerations);
-        let of_rates = symbolic::by_configuration(model, &rates);
+        let of_rates = symbolic::configuration_derivatives(model, &rates);
         ContactDerivatives { by_motion: [accelerations.by_q, accelerations.by_v, of_rates], rates }
     }
 
@@ -68,12 +68,12 @@ impl<'g> ContactDerivatives<'g> {
         let powers = numbers.map(|i| self.rates[i] * Quantity::ContactForce(i).expr(g));
         let power = powers.reduce(|sum, power| sum + power).unwrap_or(g.zero());
         let velocities: Vec<Symbol> = (0..model.nv()).map(|k| Quantity::Velocity(k).symbol()).collect();
-        symbolic::by_configuration(model, &gradient(power, &velocities))
+        symbolic::configuration_derivatives(model, &gradient(power, &velocities))
     }
 
     pub(super) fn contact_derivative_outputs(&self, model: &Model<'g>) -> Vec<Expr<'g>> {
         let forces = self.contact_force_derivatives(model, 0..self.rates.len());
-        [&forces].into_iter().chain(&self.by_motion).flat_map(|rows| by_columns(model, rows)).collect()
+        [&forces].into_iter().chain(&self.by_motion).flat_map(|rows| matrix_by_columns(model, rows)).collect()
     }
 
     /// Returns the derivatives of the contact forces with identical limbs in SIMD lanes; `None` if the
@@ -86,17 +86,17 @@ impl<'g> ContactDerivatives<'g> {
         let forces_of_limb =
             |numbers: &Vec<usize>| self.contact_force_derivatives(model, numbers.iter().copied());
         let of_limbs: Vec<Vec<Matrix<'g>>> =
-            contacts.of_limbs().map(|limbs| limbs.iter().map(forces_of_limb).collect()).collect();
+            contacts.contacts_of_limbs().map(|limbs| limbs.iter().map(forces_of_limb).collect()).collect();
         let forces = contacts.sum_limb_matrices(&of_limbs)?;
-        let mut outputs = by_columns(model, &forces);
+        let mut outputs = matrix_by_columns(model, &forces);
         for rows in &self.by_motion {
-            outputs.extend(by_columns(model, &contacts.merge_rows(rows)?));
+            outputs.extend(matrix_by_columns(model, &contacts.merge_rows(rows)?));
         }
         Some(outputs)
     }
 }
 
 /// Returns the entries of a matrix with a column for each velocity, column by column.
-pub(super) fn by_columns<'g>(model: &Model<'g>, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+pub(super) fn matrix_by_columns<'g>(model: &Model<'g>, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
     (0..model.nv()).flat_map(|k| rows.iter().map(move |row| row[k])).collect()
 }

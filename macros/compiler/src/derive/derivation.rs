@@ -7,7 +7,7 @@ use super::output::Function;
 use super::regressor::Identification;
 use super::sensitivities::Sensitivities;
 use super::specialisation::Specialisation;
-use super::{Extras, constraints, outputs};
+use super::{OptionalData, constraints, outputs};
 use crate::catalogue::{Declared, Facts, Id, Structure};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
@@ -34,7 +34,7 @@ pub(super) struct Derivation<'a, 'g> {
     specialisation: Specialisation,
     facts: &'a Facts,
     /// Data for the options `regressor`, `hamilton` and `conserved`.
-    extras: Option<&'a Extras<'a, 'g>>,
+    extras: Option<&'a OptionalData<'a, 'g>>,
     /// Data of the option `derivatives`; `None` without the option.
     derivatives: Option<&'a Derivatives<'a, 'g>>,
     dynamics: OnceCell<Dynamics<'g>>,
@@ -70,7 +70,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     pub(super) fn with_option_data<'b>(
         self,
         facts: &'b Facts,
-        extras: &'b Extras<'b, 'g>,
+        extras: &'b OptionalData<'b, 'g>,
         derivatives: Option<&'b Derivatives<'b, 'g>>,
     ) -> Derivation<'b, 'g>
     where
@@ -81,7 +81,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     /// Derives the declared functions. The list `done` holds the functions derived before, since some
     /// programs are reused.
-    pub(super) fn derive(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
+    pub(super) fn derive_declared(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
         for declared in declared {
             pipeline::begin_function(&declared.name);
             let (program, structure) = match self.model.graph.is_full() {
@@ -93,12 +93,12 @@ impl<'a, 'g> Derivation<'a, 'g> {
         done
     }
 
-    fn dynamics(&self) -> &Dynamics<'g> {
+    fn derived_dynamics(&self) -> &Dynamics<'g> {
         let native = self.speeds.map_or(self.model, |speeds| &speeds.native);
         self.dynamics.get_or_init(|| Dynamics::new(native, self.passes, self.specialisation, self.speeds))
     }
 
-    fn sensitivities(&self) -> &Sensitivities<'g> {
+    fn derived_sensitivities(&self) -> &Sensitivities<'g> {
         self.sensitivities.get_or_init(|| Sensitivities::new(self.model, self.passes, self.specialisation))
     }
 
@@ -120,11 +120,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     fn contact_responses(&self) -> Program {
         let native = self.speeds.map_or(self.model, |speeds| &speeds.native);
-        self.dynamics().contact_responses(&constraints::contact_rows(native))
+        self.derived_dynamics().contact_responses(&constraints::contact_rows(native))
     }
 
     /// Returns the program of a contact function from its values, one for each contact velocity.
-    fn of_contacts(&self, values: &[Expr<'g>]) -> Program {
+    fn contact_program(&self, values: &[Expr<'g>]) -> Program {
         self.with_limb_contacts(self.specialisation.lower_to_program(values), |contacts| {
             contacts.merge_values(values)
         })
@@ -132,9 +132,9 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     fn contact_jacobian(&self) -> Program {
         let rows = constraints::contact_rows(self.model);
-        let plain = self.specialisation.lower_to_program(&constraints::by_columns(self.model, &rows));
+        let plain = self.specialisation.lower_to_program(&constraints::matrix_by_columns(self.model, &rows));
         self.with_limb_contacts(plain, |contacts| {
-            Some(constraints::by_columns(self.model, &contacts.merge_rows(&rows)?))
+            Some(constraints::matrix_by_columns(self.model, &contacts.merge_rows(&rows)?))
         })
     }
 
@@ -153,9 +153,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
     ) -> Program {
         match self.facts.kinematic {
             true => plain,
-            false => {
-                self.dynamics().with_limb_contacts(plain, &constraints::contact_rows(self.model), outputs)
-            }
+            false => self.derived_dynamics().with_limb_contacts(
+                plain,
+                &constraints::contact_rows(self.model),
+                outputs,
+            ),
         }
     }
 
@@ -187,21 +189,22 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.extras.and_then(|extras| extras.routh.as_ref()).map(outputs).unwrap_or_default()
     }
 
-    /// Returns the outputs of a function of the passive forces, if they have functions of their own.
+    /// Returns the outputs of a function of the passive forces, if the passive forces have separate
+    /// functions.
     fn passive_outputs(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.model.passive.as_deref().map_or_else(Vec::new, outputs)
     }
 
     /// Lowers the outputs of a function whose matrices have no structure to exploit.
-    fn lower(&self, outputs: &[Expr<'g>]) -> (Program, Structure) {
-        unstructured(self.specialisation.lower_to_program(outputs))
+    fn lower_unstructured(&self, outputs: &[Expr<'g>]) -> (Program, Structure) {
+        unstructured_program(self.specialisation.lower_to_program(outputs))
     }
 
     /// Returns the program of a declared function, with the structure of its matrices. Functions that are
     /// `done` may be used.
     fn program_of_function(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
-        match self.speeds.and_then(|speeds| self.in_speeds(speeds, declared)) {
-            Some(outputs) => self.lower(&outputs),
+        match self.speeds.and_then(|speeds| self.outputs_in_speeds(speeds, declared)) {
+            Some(outputs) => self.lower_unstructured(&outputs),
             None => self.program_in_velocities(declared, done),
         }
     }
@@ -211,55 +214,65 @@ impl<'a, 'g> Derivation<'a, 'g> {
         let (model, joints) = (self.model, self.joints);
         let find_done = |id: Id| done.iter().find(|f| f.id == id);
         match declared.id {
-            Id::Neutral => self.lower(&neutral(model)),
-            Id::Limits => self.lower(&model.limit_values()),
-            Id::Drawing => self.lower(&model.drawing_numbers()),
-            Id::Heights => self.lower(&model.heights),
-            Id::Figures => self.lower(&model.requirement_values()),
-            Id::GeneralizedForces => self.lower(&forces::generalized_forces(model, joints)),
-            Id::DissipatedPower => self.lower(&[power::dissipated_power(model)]),
-            Id::ControlPower => self.lower(&[power::control_power(model, joints)]),
-            Id::DisturbancePower => self.lower(&[power::disturbance_power(model)]),
-            Id::TotalMass => self.lower(&[energy::mass_and_moment(model, joints).0]),
-            Id::MassMatrix => unstructured(self.dynamics().mass_matrix()),
-            Id::InverseDynamics => unstructured(self.dynamics().inverse_dynamics()),
-            Id::BiasForces => unstructured(self.dynamics().bias_forces()),
-            Id::ForwardDynamics => unstructured(self.dynamics().forward_dynamics()),
-            Id::KineticEnergy => unstructured(self.dynamics().kinetic_energy()),
-            Id::PotentialEnergy => unstructured(self.dynamics().potential_energy()),
-            Id::GeneralizedMomentum => unstructured(self.dynamics().generalized_momentum()),
-            Id::MomentumRate => unstructured(self.dynamics().momentum_rate()),
-            Id::CenterOfMass => unstructured(self.dynamics().center_of_mass()),
-            Id::Momentum => unstructured(self.dynamics().momentum()),
-            Id::CentroidalMomentumMatrix => unstructured(self.dynamics().centroidal_momentum_matrix()),
-            Id::CentroidalMomentumBias => unstructured(self.dynamics().centroidal_momentum_bias()),
-            Id::Hamiltonian => self.lower(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => self.lower(&self.hamilton_outputs(|h| h.velocity.clone())),
-            Id::CanonicalMomentumRate => self.lower(&self.hamilton_outputs(|h| h.momentum_rate.clone())),
-            Id::Routhian => self.lower(&self.routh_outputs(|r| vec![r.routhian])),
-            Id::CyclicVelocities => self.lower(&self.routh_outputs(|r| r.velocity.clone())),
-            Id::ReducedAccelerations => self.lower(&self.routh_outputs(|r| r.acceleration.clone())),
-            Id::Conserved => self.lower(&self.conserved_quantities()),
-            Id::ConstraintResiduals => self.lower(&constraints::residuals(model)),
-            Id::ConstraintRates => self.lower(&constraints::constraint_velocities(model)),
-            Id::ConstraintJacobian => self.lower(&constraints::jacobian(model)),
-            Id::ConstraintBias => self.lower(&constraints::constraint_biases(model)),
-            Id::ContactGaps => self.lower(&constraints::contact_gaps(model)),
-            Id::ContactRates => unstructured(self.of_contacts(&model.contact_rates())),
-            Id::ContactJacobian => unstructured(self.contact_jacobian()),
-            Id::ContactBias => unstructured(self.of_contacts(&constraints::contact_biases(model))),
-            Id::ContactLaws => self.lower(&constraints::contact_laws(model)),
-            Id::ContactResponses => unstructured(self.contact_responses()),
-            Id::ContactDerivatives => unstructured(self.contact_derivatives()),
-            Id::ConstrainedDynamics => unstructured(self.dynamics().constrained_dynamics()),
-            Id::ConstraintResponse => unstructured(self.dynamics().constraint_response()),
-            Id::SlippingResponse => unstructured(self.dynamics().slipping_response()),
+            Id::Neutral => self.lower_unstructured(&neutral_configuration(model)),
+            Id::Limits => self.lower_unstructured(&model.limit_values()),
+            Id::Drawing => self.lower_unstructured(&model.drawing_numbers()),
+            Id::Heights => self.lower_unstructured(&model.heights),
+            Id::Figures => self.lower_unstructured(&model.requirement_values()),
+            Id::GeneralizedForces => self.lower_unstructured(&forces::generalized_forces(model, joints)),
+            Id::DissipatedPower => self.lower_unstructured(&[power::dissipated_power(model)]),
+            Id::ControlPower => self.lower_unstructured(&[power::control_power(model, joints)]),
+            Id::DisturbancePower => self.lower_unstructured(&[power::disturbance_power(model)]),
+            Id::TotalMass => self.lower_unstructured(&[energy::mass_and_moment(model, joints).0]),
+            Id::MassMatrix => unstructured_program(self.derived_dynamics().mass_matrix()),
+            Id::InverseDynamics => unstructured_program(self.derived_dynamics().inverse_dynamics()),
+            Id::BiasForces => unstructured_program(self.derived_dynamics().bias_forces()),
+            Id::ForwardDynamics => unstructured_program(self.derived_dynamics().forward_dynamics()),
+            Id::KineticEnergy => unstructured_program(self.derived_dynamics().kinetic_energy()),
+            Id::PotentialEnergy => unstructured_program(self.derived_dynamics().potential_energy()),
+            Id::GeneralizedMomentum => unstructured_program(self.derived_dynamics().generalized_momentum()),
+            Id::MomentumRate => unstructured_program(self.derived_dynamics().momentum_rate()),
+            Id::CenterOfMass => unstructured_program(self.derived_dynamics().center_of_mass()),
+            Id::Momentum => unstructured_program(self.derived_dynamics().momentum_program()),
+            Id::CentroidalMomentumMatrix => {
+                unstructured_program(self.derived_dynamics().centroidal_momentum_matrix())
+            }
+            Id::CentroidalMomentumBias => {
+                unstructured_program(self.derived_dynamics().centroidal_momentum_bias())
+            }
+            Id::Hamiltonian => self.lower_unstructured(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => self.lower_unstructured(&self.hamilton_outputs(|h| h.velocity.clone())),
+            Id::CanonicalMomentumRate => {
+                self.lower_unstructured(&self.hamilton_outputs(|h| h.momentum_rate.clone()))
+            }
+            Id::Routhian => self.lower_unstructured(&self.routh_outputs(|r| vec![r.routhian])),
+            Id::CyclicVelocities => self.lower_unstructured(&self.routh_outputs(|r| r.velocity.clone())),
+            Id::ReducedAccelerations => {
+                self.lower_unstructured(&self.routh_outputs(|r| r.acceleration.clone()))
+            }
+            Id::Conserved => self.lower_unstructured(&self.conserved_quantities()),
+            Id::ConstraintResiduals => self.lower_unstructured(&constraints::residuals(model)),
+            Id::ConstraintRates => self.lower_unstructured(&constraints::constraint_velocities(model)),
+            Id::ConstraintJacobian => self.lower_unstructured(&constraints::constraint_jacobian(model)),
+            Id::ConstraintBias => self.lower_unstructured(&constraints::constraint_biases(model)),
+            Id::ContactGaps => self.lower_unstructured(&constraints::contact_gaps(model)),
+            Id::ContactRates => unstructured_program(self.contact_program(&model.contact_rates())),
+            Id::ContactJacobian => unstructured_program(self.contact_jacobian()),
+            Id::ContactBias => {
+                unstructured_program(self.contact_program(&constraints::contact_biases(model)))
+            }
+            Id::ContactLaws => self.lower_unstructured(&constraints::contact_laws(model)),
+            Id::ContactResponses => unstructured_program(self.contact_responses()),
+            Id::ContactDerivatives => unstructured_program(self.contact_derivatives()),
+            Id::ConstrainedDynamics => unstructured_program(self.derived_dynamics().constrained_dynamics()),
+            Id::ConstraintResponse => unstructured_program(self.derived_dynamics().constraint_response()),
+            Id::SlippingResponse => unstructured_program(self.derived_dynamics().slipping_response()),
             Id::Output
             | Id::OutputJacobian
             | Id::OutputDerivatives
             | Id::OutputByParameters
             | Id::Reaction
-            | Id::Touched => self.lower(&outputs::output_function_values(model, declared)),
+            | Id::Touched => self.lower_unstructured(&outputs::output_function_values(model, declared)),
             Id::MassMatrixInverse => self.structured_derivative(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivative_program(Derivatives::coriolis_matrix),
             Id::InverseDynamicsDerivatives => {
@@ -270,12 +283,16 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::ForwardDynamicsDerivatives => self.structured_derivative(|d| {
                 d.forward_dynamics_derivatives(find_done(Id::InverseDynamicsDerivatives))
             }),
-            Id::Linearize => self.derivative_program(Derivatives::linearize),
+            Id::Linearize => self.derivative_program(Derivatives::linearization_program),
             Id::AccelerationsAndInverse => self.structured_derivative(Derivatives::accelerations_and_inverse),
             Id::MotionDerivatives => self.derivative_program(Derivatives::motion_derivatives),
             Id::InputDerivatives => self.derivative_program(Derivatives::input_derivatives),
-            Id::InverseDynamicsDerivativesInto => as_of(find_done(Id::InverseDynamicsDerivatives)),
-            Id::ForwardDynamicsDerivativesInto => as_of(find_done(Id::ForwardDynamicsDerivatives)),
+            Id::InverseDynamicsDerivativesInto => {
+                program_of_function(find_done(Id::InverseDynamicsDerivatives))
+            }
+            Id::ForwardDynamicsDerivativesInto => {
+                program_of_function(find_done(Id::ForwardDynamicsDerivatives))
+            }
             Id::InverseDynamicsSecondDerivatives => {
                 self.derivative_program(Derivatives::inverse_dynamics_second_derivatives)
             }
@@ -284,21 +301,31 @@ impl<'a, 'g> Derivation<'a, 'g> {
             }
             Id::ConstraintCurvature => self.derivative_program(Derivatives::constraint_curvature),
             Id::JointTorqueRegressor => {
-                self.lower(&self.regressor_outputs(|i| i.joint_torque_regressor(joints)))
+                self.lower_unstructured(&self.regressor_outputs(|i| i.joint_torque_regressor(joints)))
             }
             Id::StandardParameters => {
-                self.lower(&self.regressor_outputs(Identification::standard_parameters))
+                self.lower_unstructured(&self.regressor_outputs(Identification::standard_parameters))
             }
-            Id::BaseRegressor => self.lower(&self.regressor_outputs(Identification::base_regressor)),
-            Id::BaseParameters => self.lower(&self.regressor_outputs(Identification::base_parameters)),
-            Id::InverseDynamicsByParameters => unstructured(self.sensitivities().inverse_dynamics()),
-            Id::ForwardDynamicsByParameters => unstructured(self.sensitivities().forward_dynamics()),
+            Id::BaseRegressor => {
+                self.lower_unstructured(&self.regressor_outputs(Identification::base_regressor))
+            }
+            Id::BaseParameters => {
+                self.lower_unstructured(&self.regressor_outputs(Identification::base_parameters))
+            }
+            Id::InverseDynamicsByParameters => {
+                unstructured_program(self.derived_sensitivities().inverse_dynamics())
+            }
+            Id::ForwardDynamicsByParameters => {
+                unstructured_program(self.derived_sensitivities().forward_dynamics())
+            }
             Id::GeneralizedForcesByParameters => {
-                self.lower(&parameters::generalized_forces(model, joints).concat())
+                self.lower_unstructured(&parameters::generalized_forces(model, joints).concat())
             }
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed_mass_matrix(declared.id),
-            Id::PassiveForces => self.lower(&self.passive_outputs(|p| p.forces.clone())),
-            Id::PassiveDerivatives => self.lower(&self.passive_outputs(|p| p.derivatives.clone())),
+            Id::PassiveForces => self.lower_unstructured(&self.passive_outputs(|p| p.forces.clone())),
+            Id::PassiveDerivatives => {
+                self.lower_unstructured(&self.passive_outputs(|p| p.derivatives.clone()))
+            }
             // Functions that exist only for mechanisms with speeds, which `in_speeds` has already handled.
             Id::RatesOfSpeeds
             | Id::SpeedsOfRates
@@ -307,7 +334,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::RateChanges
             | Id::RateAccelerations
             | Id::Turning
-            | Id::Part => unstructured(Program::default()),
+            | Id::Part => unstructured_program(Program::default()),
         }
     }
 
@@ -316,22 +343,25 @@ impl<'a, 'g> Derivation<'a, 'g> {
         let entries = &self.facts.entries;
         let at: Vec<usize> = entries.iter().map(|(i, j)| j * self.model.nv() + i).collect();
         let entries = if id == Id::MassMatrixInto { entries.clone() } else { Vec::new() };
-        (self.dynamics().mass_matrix().with_outputs(&at), Structure { entries, ..Structure::default() })
+        (
+            self.derived_dynamics().mass_matrix().with_outputs(&at),
+            Structure { entries, ..Structure::default() },
+        )
     }
 }
 
 /// Returns a program whose matrices have no structure to exploit.
-fn unstructured(program: Program) -> (Program, Structure) {
+fn unstructured_program(program: Program) -> (Program, Structure) {
     (program, Structure::default())
 }
 
 /// Returns a copy of the program of another function; an empty program if that function does not exist.
-fn as_of(other: Option<&Function>) -> (Program, Structure) {
+fn program_of_function(other: Option<&Function>) -> (Program, Structure) {
     other.map(|f| (f.program.clone(), f.structure.clone())).unwrap_or_default()
 }
 
 /// Returns the configuration with all coordinates zero and identity quaternions.
-fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+fn neutral_configuration<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut q = vec![g.zero(); model.nq()];
     for chart in &model.charts {

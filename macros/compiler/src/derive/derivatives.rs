@@ -20,10 +20,10 @@ use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Passes, Variant};
 use crate::vectorise::{self, Limbs};
 
-/// Maximum number of velocities for which differentiation is tried.
+/// Maximum number of velocities for which symbolic differentiation is tried as a candidate.
 pub(super) const DIFFERENTIATE: usize = 6;
 
-/// Returns the variants of the model that are compared.
+/// Returns the variants of the model among which the cheapest is chosen.
 pub(super) fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
     let mut variants = passes::model_variants(model, passes);
     if passes.frames && model.nv() <= DERIVATIVES_COMPARED {
@@ -42,10 +42,10 @@ pub(super) fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Varia
 /// The derivative functions, derived from the variant of the model in which inverse dynamics derivatives cost
 /// least.
 pub(super) struct Derivatives<'a, 'g> {
-    parts: Parts<'a, 'g>,
-    /// Generalized forces of the inputs.
+    parts: DerivativeParts<'a, 'g>,
+    /// Generalized forces of the inputs, `τ(q, u)`.
     tau: Vec<Expr<'g>>,
-    /// True if the mechanism has constraints.
+    /// True if the mechanism has constraints, whose multipliers are arguments.
     constrained: bool,
 }
 
@@ -56,33 +56,33 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         passes: Passes,
         specialisation: Specialisation,
     ) -> Option<Derivatives<'a, 'g>> {
-        let mut parts: Vec<Parts<'_, '_>> =
-            variants.iter().map(|variant| Parts::new(variant, specialisation)).collect();
+        let mut parts: Vec<DerivativeParts<'_, '_>> =
+            variants.iter().map(|variant| DerivativeParts::new(variant, specialisation)).collect();
         if model.nv() <= DIFFERENTIATE {
-            parts.extend(variants.iter().map(|variant| Parts {
+            parts.extend(variants.iter().map(|variant| DerivativeParts {
                 method: DerivationMethod::Differentiation,
-                ..Parts::new(variant, specialisation)
+                ..DerivativeParts::new(variant, specialisation)
             }));
         }
-        let mut parts = parts.into_iter().min_by_key(Parts::operation_cost)?;
+        let mut parts = parts.into_iter().min_by_key(DerivativeParts::operation_cost)?;
         if parts.model.acceleration_forces.is_empty() {
             parts.known = invariance::invariant_columns(parts.model, &parts.joints);
         }
-        if derivatives::is_analytic(parts.model) {
+        if derivatives::has_constant_subspaces(parts.model) {
             parts.wide = passes.tried_lane_counts(model.nv());
-            parts.take_apart(passes.lanes && specialisation == Specialisation::None);
+            parts.find_limbs_and_trunk(passes.lanes && specialisation == Specialisation::None);
         }
         let tau = forces::generalized_forces(model, &kinematics::joints_of_model(model));
         Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
     }
 
-    /// Returns true if the derivatives of forward dynamics call other generated functions.
+    /// Returns true if the generated derivatives of forward dynamics call other functions.
     pub(super) fn calls_other_functions(&self) -> bool {
-        !self.constrained && self.parts.is_large()
+        !self.constrained && self.parts.exceeds_single_function()
     }
 
     /// Returns true if the linearization calls other generated functions.
-    pub(super) fn calls_linear(&self) -> bool {
+    pub(super) fn linearization_calls_functions(&self) -> bool {
         self.parts.model.nv() > DERIVATIVES_COMPARED && self.parts.model.acceleration_forces.is_empty()
     }
 
@@ -103,13 +103,13 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 
     pub(super) fn momentum_derivatives(&self) -> Program {
-        let Parts { model, joints, specialisation, .. } = &self.parts;
+        let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
         let p = momentum::generalized_momentum(model, joints, &mechanics::velocity_symbols(model));
-        specialisation.lower_to_program(&entries_by_column(&symbolic::by_configuration(model, &p)))
+        specialisation.lower_to_program(&entries_by_column(&symbolic::configuration_derivatives(model, &p)))
     }
 
     pub(super) fn momentum_rate_derivatives(&self) -> Program {
-        let Parts { model, joints, specialisation, .. } = &self.parts;
+        let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
         let rate = momentum::momentum_rate(model, joints, &mechanics::velocity_symbols(model));
         specialisation.lower_to_program(&force_columns(&symbolic::force_derivatives(model, &rate)))
     }
@@ -130,8 +130,8 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         (program, Structure { inverse, zeros, known, ..Structure::default() })
     }
 
-    pub(super) fn linearize(&self) -> Program {
-        match self.calls_linear() {
+    pub(super) fn linearization_program(&self) -> Program {
+        match self.linearization_calls_functions() {
             true => self.parts.input_force_program(&self.tau),
             false => self.parts.linearization_program(&self.tau),
         }
@@ -155,12 +155,12 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 
     pub(super) fn input_derivatives(&self) -> Program {
-        self.parts.inputs_alone(&self.tau)
+        self.parts.uncommuted_input_program(&self.tau)
     }
 }
 
 /// A variant of the model with the data that all derivative functions share.
-struct Parts<'a, 'g> {
+struct DerivativeParts<'a, 'g> {
     model: &'a Model<'g>,
     joints: Vec<Joint<'g>>,
     mass: crba::Matrix<'g>,
@@ -171,9 +171,9 @@ struct Parts<'a, 'g> {
     specialisation: Specialisation,
     /// Trunk of a large mechanism, if its tree branches.
     trunk: Option<Trunk>,
-    /// The mechanism with identical limbs in SIMD lanes.
+    /// Variant of the mechanism with identical limbs in SIMD lanes.
     limbs: Option<InLanes<'g>>,
-    /// Lane counts, in addition to scalar code, for the recursion towards the root.
+    /// Numbers of SIMD lanes that are tried for the recursion towards the root, in addition to scalar code.
     wide: &'static [usize],
     /// Columns of the derivatives of forward dynamics that follow from invariance.
     known: invariance::InvariantColumns<'g>,
@@ -186,10 +186,10 @@ struct InLanes<'g> {
     trunk: Option<Trunk>,
 }
 
-impl<'a, 'g> Parts<'a, 'g> {
-    fn new(variant: &'a Variant<'g>, specialisation: Specialisation) -> Parts<'a, 'g> {
+impl<'a, 'g> DerivativeParts<'a, 'g> {
+    fn new(variant: &'a Variant<'g>, specialisation: Specialisation) -> DerivativeParts<'a, 'g> {
         let mass = crba::mass_matrix(&variant.model, &variant.joints);
-        Parts {
+        DerivativeParts {
             model: &variant.model,
             joints: variant.joints.clone(),
             effective: added_mass::effective_mass_matrix(&variant.model, &mass),
@@ -204,7 +204,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     /// Finds groups of identical limbs, and the trunk that carries all limbs.
-    fn take_apart(&mut self, lanes: bool) {
+    fn find_limbs_and_trunk(&mut self, lanes: bool) {
         let groups = if lanes { vectorise::find_limb_groups(self.model, &self.joints) } else { Vec::new() };
         let limbs = Limbs::new(self.model, &self.joints, &groups, || passive_forces(self.model, true));
         let marked = limbs.as_ref().map(|limbs| Trunk::branching_velocities(&limbs.joints, limbs.model.nv()));
@@ -340,9 +340,9 @@ impl<'a, 'g> Parts<'a, 'g> {
     /// Returns true if runtime loops compute `M⁻¹` instead of straight-line code. With identical limbs in
     /// SIMD lanes, the size of the trunk decides, since straight-line code computes the limbs in lanes as
     /// well.
-    fn is_divided(&self) -> bool {
+    fn inverts_in_runtime_loops(&self) -> bool {
         let in_lanes = self.limbs.as_ref().is_some_and(|lanes| lanes.trunk.is_some());
-        self.is_large()
+        self.exceeds_single_function()
             && match &self.trunk {
                 Some(trunk) => !in_lanes || trunk.velocities.len() > INVERSE_WRITTEN_OUT,
                 None => self.model.nv() > INVERSE_WRITTEN_OUT,
@@ -362,7 +362,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     /// Returns true if a single function for all derivatives of forward dynamics would be too large.
-    fn is_large(&self) -> bool {
+    fn exceeds_single_function(&self) -> bool {
         let most = if self.trunk.is_some() { DERIVATIVES_WRITTEN_OUT } else { DERIVATIVES_COMPARED };
         self.model.nv() > most && self.model.acceleration_forces.is_empty()
     }
@@ -387,7 +387,7 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// Returns the program of the input forces `tau` with their derivatives, without the commutators of
     /// displacements.
-    fn inputs_alone(&self, tau: &[Expr<'g>]) -> Program {
+    fn uncommuted_input_program(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
         outputs.extend(force_columns(&symbolic::force_derivatives(self.model, tau)));
         outputs.extend(entries_by_column(&symbolic::by_input(self.model, tau)));
@@ -427,7 +427,7 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// Returns the program of `M⁻¹` and the form of its outputs; after the accelerations if `accelerated`.
     fn inverse_function(&self, accelerated: bool) -> (Program, Structure) {
-        let (program, inverse) = match self.is_divided() {
+        let (program, inverse) = match self.inverts_in_runtime_loops() {
             true => {
                 let trunk = self.trunk_or_all();
                 let parted = InverseForm::BlockArrow {
@@ -449,7 +449,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 }
 
-/// Returns the entries of a matrix column by column.
+/// Returns the entries of a matrix as a list, column by column.
 pub(super) fn entries_by_column<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     let [any, ..] = m.as_slice() else { return Vec::new() };
     (0..any.len()).flat_map(|j| m.iter().map(move |row| row[j])).collect()

@@ -29,9 +29,9 @@ const SIMILAR: usize = 8;
 pub(super) struct Dynamics<'g> {
     /// Variants of the model for each frame choice that may be the cheapest, the best first.
     choices: Vec<Variants<'g>>,
-    /// True if the functions are in declared speeds.
+    /// True if the results are in declared generalized speeds.
     in_speeds: bool,
-    /// True if one algorithm of forward dynamics is used without comparison.
+    /// True if forward dynamics uses one algorithm without comparing alternatives.
     is_large: bool,
     specialisation: Specialisation,
     mass_matrix: Program,
@@ -64,7 +64,7 @@ impl<'g> Dynamics<'g> {
                 choices.push(choice.variants);
             }
         }
-        choices.iter_mut().for_each(Variants::find_bias);
+        choices.iter_mut().for_each(Variants::find_bias_forces);
         let wide = if speeds.is_none() { passes.tried_lane_counts(model.nv()) } else { &[] };
         let wide = mass_matrices_in_lanes(&choices, specialisation, wide);
         let side_by_side = in_lanes_of(
@@ -126,7 +126,7 @@ impl<'g> Dynamics<'g> {
         self.smallest_program(Role::Scalars, |m, j, _| energy::center_of_mass(m, j).0.to_vec())
     }
 
-    pub(super) fn momentum(&self) -> Program {
+    pub(super) fn momentum_program(&self) -> Program {
         self.smallest_program(Role::Scalars, |m, j, v| {
             frames::spatial_components(&momentum::centroidal_momentum(m, j, v))
         })
@@ -147,21 +147,21 @@ impl<'g> Dynamics<'g> {
     }
 
     pub(super) fn constrained_dynamics(&self) -> Program {
-        self.of_best(Variants::constrained_dynamics)
+        self.best_variant_program(Variants::constrained_dynamics)
     }
 
     pub(super) fn constraint_response(&self) -> Program {
-        self.of_best(Variants::constraint_response)
+        self.best_variant_program(Variants::constraint_response)
     }
 
     pub(super) fn slipping_response(&self) -> Program {
-        self.of_best(Variants::slipping_response)
+        self.best_variant_program(Variants::slipping_response)
     }
 
     /// Returns the changes of the velocities, and of the contact velocities with these rows, due to unit
     /// impulses.
     pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
-        self.of_best(|variants| {
+        self.best_variant_program(|variants| {
             let plain = variants.cheapest_program(Role::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
                 Factor::new(&mass, &variants.joints).constraint_responses(rows)
@@ -187,7 +187,7 @@ impl<'g> Dynamics<'g> {
         plain.or_in_lanes(found.map(|outputs| self.specialisation.lower_to_program(&outputs)))
     }
 
-    fn of_best(&self, program: impl FnOnce(&Variants<'g>) -> Program) -> Program {
+    fn best_variant_program(&self, program: impl FnOnce(&Variants<'g>) -> Program) -> Program {
         self.choices.first().map(program).unwrap_or_default()
     }
 
@@ -198,7 +198,7 @@ impl<'g> Dynamics<'g> {
         role: Role,
         expressions: impl Fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>>,
     ) -> Program {
-        self.of_best(|variants| {
+        self.best_variant_program(|variants| {
             variants.smallest_program(role, |model| {
                 expressions(model, &variants.joints, &mechanics::velocity_symbols(model))
             })
@@ -258,7 +258,7 @@ fn mass_matrices_in_lanes<'g>(
         .collect()
 }
 
-/// Returns the programs of the outputs in lanes that may be the cheapest.
+/// Returns the programs with SIMD lanes that may be the cheapest for the outputs.
 fn in_lanes_of<'g>(
     specialisation: Specialisation,
     lists: impl Iterator<Item = Vec<Expr<'g>>>,

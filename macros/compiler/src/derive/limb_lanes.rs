@@ -7,7 +7,7 @@ use crate::mechanics::{aba, crba, rnea};
 use crate::mechanism::{Model, Quantity};
 use crate::vectorise::Limbs;
 
-/// Returns the mass matrix by rows, in up to `most` lanes.
+/// Returns the mass matrix of the vectorised mechanism by rows, in up to `most` SIMD lanes.
 pub fn mass_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> Vec<Expr<'g>> {
     limbs.scattered_matrix(&crba::mass_matrix_in_lanes(&limbs.model, &limbs.joints, most))
 }
@@ -25,7 +25,7 @@ pub fn inverse_dynamics<'g>(limbs: &Limbs<'g>, accelerations: bool) -> Vec<Expr<
 /// mechanism with coupled coordinates.
 pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<Expr<'g>>> {
     let v = limbs.symbols_by_velocity(Quantity::Velocity);
-    let wrenches = rnea::wrenches(&bias.model, &bias.joints, &v, None);
+    let wrenches = rnea::link_wrenches(&bias.model, &bias.joints, &v, None);
     let tau = limbs.symbols_by_velocity(Quantity::Force);
     let r: Vec<Expr<'g>> = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t - *h).collect();
     let a = aba::forward_dynamics(&limbs.model, &limbs.joints, wrenches, &r)?;
@@ -48,19 +48,19 @@ pub fn inverse_dynamics_derivatives<'g>(
     scattered
 }
 
-/// Returns a Coriolis matrix by rows, in up to `most` lanes.
+/// Returns a Coriolis matrix of the vectorised mechanism by rows, in up to `most` SIMD lanes.
 pub fn coriolis_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> crba::Matrix<'g> {
     let v = limbs.symbols_by_velocity(Quantity::Velocity);
     scattered_rows(limbs, &analytic::coriolis_matrix(&limbs.model, &limbs.joints, &v, most))
 }
 
-/// Returns the accelerations of the mechanism in lanes under forces, given the blocks of its inverse mass
+/// Returns the accelerations of the vectorised mechanism under forces, given the blocks of its inverse mass
 /// matrix.
 pub fn accelerations_in_lanes<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> Vec<Expr<'g>> {
     inverse.solve_divided(&unbalanced_forces(limbs))
 }
 
-/// Returns `τ − h` of the mechanism in lanes.
+/// Returns `τ − h` of the vectorised mechanism, whose identical limbs are SIMD lanes.
 pub fn unbalanced_forces<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
     let v = limbs.symbols_by_velocity(Quantity::Velocity);
     let tau = limbs.symbols_by_velocity(Quantity::Force);

@@ -5,20 +5,20 @@ use crate::equations::Written;
 use crate::lower::Program;
 use crate::mechanism::{Chart, Piece, Quantity};
 
-/// Generated function with its documentation, signature and program.
+/// Derived function with its documentation, signature and program.
 #[derive(Clone)]
 pub struct Function {
     /// Identifier of the function in the catalogue.
     pub id: Id,
     /// Name of the generated function.
     pub name: String,
-    /// Documentation, one paragraph per entry; empty for a hidden function.
+    /// Documentation of the function, one paragraph per entry; empty for a hidden function.
     pub docs: Vec<String>,
     /// Arguments of the generated function after `&self`.
     pub arguments: Vec<Argument>,
-    /// Shape of the result.
+    /// Shape of the generated function's result.
     pub shape: Shape,
-    /// Program that computes the result.
+    /// Program that computes the result of the function.
     pub program: Program,
     /// Structure of its matrices: zeros, packed entries, form of an inverse.
     pub structure: Structure,
@@ -62,19 +62,24 @@ impl Function {
 
     /// Returns true if the program, and its version in lanes, has the number of outputs that the result takes
     /// and reads only arguments of the function.
-    fn is_whole(&self) -> bool {
+    fn has_expected_outputs(&self) -> bool {
         let expected = self.shape.output_count(&self.structure);
         let programs = [Some(&self.program), self.program.simd.as_deref()];
         programs.into_iter().flatten().all(|program| {
-            let reads_arguments =
-                || program.used_symbols().into_iter().map(Quantity::from_symbol).all(|q| self.is_given(q));
+            let reads_arguments = || {
+                program
+                    .used_symbols()
+                    .into_iter()
+                    .map(Quantity::from_symbol)
+                    .all(|q| self.is_available_argument(q))
+            };
             program.outputs.len() == expected && reads_arguments()
         })
     }
 
     /// Returns true for a quantity stored in the mechanism, for an entry of an argument, and for a result of
     /// a function that every function may call.
-    fn is_given(&self, quantity: Quantity) -> bool {
+    fn is_available_argument(&self, quantity: Quantity) -> bool {
         let called = Called::ALL.map(Argument::Called);
         match quantity {
             Quantity::Parameter(_) | Quantity::Prepared(_) | Quantity::Time => true,
@@ -87,9 +92,9 @@ impl Function {
 pub struct Output {
     /// Functions to be emitted, each with its documentation, shape and program.
     pub functions: Vec<Function>,
-    /// Kinematic steps of the links.
+    /// Kinematic programs of the links.
     pub links: Vec<LinkSteps>,
-    /// Kinematic steps of the named frames.
+    /// Kinematic programs of the named frames.
     pub frames: Vec<FrameSteps>,
     /// First indices in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
@@ -97,7 +102,7 @@ pub struct Output {
     pub equations: Written,
     /// The linearised equations of every declared equilibrium.
     pub linear_equations: Vec<Written>,
-    /// Functions with precomputed values, if requested.
+    /// Variants of functions with precomputed values, if the option `prepare` is set.
     pub prepared: Option<Prepared>,
     /// Associated constants in addition to sizes and names.
     pub constants: Vec<Constant>,
@@ -118,9 +123,9 @@ impl Output {
     /// Returns the name of a function whose program does not fit its arguments or its result. This is an
     /// internal error, which would produce wrong code.
     pub fn misfitting_function(&self) -> Option<&str> {
-        let function = self.all_functions().find(|f| !f.is_whole()).map(|f| f.name.as_str());
-        let link = self.links.iter().any(|l| !l.is_whole()).then_some("the steps of a link");
-        let frame = self.frames.iter().find(|f| !f.is_whole()).map(|f| f.name.as_str());
+        let function = self.all_functions().find(|f| !f.has_expected_outputs()).map(|f| f.name.as_str());
+        let link = self.links.iter().any(|l| !l.has_expected_outputs()).then_some("the steps of a link");
+        let frame = self.frames.iter().find(|f| !f.has_expected_outputs()).map(|f| f.name.as_str());
         function.or(link).or(frame)
     }
 }
@@ -138,7 +143,7 @@ pub const PLACEMENT: usize = 12;
 /// Number of entries of a twist, or of its rate.
 pub const TWIST: usize = 6;
 
-/// Kinematic steps of one link.
+/// Programs for the placement, twist and acceleration of one link from those of its parent.
 pub struct LinkSteps {
     /// Parent link; `None` for the ground.
     pub parent: Option<usize>,
@@ -157,14 +162,14 @@ pub struct LinkSteps {
 }
 
 impl LinkSteps {
-    fn is_whole(&self) -> bool {
+    fn has_expected_outputs(&self) -> bool {
         [&self.placement, &self.twist, &self.acceleration, &self.columns]
             .map(|program| program.outputs.len())
             .eq(&[PLACEMENT, TWIST, TWIST, TWIST * self.velocities.len()])
     }
 }
 
-/// Kinematic steps of one frame on its link.
+/// Programs for the placement and twist of a named frame from those of its link.
 pub struct FrameSteps {
     /// Name of the frame.
     pub name: String,
@@ -181,13 +186,13 @@ pub struct FrameSteps {
 }
 
 impl FrameSteps {
-    fn is_whole(&self) -> bool {
+    fn has_expected_outputs(&self) -> bool {
         [&self.placement, &self.twist, &self.acceleration].map(|program| program.outputs.len())
             == [PLACEMENT, TWIST, TWIST]
     }
 }
 
-/// An associated constant of the generated type: a list.
+/// Associated constant of the generated type that is a list.
 pub struct Constant {
     /// Name of the constant.
     pub name: &'static str,
@@ -195,7 +200,7 @@ pub struct Constant {
     pub docs: &'static str,
     /// Type of the items of the constant.
     pub item: &'static str,
-    /// Source text of each item.
+    /// Source text of each item of the constant.
     pub list: Vec<String>,
 }
 

@@ -17,7 +17,7 @@ pub fn declared_output_functions(model: &Model<'_>, facts: &Facts) -> Vec<Declar
         };
         let touched =
             output.diagram.is_none() && depends_on_quantity(|q| matches!(q, Quantity::ContactForce(_)));
-        let follows = touched || output.diagram.is_some() || reactions::names_one(&output.values);
+        let follows = touched || output.diagram.is_some() || reactions::contains_reactions(&output.values);
         match (follows, facts.kinematic) {
             (true, true) => Vec::new(),
             (true, false) if touched => vec![catalogue::contact_force_function(&output.name, size, facts)],
@@ -57,7 +57,7 @@ pub fn output_function_values<'g>(model: &Model<'g>, declared: &Declared) -> Vec
         Id::Reaction => reactions::replace_reactions(model, &output.values, output.diagram.is_some()),
         Id::OutputJacobian => output_jacobian(model, output),
         Id::OutputDerivatives => output_derivatives(model, &output.values),
-        Id::OutputByParameters => by_parameters(model, &output.values),
+        Id::OutputByParameters => parameter_derivatives(model, &output.values),
         _ => output.values.clone(),
     }
 }
@@ -78,11 +78,11 @@ fn output_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g
     blocks.iter().flat_map(columns_of_block).collect()
 }
 
-fn by_parameters<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let parameter_derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let column =
+    let differentiated_outputs =
         |mut d: Derivative<'g>| -> Vec<Expr<'g>> { values.iter().map(|e| d.differentiate(*e)).collect() };
-    (0..model.parameters.len()).flat_map(|k| column(parameter_derivative(k))).collect()
+    (0..model.parameters.len()).flat_map(|k| differentiated_outputs(parameter_derivative(k))).collect()
 }
 
 /// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of

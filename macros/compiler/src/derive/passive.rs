@@ -1,4 +1,4 @@
-//! Functions for passive forces that are expensive; the other generated functions call these.
+//! Separate functions for expensive passive forces, which the other generated functions call.
 
 use crate::expr::Expr;
 use crate::lower::operation_count;

@@ -12,16 +12,16 @@ use crate::mechanics::regressor::{
 use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity, Supplied};
 use crate::passes::{Gauge, Regroup, regroup_inertias};
 
-/// Data of a model for parameter identification.
+/// Data for the functions of parameter identification: regressors and base parameters.
 pub(super) struct Identification<'a, 'g> {
     model: &'a Model<'g>,
-    /// The first body of each link that has bodies.
+    /// First declared body of each link that has bodies.
     bodies: Vec<&'a NamedFrame<'g>>,
-    base: Base<'g>,
+    base: BaseParameters<'g>,
 }
 
 /// Base parameters of a model: the combinations of inertial parameters that affect its motion.
-struct Base<'g> {
+struct BaseParameters<'g> {
     /// Link of each base parameter, and index among the ten parameters about the link's own frame.
     entries: Vec<(usize, usize)>,
     /// Combination of the bodies' parameters that replaces this parameter.
@@ -82,7 +82,7 @@ impl<'a, 'g> Identification<'a, 'g> {
             .flat_map(|site| {
                 let back = site.pose.inverse();
                 let own = &self.model.links[site.link.0].inertia;
-                inertial_parameters(&zero.plus_placed(own, &back.rotation, back.translation))
+                inertial_parameters(&zero.add_placed_inertia(own, &back.rotation, back.translation))
             })
             .collect()
     }
@@ -98,7 +98,7 @@ fn derive_base_parameters<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     bodies: &[&NamedFrame<'g>],
-) -> Base<'g> {
+) -> BaseParameters<'g> {
     let g = model.graph;
     let mut given = model.clone();
     given.links.iter_mut().for_each(|link| link.inertia = Inertia::zero(g));
@@ -107,7 +107,7 @@ fn derive_base_parameters<'g>(
             Quantity::Given(Supplied::Inertia, COUNT * k + p).expr(g)
         }));
         let link = &mut given.links[site.link.0].inertia;
-        *link = link.plus_placed(&own, &site.pose.rotation, site.pose.translation);
+        *link = link.add_placed_inertia(&own, &site.pose.rotation, site.pose.translation);
     }
     regroup_inertias(&mut given, Regroup { gauge: Gauge::Second, to_children: false, symbolic: true });
 
@@ -128,7 +128,7 @@ fn derive_base_parameters<'g>(
             list.iter().for_each(|(i, factor)| values[*i] += dependent * *factor);
         }
     }
-    let mut base = Base { entries, values, columns };
+    let mut base = BaseParameters { entries, values, columns };
     base.keep_independent_parameters(&parts);
     // Between two axes of a joint there is no body. A parameter of one body that is moved to such a link may
     // appear in two base parameters, whose values are then proportional.
@@ -147,8 +147,8 @@ fn derive_base_parameters<'g>(
     base
 }
 
-impl Base<'_> {
-    /// Removes the parameters that are combinations of others.
+impl BaseParameters<'_> {
+    /// Removes the inertial parameters that are combinations of other ones.
     fn keep_independent_parameters(&mut self, parts: &[Part]) {
         retain_independent(&mut self.entries, parts);
         retain_independent(&mut self.values, parts);

@@ -20,14 +20,17 @@ pub(super) fn inverse_dynamics<'g>(
     // differentiated.
     let model = &Model { passive: None, ..model.clone() };
     let in_lanes = |most: usize| {
-        second::by_recursion(model, joints, most).map(|found| state_hessian_blocks(&found).concat())
+        second::hessian_by_recursion(model, joints, most).map(|found| state_hessian_blocks(&found).concat())
     };
     let Some(plain) = in_lanes(1) else {
-        return specialisation
-            .lower_to_program(&state_hessian_blocks(&second::by_differentiation(model, joints)).concat());
+        return specialisation.lower_to_program(
+            &state_hessian_blocks(&second::hessian_by_differentiation(model, joints)).concat(),
+        );
     };
     let candidates = match model.nv() <= DIFFERENTIATE {
-        true => vec![plain, state_hessian_blocks(&second::by_differentiation(model, joints)).concat()],
+        true => {
+            vec![plain, state_hessian_blocks(&second::hessian_by_differentiation(model, joints)).concat()]
+        }
         false => vec![plain],
     };
     let program = specialisation
@@ -50,7 +53,7 @@ pub(super) fn input_power_hessian<'g>(
 
 /// Returns the second derivatives of the terms that constraints add to the equations of motion.
 pub(super) fn constraint_hessian(model: &Model<'_>, specialisation: Specialisation) -> Program {
-    let ConstraintHessian { state: by_state, q_lambda } = second::of_constraints(model);
+    let ConstraintHessian { state: by_state, q_lambda } = second::hessian_of_constraints(model);
     let mut outputs = state_hessian_blocks(&by_state).concat();
     outputs.extend(entries_by_column(&q_lambda));
     specialisation.lower_to_program(&outputs)

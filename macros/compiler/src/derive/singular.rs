@@ -7,7 +7,7 @@ use crate::mechanics::{added_mass, crba, massless, regularity};
 use crate::mechanism::{Inertia, LinkId, Model, Motion};
 use crate::syntax::ROOT_JOINT;
 
-/// Help for a mechanism without inertia.
+/// Help text for a mechanism without inertia.
 const LEAVE_OUT: &str = "or omit the dynamics with `inertia = none`: frames, their Jacobians, constraints \
                          and outputs remain";
 
@@ -18,7 +18,7 @@ pub fn check_mass_matrix<'g>(
     mass: &crba::Matrix<'g>,
     cx: &mut Diagnostics,
 ) -> bool {
-    let loaded = massless::loaded_mass(model, joints, mass.clone());
+    let loaded = massless::augmented_mass(model, joints, mass.clone());
     let mut singular = regularity::singular_velocities(model, joints, &loaded);
     if singular.is_empty() {
         return true;
@@ -26,23 +26,23 @@ pub fn check_mass_matrix<'g>(
     if model.inertances.is_empty()
         && model.links.iter().all(|link| link.inertia == Inertia::zero(model.graph))
     {
-        report_nothing(model, singular[0], cx);
+        report_no_inertia(model, singular[0], cx);
         return false;
     }
-    if let Some((bare, rest)) = bare_base(model, joints, &singular) {
+    if let Some((bare, rest)) = massless_base(model, joints, &singular) {
         // An error that a base with mass would not remove is reported separately.
-        report_base(model, bare, cx);
+        report_massless_base(model, bare, cx);
         singular = rest;
     }
     if !singular.is_empty() {
-        report_velocities(model, &singular, cx);
+        report_massless_velocities(model, &singular, cx);
     }
     false
 }
 
 /// Returns true if the effective mass matrix is regular; otherwise reports that forces linear in
 /// accelerations cancel the inertia.
-pub fn check_effective<'g>(
+pub fn check_effective_mass<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
@@ -70,20 +70,24 @@ fn unit_mass_properties(graph: &Graph) -> Inertia<'_> {
 
 /// Returns a free link without mass, or without a moment of inertia about some axis, if more inertia of this
 /// link would leave fewer singular velocities. The remaining singular velocities are returned as well.
-fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) -> Option<(usize, Vec<usize>)> {
+fn massless_base<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    singular: &[usize],
+) -> Option<(usize, Vec<usize>)> {
     let is_free_link = |link: &usize| matches!(model.links[*link].motion, Motion::Free { .. });
     (0..model.links.len()).filter(is_free_link).find_map(|bare| {
         let mut with_mass = model.clone();
         with_mass.links[bare].inertia = unit_mass_properties(model.graph);
         let mass = crba::mass_matrix(&with_mass, joints);
-        let loaded = massless::loaded_mass(&with_mass, joints, mass);
+        let loaded = massless::augmented_mass(&with_mass, joints, mass);
         let rest = regularity::singular_velocities(&with_mass, joints, &loaded);
         (rest.len() < singular.len()).then_some((bare, rest))
     })
 }
 
 /// Reports that a mechanism has no inertia at all.
-fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
+fn report_no_inertia(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
     let place = &model.velocities[velocity].1;
     let (what, mend) = match place.file {
         Some(_) => ("no moving link has inertia", "add `<inertial>` elements to the file"),
@@ -92,8 +96,8 @@ fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
     cx.report_error(place.clone(), what).add_help(mend).add_help(LEAVE_OUT);
 }
 
-/// Reports a free base without mass or moments of inertia.
-fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
+/// Reports a free base link without mass or without moments of inertia.
+fn report_massless_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
     let Motion::Free { v, .. } = model.links[link].motion else { return };
     let place = &model.velocities[v.0].1;
     let body = model.frames.iter().find(|frame| frame.massive && frame.link == Some(LinkId(link)));
@@ -110,7 +114,7 @@ fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
 }
 
 /// Reports all velocities that move no inertia in one error, since a file may have many.
-fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
+fn report_massless_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
     const MAX_REPORTED: usize = 8;
     let place = &model.velocities[singular[0]].1;
     let names: Vec<&str> = singular.iter().map(|k| model.velocities[*k].0.as_str()).collect();
@@ -127,7 +131,7 @@ fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics
     diagnostic
         .add_help(format!("the mass matrix is singular: give mass or inertia to the bodies that {joints}"));
     if place.file.is_some() {
-        let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
+        let mut joints: Vec<&str> = singular.iter().map(|k| joint_of_velocity(model, *k)).collect();
         joints.dedup();
         // The root joint is not defined in the file.
         joints.retain(|joint| !joint.starts_with(ROOT_JOINT));
@@ -143,7 +147,7 @@ fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics
 
 /// Returns the name of a velocity's joint. The velocities of a joint with several degrees of freedom have the
 /// same place and different suffixes.
-fn joint_of<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
+fn joint_of_velocity<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
     let (name, place) = &model.velocities[velocity];
     let alone = model.velocities.iter().filter(|(_, other)| other.file == place.file).count() == 1;
     name.rsplit_once('.').filter(|_| !alone).map_or(name, |(joint, _)| joint)

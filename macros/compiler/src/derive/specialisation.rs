@@ -2,45 +2,45 @@
 //! function.
 
 use crate::expr::{Expr, Symbol};
-use crate::lower::{Program, lower_without, operation_count};
+use crate::lower::{Program, draft_without_hoisted, operation_count};
 use crate::mechanism::Quantity;
 
 /// Tolerance of the comparison of sizes before lowering: factoring sums may change the operation count by the
 /// first number of operations, plus one part in the second number.
 const SPREAD: (usize, usize) = (3, 100);
 
-/// Outputs of one of several variants of a function, with their size.
+/// Outputs of one candidate variant of a function, with their number of operations.
 pub struct Candidate<'g> {
-    /// Number of operations.
+    /// Number of operations of the candidate.
     pub size: usize,
-    /// Expressions of the outputs.
+    /// Output expressions of the candidate.
     pub outputs: Vec<Expr<'g>>,
 }
 
-/// Specialisation of a function's program to parameters that are known early.
+/// Specialisation of a function's program to parameters whose values are precomputed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Specialisation {
-    /// Without known parameters: the program computes all values.
+    /// No known parameters: the program computes all values.
     None,
-    /// Known parameters: values that depend only on parameters are computed beforehand.
+    /// Parameters are known: values that depend only on parameters are precomputed.
     ByParameters,
 }
 
 impl Specialisation {
-    /// Returns the program of these outputs under the specialisation.
+    /// Lowers outputs to a program under this specialisation.
     pub fn lower_to_program(self, outputs: &[Expr<'_>]) -> Program {
-        lower_without(outputs, &|s| self.is_precomputed_symbol(s))
+        draft_without_hoisted(outputs, &|s| self.is_precomputed_symbol(s))
     }
 
     /// Returns the program with the fewest operations among equivalent candidates; among equal operation
     /// counts, the one with the fewest instructions.
     pub fn cheapest_program<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Program {
-        self.cheapest_of(lists).1
+        self.cheapest_candidate(lists).1
     }
 
     /// Returns the program with the fewest operations among equivalent candidates, with the candidate's
     /// index.
-    pub fn cheapest_of<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
+    pub fn cheapest_candidate<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
         let all = promising_candidates(lists);
         let mut programs: Vec<(usize, Program)> =
             all.iter().map(|(k, list)| (*k, self.lower_to_program(list))).collect();
@@ -58,12 +58,12 @@ impl Specialisation {
         promising_candidates(lists).iter().map(|(k, list)| (*k, self.lower_to_program(list))).collect()
     }
 
-    /// Returns outputs together with their number of operations.
+    /// Returns the outputs as a candidate together with their number of operations.
     pub fn candidate_with_size(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {
         Candidate { size: operation_count(&outputs, &|s| self.is_precomputed_symbol(s)), outputs }
     }
 
-    /// Returns true for a symbol whose value is known beforehand.
+    /// Returns true for a symbol whose value is precomputed.
     pub fn is_precomputed_symbol(self, symbol: Symbol) -> bool {
         self == Specialisation::ByParameters
             && matches!(Quantity::from_symbol(symbol), Quantity::Parameter(_))

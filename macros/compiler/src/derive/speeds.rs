@@ -30,7 +30,7 @@ pub(super) fn unsupported_option(
              replace these rates: remove `routh` or the speeds",
         ));
     }
-    let of_speeds: Vec<Expr<'_>> = speeds.of_speeds().iter().flatten().copied().collect();
+    let of_speeds: Vec<Expr<'_>> = speeds.velocity_transformation().iter().flatten().copied().collect();
     let by_parameters = symbols_in(&of_speeds)
         .into_iter()
         .any(|s| matches!(Quantity::from_symbol(s), Quantity::Parameter(_)));
@@ -42,15 +42,19 @@ pub(super) fn unsupported_option(
 }
 
 impl<'g> Derivation<'_, 'g> {
-    /// Returns the outputs of a function that differs from that of a mechanism without speeds; `None` for
-    /// other functions.
-    pub(super) fn in_speeds(&self, speeds: &InSpeeds<'g>, declared: &Declared) -> Option<Vec<Expr<'g>>> {
+    /// Returns the outputs of a function that declared generalized speeds change; `None` for functions that
+    /// they do not change.
+    pub(super) fn outputs_in_speeds(
+        &self,
+        speeds: &InSpeeds<'g>,
+        declared: &Declared,
+    ) -> Option<Vec<Expr<'g>>> {
         let (native, joints) = (&speeds.native, self.joints);
         let scalars_in_speeds = |e: Vec<Expr<'g>>| Some(speeds.express_in_speeds(&e));
         match declared.id {
             Id::RatesOfSpeeds => Some(speeds.rates.clone()),
-            Id::SpeedsOfRates => Some(speeds.speeds_of(&mechanics::velocity_symbols(native))),
-            Id::RateMatrix => Some(entries_by_column(speeds.of_speeds())),
+            Id::SpeedsOfRates => Some(speeds.speeds_of_velocities(&mechanics::velocity_symbols(native))),
+            Id::RateMatrix => Some(entries_by_column(speeds.velocity_transformation())),
             Id::SpeedMatrix => Some(entries_by_column(speeds.of_rates())),
             Id::RateChanges => Some(entries_by_column(&speeds.rate_changes())),
             Id::RateAccelerations => Some(speeds.accelerations.clone()),
@@ -73,10 +77,12 @@ impl<'g> Derivation<'_, 'g> {
             }
             Id::JointTorqueRegressor => self.regressor_in_speeds(speeds, true),
             Id::BaseRegressor => self.regressor_in_speeds(speeds, false),
-            Id::InverseDynamicsByParameters => Some(self.by_parameters(&self.inverse(speeds)).concat()),
+            Id::InverseDynamicsByParameters => {
+                Some(self.parameter_derivatives(&self.inverse(speeds)).concat())
+            }
             Id::ForwardDynamicsByParameters => Some(self.accelerations_by_parameters(speeds)),
             Id::GeneralizedForcesByParameters => {
-                Some(self.by_parameters(&self.input_forces(speeds)).concat())
+                Some(self.parameter_derivatives(&self.input_forces(speeds)).concat())
             }
             _ => self.derivatives_in_speeds(speeds, declared.id),
         }
@@ -87,7 +93,7 @@ impl<'g> Derivation<'_, 'g> {
         let v = mechanics::velocity_symbols(native);
         let forces_by_columns = |e: &[Expr<'g>]| force_columns(&symbolic::force_derivatives(model, e));
         match id {
-            Id::MassMatrixInverse => Some(self.inverse_of(speeds, false)),
+            Id::MassMatrixInverse => Some(self.inverse_mass_matrix(speeds, false)),
             Id::CoriolisMatrix => {
                 let (coriolis, mass) =
                     (analytic::coriolis_matrix(native, joints, &v, 1), crba::mass_matrix(native, joints));
@@ -96,7 +102,7 @@ impl<'g> Derivation<'_, 'g> {
             Id::InverseDynamicsDerivatives => Some(forces_by_columns(&self.inverse(speeds))),
             Id::GeneralizedMomentumDerivatives => {
                 let p = speeds.transform_forces(&momentum::generalized_momentum(native, joints, &v));
-                Some(entries_by_column(&symbolic::by_configuration(model, &p)))
+                Some(entries_by_column(&symbolic::configuration_derivatives(model, &p)))
             }
             Id::MomentumRateDerivatives => {
                 let (rate, p) = (
@@ -108,8 +114,8 @@ impl<'g> Derivation<'_, 'g> {
             Id::ForwardDynamicsDerivatives => {
                 let forces = symbolic::force_derivatives(model, &self.inverse(speeds));
                 let accelerations = self.free_accelerations(speeds);
-                let forces = self.at_accelerations(force_columns(&forces), &accelerations);
-                Some([forces, self.inverse_of(speeds, true), accelerations].concat())
+                let forces = self.substitute_accelerations(force_columns(&forces), &accelerations);
+                Some([forces, self.inverse_mass_matrix(speeds, true), accelerations].concat())
             }
             Id::Linearize => Some(self.linearized_outputs(speeds)),
             Id::InputDerivatives => {
@@ -144,11 +150,11 @@ impl<'g> Derivation<'_, 'g> {
     }
 
     /// Returns the inverse of the mass matrix, or of the effective mass matrix, column by column.
-    fn inverse_of(&self, speeds: &InSpeeds<'g>, effective: bool) -> Vec<Expr<'g>> {
-        entries_by_column(&speeds.inverse_metric(&self.mass_factor(speeds, effective).inverse()))
+    fn inverse_mass_matrix(&self, speeds: &InSpeeds<'g>, effective: bool) -> Vec<Expr<'g>> {
+        entries_by_column(&speeds.inverse_mass_matrix(&self.mass_factor(speeds, effective).inverse()))
     }
 
-    /// Returns the accelerations under forces that are symbols.
+    /// Returns the accelerations under symbolic forces, without constraints.
     fn free_accelerations(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let native = &speeds.native;
         let bias = rnea::inverse_dynamics(native, self.joints, &mechanics::velocity_symbols(native), None);
@@ -164,7 +170,7 @@ impl<'g> Derivation<'_, 'g> {
     }
 
     /// Returns the expressions with the acceleration symbols replaced by `a`.
-    fn at_accelerations(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    fn substitute_accelerations(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
         replace_all(&e, &|s| match Quantity::from_symbol(s) {
             Quantity::Acceleration(k) => a.get(k).copied(),
             _ => None,
@@ -182,8 +188,8 @@ impl<'g> Derivation<'_, 'g> {
         let by_state = symbolic::force_derivatives(model, &tau);
         subtract_matrix(&mut forces.by_q, &by_state.by_q);
         subtract_matrix(&mut forces.by_v, &by_state.by_v);
-        let mut outputs = self.at_accelerations(force_columns(&forces), &accelerations);
-        outputs.extend(self.inverse_of(speeds, true));
+        let mut outputs = self.substitute_accelerations(force_columns(&forces), &accelerations);
+        outputs.extend(self.inverse_mass_matrix(speeds, true));
         outputs.extend(entries_by_column(&symbolic::by_input(model, &tau)));
         outputs.extend(entries_by_column(&speeds.variational_matrix()));
         outputs
@@ -224,7 +230,7 @@ impl<'g> Derivation<'_, 'g> {
                 // Second derivatives of the constraints, expressed in speeds, with respect to joint
                 // displacements.
                 let constraints = speeds.model.constraints.clone();
-                let found = hessian::of_constraints(&Model { constraints, ..native.clone() });
+                let found = hessian::hessian_of_constraints(&Model { constraints, ..native.clone() });
                 let mut outputs = second::state_hessian_blocks(&project_hessian(found.state)).concat();
                 outputs.extend(entries_by_column(&speeds.project(&found.q_lambda)));
                 outputs
@@ -244,15 +250,18 @@ impl<'g> Derivation<'_, 'g> {
                 .concat()
             }
             _ => {
-                let found =
-                    hessian::of_power(native, &self.inverse(speeds), &hessian::factor_symbols(native));
+                let found = hessian::hessian_of_power(
+                    native,
+                    &self.inverse(speeds),
+                    &hessian::factor_symbols(native),
+                );
                 second::state_hessian_blocks(&project_hessian(found)).concat()
             }
         }
     }
 
     /// Returns the derivatives with respect to all parameters, a list for each parameter.
-    fn by_parameters(&self, e: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
+    fn parameter_derivatives(&self, e: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
         let (graph, count) = (self.model.graph, self.model.parameters.len());
         let derivative_column = |k| {
             let mut by = Derivative::with_respect_to(Quantity::Parameter(k).symbol(), graph);
@@ -264,7 +273,7 @@ impl<'g> Derivation<'_, 'g> {
     /// Returns `∂u̇/∂p = −M⁻¹ ∂τ/∂p` at the accelerations under the forces.
     fn accelerations_by_parameters(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (n, a) = (self.model.nv(), self.free_accelerations(speeds));
-        let inverse = self.inverse_of(speeds, true);
+        let inverse = self.inverse_mass_matrix(speeds, true);
         let accelerations_from_forces = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
             let acceleration_of_row = |i: usize| {
                 let terms = (0..n).map(|j| inverse[j * n + i] * forces[j]);
@@ -272,10 +281,10 @@ impl<'g> Derivation<'_, 'g> {
             };
             (0..n).map(acceleration_of_row).collect()
         };
-        let changes = self.by_parameters(&self.inverse(speeds));
+        let changes = self.parameter_derivatives(&self.inverse(speeds));
         changes
             .into_iter()
-            .flat_map(|change| accelerations_from_forces(&self.at_accelerations(change, &a)))
+            .flat_map(|change| accelerations_from_forces(&self.substitute_accelerations(change, &a)))
             .collect()
     }
 
@@ -294,21 +303,22 @@ impl<'g> Derivation<'_, 'g> {
     fn canonical_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
         let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
-        let of_joints = speeds.with_momenta(&momenta);
-        let in_momenta = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
-            let velocity =
-                speeds.speeds_of(&speeds.with_momenta(&self.hamilton_outputs(|h| h.velocity.clone())));
+        let of_joints = speeds.replace_momenta(&momenta);
+        let replace_velocities_by_momenta = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
+            let velocity = speeds.speeds_of_velocities(
+                &speeds.replace_momenta(&self.hamilton_outputs(|h| h.velocity.clone())),
+            );
             replace_all(&e, &|s| match Quantity::from_symbol(s) {
                 Quantity::Velocity(k) => velocity.get(k).copied(),
                 _ => None,
             })
         };
         Some(match id {
-            Id::Hamiltonian => speeds.with_momenta(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => in_momenta(mechanics::velocity_symbols(self.model)),
+            Id::Hamiltonian => speeds.replace_momenta(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => replace_velocities_by_momenta(mechanics::velocity_symbols(self.model)),
             _ => {
-                let rate = speeds.with_momenta(&self.hamilton_outputs(|h| h.momentum_rate.clone()));
-                in_momenta(speeds.momentum_rate_of_written(&rate, &of_joints))
+                let rate = speeds.replace_momenta(&self.hamilton_outputs(|h| h.momentum_rate.clone()));
+                replace_velocities_by_momenta(speeds.momentum_rate_of_written(&rate, &of_joints))
             }
         })
     }

@@ -8,7 +8,7 @@ use crate::derive::Function;
 use crate::syntax::Word;
 use std::fmt::Write;
 
-/// Returns everything that a mechanism with these functions and outputs lacks.
+/// Returns all functions, constants and traits that a mechanism with these functions and outputs lacks.
 pub fn absent_items(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {
     let in_lanes = |name: &str| format!("{name}_lanes");
     let absent_for_need = |(need, rows): (Need, Vec<&Row>)| {
@@ -89,7 +89,7 @@ impl Absent {
     }
 }
 
-/// Writes declarations of everything that the struct lacks.
+/// Writes declarations of all functions and traits that the struct lacks, so that calls get an explanation.
 pub fn write_absent(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let name = i.shell.ident.to_string();
     for absent in &i.absent {
@@ -104,8 +104,8 @@ pub fn write_absent_of_prepared(out: &mut String, name: &str, i: &Interface<'_>,
     }
 }
 
-/// Writes declarations of missing functions and constants. They do not conflict with other functions of the
-/// same name, because rustc sees that their bound does not hold.
+/// Writes declarations of missing functions and constants. Their unsatisfied trait bounds prevent conflicts
+/// with other functions of the same names.
 fn write_one(out: &mut String, name: &str, absent: &Absent, head: &Head) {
     if absent.functions.is_empty() && absent.constants.is_empty() {
         return;

@@ -4,7 +4,7 @@
 use crate::lower::Angle;
 use std::fmt::Write;
 
-/// Number of lanes of the vectors in which angles of a program with lanes are evaluated.
+/// Number of SIMD lanes of the vectors in which a program with lanes evaluates angles.
 pub const WIDTH: usize = 4;
 
 /// Number of vectors of angles that one call evaluates together. The vectors share the constants and one test
@@ -15,19 +15,19 @@ const TOGETHER: usize = 4;
 /// each.
 #[derive(Default)]
 pub struct Calls {
-    /// Numbers of the values that the calls compute.
+    /// Numbers of the program values that the calls of sine and cosine compute.
     pub names: Vec<usize>,
-    /// Text of each value.
+    /// Text of each computed value.
     results: Vec<String>,
     /// Text of each scalar or vector, and the numbers of the bindings of its results.
     arguments: Vec<(String, Vec<usize>)>,
     /// Scalars that do not fill a vector yet, with the numbers of their bindings.
     loose: Vec<(String, usize)>,
-    /// True if angles are combined to vectors.
+    /// True if angles are combined to SIMD vectors.
     in_vectors: bool,
     /// True if a call of scalars is padded to the width of vector registers.
     padded: bool,
-    /// Number of names bound so far.
+    /// Number of variables bound so far.
     bound: usize,
 }
 
@@ -38,7 +38,7 @@ impl Calls {
         Calls { in_vectors, padded, ..Calls::default() }
     }
 
-    /// Adds an angle, given by the texts of its lanes or the text of a whole vector.
+    /// Adds an angle to the calls, given by the texts of its lanes or the text of a whole vector.
     pub fn add(&mut self, angle: &Angle, texts: Vec<String>, is_vector: bool) {
         let first = self.bound;
         self.bound += texts.len();
@@ -79,7 +79,7 @@ impl Calls {
         (self.names, text)
     }
 
-    /// Writes a call for every [`TOGETHER`] vectors.
+    /// Writes a call of sine and cosine for every [`TOGETHER`] vectors.
     fn write_vectors(&mut self, text: &mut String, zero: &str) {
         while !self.loose.is_empty() {
             self.bound += 1;
@@ -103,8 +103,8 @@ impl Calls {
         }
     }
 
-    /// Writes one call, padded to full registers. For several states it writes a call for every [`TOGETHER`]
-    /// angles, since each angle fills registers by itself.
+    /// Writes one call for scalar angles, padded to full registers; for several states, one call for every
+    /// [`TOGETHER`] angles.
     fn write_numbers(&mut self, text: &mut String) {
         if self.arguments.is_empty() {
             return;

@@ -112,7 +112,7 @@ impl Writer<'_> {
         });
     }
 
-    /// Returns the arguments on which the angles depend.
+    /// Returns the arguments of the function on which the angles depend.
     fn arguments_of(&self, angles: &Angles) -> Vec<Argument> {
         let mut symbols = Vec::new();
         let mut note = |o: Operand| match o {

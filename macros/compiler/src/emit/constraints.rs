@@ -7,7 +7,7 @@ use crate::derive::Function;
 use crate::mechanism::{Freedom, Model};
 use std::fmt::Write;
 
-/// Scalar constraints of a mechanism, for the emitter.
+/// Scalar constraints of a mechanism, as data for code generation.
 #[derive(Clone, Debug, Default)]
 pub struct Constraints {
     /// Names of the constraints; holonomic constraints come first.
@@ -18,7 +18,7 @@ pub struct Constraints {
     pub groups: Vec<usize>,
     /// Names of rows of joints and constraints that are omitted because they depend on the others.
     pub redundant: Vec<String>,
-    /// Numbers of independent coordinates and velocities.
+    /// Numbers of independent coordinates and velocities of the constrained mechanism.
     pub freedom: Freedom,
     /// Indices of the constraints whose multipliers are normal forces of sliding contacts with friction.
     pub slipping: Vec<usize>,
@@ -79,17 +79,17 @@ impl Constraints {
 
 /// Source text of the types and arguments of constrained functions.
 struct Words {
-    /// Type of a configuration.
+    /// Rust type of a configuration.
     q: String,
-    /// Type of a velocity.
+    /// Rust type of a velocity.
     v: String,
-    /// Type of the residuals of the holonomic constraints.
+    /// Rust type of the residuals of the holonomic constraints.
     residuals: String,
-    /// Type of the multipliers of all constraints.
+    /// Rust type of the multipliers of all constraints.
     multipliers: String,
     /// Parameter `t: f64, ` if functions take time, otherwise empty.
     t: String,
-    /// Argument `t, ` if functions take time, otherwise empty.
+    /// Call argument `t, ` if functions take time, otherwise empty.
     pass: &'static str,
     /// Time argument of trait functions: `t`, or zero if functions do not take time.
     any: String,
@@ -386,7 +386,7 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     )
 }
 
-/// Writes the derivatives of constrained motion and the linearisation.
+/// Writes the functions for derivatives of constrained motion and for its linearisation.
 fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, t, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc, nu, nh) = (s.scalar.scalar_name(), s.nv, c.names.len(), s.nu, c.holonomic);
@@ -459,7 +459,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     );
 }
 
-/// Returns the function of multiplier derivatives, or nothing if these are not available.
+/// Returns the generated function for derivatives of multipliers, or an empty text if it is not available.
 fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
     if !are_differentiable(c) {
         return String::new();

@@ -1,4 +1,4 @@
-//! Code of mechanisms with unilateral contacts.
+//! Code generation for mechanisms with unilateral contacts.
 
 use super::interface::Interface;
 use super::signature::Signature;
@@ -8,7 +8,7 @@ use crate::expr::replace::{replace_all, symbols_in};
 use crate::mechanism::{Contact, Model, Quantity};
 use std::fmt::Write;
 
-/// Unilateral contact, for the emitter.
+/// Unilateral contact, as data for code generation.
 #[derive(Clone, Debug)]
 pub struct UnilateralContact {
     /// Name of the contact.
@@ -18,7 +18,7 @@ pub struct UnilateralContact {
     rates: usize,
     /// Index of the contact that supplies the normal force, if this is a friction moment.
     pressed_by: Option<usize>,
-    /// True if the gap is an angle.
+    /// True if the gap of the contact is an angle.
     turns: bool,
     /// True if the coefficient of restitution is a ratio of impulses (Poisson), false if it is a ratio of
     /// velocities (Newton).
@@ -106,7 +106,7 @@ pub fn write_constants(out: &mut String, contacts: &[UnilateralContact]) {
     );
 }
 
-/// Writes the items of the trait `Contacts`.
+/// Writes the functions of the trait `Contacts`.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let ContactSizes { count, rates: rows } = i.facts.contacts;
     let (scalar, q, v, nv) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.nv);

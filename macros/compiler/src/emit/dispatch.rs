@@ -19,21 +19,21 @@ const LARGEST: usize = 5000;
 pub struct Bodies {
     /// True if functions may select their arithmetic at run time.
     wanted: bool,
-    /// Bodies that have been added so far.
+    /// Function bodies that have been added so far.
     list: Vec<Body>,
 }
 
-/// Body of a function, generic over the arithmetic.
+/// Body of a large function, generic over the arithmetic.
 struct Body {
     /// Types of the arguments, as the text of a tuple.
     types: String,
     /// Names of the arguments, as the text of a tuple.
     names: String,
-    /// Type of the result.
+    /// Rust type of the function's result.
     result: String,
     /// True for a function of several states in SIMD lanes.
     simd: bool,
-    /// Statements of the body.
+    /// Statements of the function body.
     text: String,
     /// Statements of the body for debug builds, if it is separate.
     debug: Option<String>,
@@ -48,7 +48,7 @@ fn is_large(f: &Function) -> bool {
 }
 
 impl Bodies {
-    /// Returns an empty list of bodies, which stays empty if `wanted` is false.
+    /// Returns an empty list of function bodies, which stays empty if `wanted` is false.
     pub fn new(wanted: bool) -> Bodies {
         Bodies { wanted, list: Vec::new() }
     }

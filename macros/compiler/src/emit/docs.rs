@@ -12,7 +12,7 @@ use crate::mechanism::{Freedom, Quantity};
 use crate::syntax::Printed;
 use std::fmt::Write;
 
-/// Part of the documentation, with the medium that shows it.
+/// Part of the struct's documentation, with the medium that shows it.
 pub enum Part {
     /// Text shown on rustdoc pages and in editors.
     Everywhere(String),

@@ -58,10 +58,10 @@ pub fn write_frames(
     out.push_str("};\n");
 }
 
-/// Methods of the private trait of the steps.
+/// Methods of the private trait for the kinematic steps of frames.
 #[derive(Default)]
 struct StepMethods {
-    /// Declarations of the methods, for the trait.
+    /// Declarations of the methods, for the trait's definition.
     declarations: String,
     /// Definitions of the methods, for the implementation of the trait.
     methods: String,

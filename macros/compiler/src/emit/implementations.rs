@@ -91,7 +91,7 @@ fn begin_with(
         writeln!(out, "{ALLOW}impl{generics} ::linkwork::{of}<{sizes}> for {name}{arguments} {bounds} {{");
 }
 
-/// Writes the implementations of the traits of contacts.
+/// Writes the implementations of the traits for contacts.
 fn write_contacts(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     let ContactSizes { count, rates } = i.facts.contacts;
     begin_with(head, out, name, "Contacts", s, [count, rates]);
@@ -104,7 +104,7 @@ fn write_contacts(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, 
     }
 }
 
-/// Writes the implementations of the traits of constraints.
+/// Writes the implementations of the traits for constraints.
 fn write_constraints(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     let counts = [i.constraints.holonomic, i.constraints.names.len()];
     begin_with(head, out, name, "Constrained", s, counts);
@@ -171,7 +171,7 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     constraints::write_forward_dynamics(out, &i.constraints, s);
 }
 
-/// Writes the properties and functions that integrators use.
+/// Writes the trait items that integrators use.
 fn write_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.facts.speeds {
         out.push_str("const SPEEDS: bool = true;\n");

@@ -9,10 +9,10 @@ use crate::mechanism::Quantity;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Builds for which a function body is written.
+/// Kind of build (optimised or debug) for which a function body is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Build {
-    /// Optimised builds, and all builds of a function without a separate debug body.
+    /// Body for optimised builds, and for all builds of a function without a separate debug body.
     Optimised,
     /// Builds with debug assertions. Without optimisation a call takes longer than the operation that it
     /// computes, and every passed value takes stack of its own. The body therefore uses only scalars, and
@@ -24,11 +24,11 @@ pub enum Build {
 pub struct Writer<'a> {
     /// Build (debug, release or both) for which the body is written.
     pub build: Build,
-    /// Program of the body.
+    /// Program whose instructions are written.
     pub program: &'a Program,
-    /// Number of lanes of each value; one for a scalar.
+    /// Number of SIMD lanes of each value; one for a scalar.
     pub lanes: Vec<usize>,
-    /// Spelling of scalars.
+    /// Spelling of scalar types and operations.
     pub scalar: &'a ScalarSpelling,
     /// Arguments of the function, and results of the functions that it calls.
     pub arguments: Vec<Argument>,
@@ -46,13 +46,13 @@ pub struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Returns the vector of the inputs of a gather.
+    /// Returns the expression of a SIMD vector that is gathered from inputs.
     pub fn gathered_vector(&self, gather: &[Symbol]) -> String {
         let symbols: Vec<String> = gather.iter().map(|s| self.symbol_text(*s)).collect();
         format!("Ops::lanes([{}])", symbols.join(", "))
     }
 
-    /// Returns the number of lanes of an operand.
+    /// Returns the number of SIMD lanes of an operand.
     pub fn lane_count(&self, o: Operand) -> usize {
         match o {
             Operand::Const(_) | Operand::Symbol(_) => 1,

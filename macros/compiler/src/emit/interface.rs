@@ -10,11 +10,11 @@ use crate::mechanism::{Diagram, Units};
 use crate::syntax::{ScalarType, Shell};
 use quote::ToTokens;
 
-/// Names and types of the public interface.
+/// Names and types of the public interface of a mechanism.
 pub struct Interface<'a> {
-    /// Declaration of the struct.
+    /// Declaration of the mechanism's struct.
     pub shell: &'a Shell,
-    /// Scalar type.
+    /// Scalar type of the mechanism.
     pub scalar: ScalarType,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
@@ -22,27 +22,27 @@ pub struct Interface<'a> {
     pub velocities: Vec<String>,
     /// Name of every entry of `u`.
     pub inputs: Vec<String>,
-    /// Names of the frames.
+    /// Names of the mechanism's named frames.
     pub frames: Vec<String>,
-    /// One line for each joint with the bodies that it connects.
+    /// Documentation lines of the joints, each with the bodies that the joint connects.
     pub structure: Vec<String>,
-    /// Constraints of the mechanism.
+    /// Constraints of the mechanism, as data for code generation.
     pub constraints: Constraints,
     /// Unilateral contacts.
     pub contacts: Vec<UnilateralContact>,
     /// Limits of the coordinates.
     pub limits: Vec<CoordinateLimits>,
-    /// Conditions on values that depend on parameters.
+    /// Conditions that values of the parameters must satisfy.
     pub figures: Vec<ParameterCondition>,
     /// States of first order, each with its index among the parameters.
     pub states: Vec<(String, usize)>,
-    /// Names of the outputs.
+    /// Names of the mechanism's outputs.
     pub outputs: Vec<String>,
     /// Free-body diagrams, with the names of their outputs.
     pub diagrams: Vec<(String, Diagram)>,
     /// Units of coordinates, inputs, outputs, constraints and parameters.
     pub units: Units,
-    /// Imported files: if one changes, the crate is compiled again.
+    /// Paths of imported files, whose changes cause a new compilation of the crate.
     pub files: Vec<String>,
     /// Facts of the mechanism on which signatures depend.
     pub facts: Facts,
@@ -61,17 +61,17 @@ pub struct Interface<'a> {
 pub struct Absent {
     /// Trait of the runtime whose error message explains the reason.
     pub reason: &'static str,
-    /// Names of the functions.
+    /// Names of the generated functions.
     pub functions: Vec<String>,
-    /// Names of the constants.
+    /// Names of the generated constants.
     pub constants: Vec<&'static str>,
 }
 
-/// Attributes of the generated implementations.
+/// Lint attributes of the generated implementations.
 pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_case, clippy::all, \
                          clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
-/// Generics of the struct's implementations, as text.
+/// Generics of the struct's implementations, as source text.
 pub struct Head {
     /// Generic parameters with their bounds: `<T: …>`.
     pub generics: String,

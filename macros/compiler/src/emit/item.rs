@@ -27,7 +27,7 @@ use std::fmt::Write;
 /// individually.
 #[derive(Debug, Default)]
 pub struct Emitted {
-    /// Tokens of the struct, with documentation and file dependencies.
+    /// Tokens of the struct, with its documentation and its dependencies on imported files.
     pub tokens: TokenStream,
     /// Implementations of the struct's functions and of the runtime's traits.
     pub text: String,
@@ -268,7 +268,7 @@ fn with_runtime(text: String, shell: &Shell) -> String {
     }
 }
 
-/// Returns the struct with its implementations, without the frames.
+/// Returns the code of the struct with its implementations, without frames.
 fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, docs: &[Part]) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, tables, elements, runtime: path, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();

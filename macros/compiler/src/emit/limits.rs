@@ -1,4 +1,4 @@
-//! Code of the limits of the coordinates.
+//! Code generation for the limits of coordinates.
 
 use super::signature::Signature;
 use crate::catalogue::Shape;
@@ -36,7 +36,7 @@ impl CoordinateLimits {
         model.limits.iter().map(&mut place).collect()
     }
 
-    /// Returns the index of the value of a bound.
+    /// Returns the index of a bound among the limit values; `None` if the bound is absent.
     fn index(&self, which: usize) -> Option<usize> {
         self.bounds.get(which).copied().flatten().map(|(k, _)| k)
     }

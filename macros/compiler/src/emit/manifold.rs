@@ -1,4 +1,4 @@
-//! Code of the functions on the configuration manifold.
+//! Code generation for functions on the configuration manifold.
 
 use super::signature::Signature;
 use crate::mechanism::Chart;
@@ -102,17 +102,17 @@ fn write_translation(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'
     out.push_str("}\n");
 }
 
-/// Function on the configuration manifold, for the emitter.
+/// Function on the configuration manifold, as data for code generation.
 struct ManifoldFunction {
     /// Name of the function.
     name: &'static str,
-    /// Documentation of the function.
+    /// Documentation of the generated function.
     about: &'static str,
-    /// Parameters after `&self`, and the result type.
+    /// Parameters of the function after `&self`, and its result type.
     signature: String,
-    /// Names and lengths of the arguments.
+    /// Names and lengths of the function's arguments.
     arguments: [(&'static str, usize); 2],
-    /// Length of the result.
+    /// Length of the function's result.
     result: usize,
 }
 

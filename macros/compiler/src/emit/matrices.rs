@@ -10,7 +10,7 @@ const RUNTIME: &str = "::linkwork::__private";
 /// Beginning of the expression that constructs a matrix from its columns.
 const STORAGE: &str = "::linkwork::nalgebra::SMatrix::from_array_storage(::linkwork::nalgebra::ArrayStorage";
 
-/// Empty list of columns to multiply by the inverse.
+/// Source text for an empty list of columns that the inverse multiplies.
 const NOTHING: &str = "&mut []";
 
 /// Returns the end of a function with matrix arguments: the code after the outputs are stored in the
@@ -161,15 +161,15 @@ type Span = (usize, usize);
 struct TrailingRows<'a> {
     /// Index of the first output that belongs to the factored form.
     first: usize,
-    /// Number of rows.
+    /// Number of rows of the matrix.
     rows: usize,
-    /// Number of outputs per row.
+    /// Number of program outputs in each row.
     width: usize,
     outputs: &'a Outputs<'a>,
 }
 
 impl TrailingRows<'_> {
-    /// Returns the indices of the outputs of a row.
+    /// Returns the indices of the outputs in a row of the matrix.
     fn range_of_row(&self, row: usize) -> std::ops::Range<usize> {
         self.first + row * self.width..self.first + (row + 1) * self.width
     }
@@ -322,11 +322,11 @@ fn tiling_types(rows: impl Fn(bool) -> String) -> String {
     format!("({}, {})", format_tile_type(true), format_tile_type(false))
 }
 
-/// Run of neighbouring columns of a matrix.
+/// Run of neighbouring columns with the same nonzero rows.
 struct Run {
     /// Half-open range of the columns.
     columns: (usize, usize),
-    /// Rows that are nonzero in at least one of the columns.
+    /// Indices of rows that are nonzero in at least one of the columns.
     rows: Vec<usize>,
 }
 

@@ -10,19 +10,19 @@ use std::fmt::Write;
 /// Outputs of a mechanism that are functions of state, accelerations and inputs, with the type for which the
 /// traits are implemented.
 struct Measurements<'a> {
-    /// Name of the mechanism's type.
+    /// Name of the mechanism's generated type.
     name: &'a str,
     /// Generated functions of the outputs.
     outputs: Vec<&'a Function>,
-    /// Total number of entries of all outputs.
+    /// Total number of entries of all outputs together.
     count: usize,
-    /// Generics of the implementations.
+    /// Generic parameters of the implementations.
     head: Head,
-    /// Interface of the mechanism.
+    /// Public interface of the mechanism.
     i: &'a Interface<'a>,
-    /// Signatures of the functions.
+    /// Signature helper for the generated functions.
     s: &'a Signature<'a>,
-    /// Parameters of the trait functions.
+    /// Parameter list of the trait functions, as source text.
     parameters: String,
 }
 

@@ -3,42 +3,42 @@
 use crate::catalogue::Record;
 use std::fmt::Write;
 
-/// Binding of a `let`, or statements that bind nothing.
+/// Generated statement: a `let` binding, or statements that bind nothing.
 pub struct Statement {
-    /// Values that the left side binds.
+    /// Numbers of the values that the left side binds.
     pub names: Vec<usize>,
-    /// Left side; empty if nothing is bound.
+    /// Pattern on the left side of the `let`; empty if nothing is bound.
     pub pattern: String,
-    /// Right side.
+    /// Right side of the `let`, as source text.
     pub text: String,
-    /// Values that the right side names.
+    /// Numbers of the values that occur in the right side.
     pub needs: Vec<usize>,
 }
 
 /// Precedence of the outermost operation of an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Sum or difference.
+    /// Expression whose outermost operation is a sum or difference.
     #[default]
     Sum,
-    /// Product, quotient or negative.
+    /// Expression whose outermost operation is a product, quotient or negation.
     Product,
     /// Expression that needs no parentheses.
     Whole,
 }
 
-/// Text of a value that is not bound.
+/// Source text of a value that has no variable of its own.
 #[derive(Clone, Default)]
 pub struct Piece {
-    /// Text of the expression.
+    /// Source text of the expression.
     pub text: String,
-    /// Values whose names occur in the expression.
+    /// Numbers of the values whose names occur in the expression.
     pub needs: Vec<usize>,
     /// Precedence, which determines whether parentheses are needed.
     pub level: Level,
 }
 
-/// Outputs of a program as source text.
+/// Outputs of a program as Rust source text.
 pub struct Outputs<'a> {
     /// Expressions of the outputs.
     pub pieces: &'a [Piece],
@@ -47,12 +47,12 @@ pub struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// Returns an array of a range of outputs.
+    /// Returns a Rust array of a range of outputs.
     pub fn array_of_outputs(&self, range: std::ops::Range<usize>) -> String {
         array_expression(self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect())
     }
 
-    /// Returns an array of columns, starting at output `first`.
+    /// Returns a Rust array of columns of outputs, starting at output `first`.
     fn array_of_columns(&self, first: usize, rows: usize, columns: usize) -> String {
         let columns: Vec<String> =
             (0..columns).map(|k| self.array_of_outputs(first + k * rows..first + (k + 1) * rows)).collect();

@@ -21,7 +21,7 @@ use std::fmt::Write;
 /// that failed to compile.
 #[derive(Default)]
 pub struct Content<'a> {
-    /// Program of the stored values.
+    /// Program of the precomputed values that the prepared struct stores.
     pub numbers: Option<&'a Program>,
     /// Coordinate charts of the configuration space.
     pub charts: Option<&'a [Chart]>,

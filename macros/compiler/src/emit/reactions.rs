@@ -142,7 +142,7 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
     }
 }
 
-/// Returns the type of a free-body diagram.
+/// Returns the Rust type of a free-body diagram.
 fn diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
     format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.scalar_name(), diagram.actions.len())
 }

@@ -1,4 +1,4 @@
-//! Spelling of scalars in generated code, by their type.
+//! Spelling of scalar types and values in generated code.
 
 use crate::syntax::ScalarType;
 
@@ -25,7 +25,7 @@ impl ScalarSpelling {
         ScalarSpelling { lanes, ..self.clone() }
     }
 
-    /// Returns the type of the scalar in one lane.
+    /// Returns the Rust type of the scalar in one SIMD lane.
     pub fn one(&self) -> &str {
         match &self.scalar {
             ScalarType::F64 => "f64",
@@ -69,7 +69,7 @@ impl ScalarSpelling {
         self.broadcast_number(format!("self.{}", self.parameters[k]))
     }
 
-    /// Returns the expression of a constant.
+    /// Returns the Rust expression of a constant.
     pub fn constant_expression(&self, c: f64) -> String {
         self.broadcast_number(match &self.scalar {
             ScalarType::Generic(name) => format!("constant::<{name}>({c:?})"),

@@ -5,7 +5,7 @@ use super::signature::Signature;
 use crate::catalogue::{Argument, Shape};
 use std::fmt::Write;
 
-/// Writes the implementation for the type `name`, if it has these derivatives.
+/// Writes the trait implementation for the type `name`, if the mechanism has these derivatives.
 pub fn write_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let facts = &i.facts;

@@ -28,7 +28,7 @@ pub fn filled_matrix_count(f: &Function) -> Option<usize> {
 /// Dimensions and names that occur in the signatures of a mechanism.
 #[derive(Clone, Copy)]
 pub struct Signature<'a> {
-    /// Spelling of scalars.
+    /// Spelling of scalar types and operations.
     pub scalar: &'a ScalarSpelling,
     /// Number of coordinates, `NQ`.
     pub nq: usize,
@@ -41,7 +41,7 @@ pub struct Signature<'a> {
 }
 
 impl Signature<'_> {
-    /// Returns the type of a function's result.
+    /// Returns the Rust type of a function's result.
     pub fn result_type(&self, f: &Function) -> String {
         match f.shape {
             Shape::Accelerated(n) => self.vector_type(n),
@@ -53,7 +53,7 @@ impl Signature<'_> {
         }
     }
 
-    /// Returns the type of an argument.
+    /// Returns the Rust type of a function argument.
     pub fn argument_type(&self, a: Argument) -> String {
         let n = match a {
             Argument::T => return self.scalar.scalar_name().to_string(),
@@ -68,12 +68,12 @@ impl Signature<'_> {
         format!("&{}", self.vector_type(n))
     }
 
-    /// Returns the type of a column vector.
+    /// Returns the Rust type of a column vector with `n` entries.
     pub fn vector_type(&self, n: usize) -> String {
         format!("::linkwork::nalgebra::SVector<{}, {n}>", self.scalar.scalar_name())
     }
 
-    /// Returns the type of a result of this shape.
+    /// Returns the Rust type of a result of this shape.
     pub fn shape_type(&self, shape: Shape) -> String {
         let s = self.scalar.scalar_name();
         match shape {
@@ -101,7 +101,7 @@ impl Signature<'_> {
         }
     }
 
-    /// Returns the arguments, preceded by time if functions take it.
+    /// Returns the arguments of a function, preceded by time if functions take time.
     pub fn with_time_argument(&self, arguments: &[Argument]) -> Vec<Argument> {
         self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }

@@ -78,7 +78,7 @@ fn turbofish(v: &str) -> String {
     v.replacen("SVector<", "SVector::<", 1)
 }
 
-/// Returns the expression of a NaN.
+/// Returns the Rust expression of a NaN.
 fn nan_expression(s: &Signature<'_>) -> String {
     format!("::linkwork::__private::constant::<{}>(f64::NAN)", s.scalar.scalar_name())
 }

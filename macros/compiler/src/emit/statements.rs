@@ -4,7 +4,7 @@ use super::pieces::{Piece, Statement};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Maximum number of bindings in one block of a function body.
+/// Maximum number of variable bindings in one block of a function body.
 pub const BLOCK: usize = 200;
 
 /// Writes the statements, and those of a long body in blocks: rustc's debug information needs stack for every
@@ -53,7 +53,7 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
     }
 }
 
-/// Writes one statement.
+/// Writes one statement of a function body.
 pub fn write_let(out: &mut String, statement: &Statement) {
     if statement.pattern.is_empty() {
         let _ = writeln!(out, "{}", statement.text);

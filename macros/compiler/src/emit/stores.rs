@@ -1,5 +1,4 @@
-//! Stores of results in matrix arguments. A result is stored once it is computed, so that it needs no
-//! memory in between.
+//! Stores of results in matrix arguments, each immediately after the result is computed.
 
 use super::pieces::{Outputs, Piece, Statement};
 use super::signature::matrix_arguments;
@@ -12,11 +11,11 @@ use std::fmt;
 /// Entry of a matrix argument, to which an output is stored.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
-    /// Name of the matrix.
+    /// Name of the matrix that contains the entry.
     matrix: &'static str,
-    /// Column index.
+    /// Column index of the entry.
     column: usize,
-    /// Row index.
+    /// Row index of the entry.
     row: usize,
 }
 
@@ -126,11 +125,11 @@ fn as_known(
     all
 }
 
-/// A lane of a vector that is stored in a matrix.
+/// SIMD lane of a vector that is stored in a matrix.
 struct Lane {
-    /// Matrix entry in which the lane is stored.
+    /// Matrix entry in which the SIMD lane is stored.
     place: Entry,
-    /// Index of the output that is stored.
+    /// Index of the program output that is stored.
     output: usize,
     /// Number of the vector value that contains the lane.
     vector: usize,
@@ -140,7 +139,7 @@ struct Lane {
     known: usize,
 }
 
-/// Returns all results that are lanes of named vectors, sorted by their entries.
+/// Returns all results that are SIMD lanes of named vectors, sorted by their matrix entries.
 fn lanes_by_entry(
     program: &Program,
     places: &[Vec<Entry>],

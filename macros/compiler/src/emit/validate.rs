@@ -1,10 +1,10 @@
-//! Code of the generated function that validates parameters.
+//! Code generation for the function that validates parameters.
 
 use super::interface::Interface;
 use crate::mechanism::{Model, Requirement};
 use std::fmt::Write;
 
-/// A condition on values that depend on parameters.
+/// Condition that values of the parameters must satisfy, such as a positive mass.
 #[derive(Clone, Debug)]
 pub struct ParameterCondition {
     /// Name of the condition in the runtime.

@@ -11,22 +11,22 @@ use crate::mechanics::crba::Matrix;
 use crate::mechanics::{energy, forces, momentum};
 use crate::mechanism::{Model, Quantity};
 
-/// Hamilton's canonical equations as polynomials of one ring. The momenta are program inputs.
+/// Hamilton's canonical equations as polynomials of one ring, with the momenta as arguments.
 pub struct Canonical {
     /// Ring of all polynomials.
     pub ring: Ring,
-    /// Hamiltonian `H`.
+    /// Hamiltonian `H` as a polynomial.
     pub hamiltonian: Polynomial,
-    /// Velocities in terms of the momenta.
+    /// Joint velocities in terms of the momenta.
     pub velocity: Vec<Polynomial>,
-    /// Rates of the momenta, forces of inputs included.
+    /// Rates of the momenta, including the forces of inputs.
     pub momentum_rate: Vec<Polynomial>,
     /// Inertias that have symbols of their own: determinants of the inertia of coupled coordinates, and
     /// inertias that are sums.
     pub determinants: Vec<Polynomial>,
 }
 
-/// Returns the symbol of determinant `k`.
+/// Returns the symbol that stands for determinant `k` in printed equations.
 pub fn determinant_symbol(k: usize) -> Quantity {
     Quantity::Prepared(k)
 }
@@ -45,22 +45,23 @@ pub fn canonical_equations<'g>(
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
     let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
-    let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
+    let driven = replace_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
     let relative: Vec<Expr<'g>> = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
     let mut normal = Normal::new(g, rank_of_symbol);
-    normal.ring.allow_more();
-    let (velocity, determinants) = velocities_of(mass, &relative, &mut normal)?;
+    normal.ring.raise_limits();
+    let (velocity, determinants) = velocities_of_momenta(mass, &relative, &mut normal)?;
     let potential = energy::potential_energy(model, joints);
     let power = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, v)| sum + *p * *v);
     let hamiltonian = if !model.time {
         power * 0.5 + potential
     } else {
-        power - with_velocities(&[energy::kinetic_energy(model, joints, &velocity)], &velocity)[0] + potential
+        power - replace_velocities(&[energy::kinetic_energy(model, joints, &velocity)], &velocity)[0]
+            + potential
     };
     let rate = momentum::momentum_rate(model, joints, &velocity);
     let inputs = forces::generalized_forces(model, joints);
     let rate: Vec<Expr<'g>> = rate.into_iter().zip(inputs).map(|(rate, input)| rate + input).collect();
-    let rate = with_velocities(&rate, &velocity);
+    let rate = replace_velocities(&rate, &velocity);
     let all: Vec<Expr<'g>> =
         [hamiltonian].into_iter().chain(velocity).chain(rate).chain(determinants).collect();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
@@ -72,7 +73,7 @@ pub fn canonical_equations<'g>(
     Some(Canonical { ring: short.ring, hamiltonian: all.pop()?, velocity, momentum_rate, determinants })
 }
 
-fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     replace_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,
@@ -81,7 +82,7 @@ fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
 
 /// Returns `M⁻¹ p`, computed for each group of coupled coordinates, and the determinants of the groups.
 /// `None` if a group is too large.
-pub(super) fn velocities_of<'g>(
+pub(super) fn velocities_of_momenta<'g>(
     mass: &Matrix<'g>,
     p: &[Expr<'g>],
     normal: &mut Normal<'g>,
@@ -106,7 +107,8 @@ pub(super) fn velocities_of<'g>(
         }
         let own: Matrix<'g> = group.iter().map(|i| group.iter().map(|j| mass[*i][*j]).collect()).collect();
         let n = group.len();
-        let cofactors: Matrix<'g> = (0..n).map(|i| (0..n).map(|j| cofactor(&own, i, j)).collect()).collect();
+        let cofactors: Matrix<'g> =
+            (0..n).map(|i| (0..n).map(|j| matrix_cofactor(&own, i, j)).collect()).collect();
         let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
         // A sum of sines and cosines in a denominator would not be simplified.
         let is_configuration_symbol =
@@ -127,7 +129,7 @@ pub(super) fn velocities_of<'g>(
 }
 
 /// Returns the cofactor of an entry of a matrix with at most three rows.
-fn cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
+fn matrix_cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
     let n = m.len();
     // With cyclic indices no sign is needed.
     let cofactor_entry = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];

@@ -10,7 +10,7 @@
 //! quasi-velocities).
 
 use super::written::{
-    marks_of_coordinate_rates, name_and_derivative_order, names_with, rate_name, wrap_sentences,
+    marks_of_coordinate_rates, name_and_derivative_order, rate_name, typeset_names_with, wrap_sentences,
 };
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::Normal;
@@ -26,13 +26,13 @@ use crate::expr::{Expr, Symbol};
 use crate::kinematics::mobility::sample_configurations;
 use crate::kinematics::redundancy::Basis;
 use crate::kinematics::speeds::{inverse, shorten_expression};
-use crate::kinematics::{Joint, Rows, random_configuration, time_derivative, value_of};
+use crate::kinematics::{Joint, Rows, random_configuration, sampled_value, time_derivative};
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::speeds::InSpeeds;
 use crate::mechanics::{acceleration_symbols, constraints, forces, rnea, velocity_symbols};
 use crate::mechanism::{Model, Quantity};
 
-/// Maximum number of columns of the text.
+/// Maximum number of columns of the printed text.
 const WIDTH: usize = 100;
 /// Maximum number of choices of dependent velocities that are compared.
 const CHOICES: usize = 20_000;
@@ -52,9 +52,9 @@ pub struct Kane {
     pub independent: Vec<usize>,
     /// Left sides of the equations of motion, with inertial and bias terms, for each independent velocity.
     pub motion: Vec<Polynomial>,
-    /// Right sides of the equations of motion: forces of inputs.
+    /// Right sides of Kane's equations of motion: generalized forces of the inputs.
     pub forces: Vec<Polynomial>,
-    /// Dependent velocities in terms of the independent ones, each with its index.
+    /// Dependent velocities in terms of the independent ones, each with the index of the velocity.
     pub dependent: Vec<(usize, Polynomial)>,
     /// Joint velocities that declared generalized speeds replace, with their indices.
     pub rates: Vec<(usize, Polynomial)>,
@@ -62,11 +62,11 @@ pub struct Kane {
     pub residuals: Vec<Polynomial>,
 }
 
-/// Reason for the absence of equations in independent velocities.
+/// Reason why Kane's equations in independent velocities are not available.
 pub enum KaneFailure {
-    /// The search found no choice of dependent velocities.
+    /// No choice of dependent velocities was found by the search.
     Choice,
-    /// The equations would be too long.
+    /// The equations would be too long to print.
     Length,
 }
 
@@ -86,7 +86,7 @@ pub fn kane_equations<'g>(
         }
         _ => choose_dependent_velocities(model, own, &rows).ok_or(KaneFailure::Choice)?,
     };
-    let solved = Solved::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
+    let solved = EliminatedMotion::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
     let v = velocity_symbols(model);
     let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&acceleration_symbols(model)));
     let mut inputs = forces::generalized_forces(model, joints);
@@ -127,7 +127,7 @@ fn simplified_polynomials<'g, const N: usize>(
         return None;
     }
     let mut normal = Normal::new(model.graph, rank_of_symbol);
-    normal.ring.allow_more();
+    normal.ring.raise_limits();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
     let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
     let mut all = all.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>()?.into_iter();
@@ -149,7 +149,7 @@ fn choose_dependent_velocities<'g>(
     let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::new(&rows.concat());
     let sampled_rows = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
-        tape.evaluate_at(&|s| value_of(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
+        tape.evaluate_at(&|s| sampled_value(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
     };
     let samples: Vec<Vec<Vec<f64>>> =
         (0..SAMPLES).map(|seed| sampled_rows(&random_configuration(model, seed), seed)).collect();
@@ -207,19 +207,20 @@ fn determinant_of_columns(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
 }
 
 /// All velocities and accelerations in terms of the independent velocities.
-struct Solved<'g> {
+struct EliminatedMotion<'g> {
     independent: Vec<usize>,
     dependent: Vec<usize>,
     /// Dependent velocities in terms of the independent ones.
     values: Vec<Expr<'g>>,
     /// Time derivatives of the dependent velocities.
     changes: Vec<Expr<'g>>,
-    /// Partial derivatives of the dependent velocities, one row each, by the independent velocities.
+    /// Partial derivatives of the dependent velocities (rows) with respect to the independent velocities
+    /// (columns).
     partial: Matrix<'g>,
 }
 
-impl<'g> Solved<'g> {
-    fn new(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<Solved<'g>> {
+impl<'g> EliminatedMotion<'g> {
+    fn new(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<EliminatedMotion<'g>> {
         let g = model.graph;
         dependent.sort_unstable();
         let independent: Vec<usize> = (0..model.nv()).filter(|k| !dependent.contains(k)).collect();
@@ -248,7 +249,7 @@ impl<'g> Solved<'g> {
                 *value += e * Quantity::Velocity(*k).expr(g);
             }
         }
-        let mut found = Solved { independent, dependent, values, changes: Vec::new(), partial };
+        let mut found = EliminatedMotion { independent, dependent, values, changes: Vec::new(), partial };
         let rate_of_dependent_speed = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
             let start = time_derivative(model.configuration_space(), *value);
             let terms = found.independent.iter().zip(row);
@@ -260,7 +261,7 @@ impl<'g> Solved<'g> {
         Some(found)
     }
 
-    /// Expresses all velocities and accelerations in the independent ones.
+    /// Expresses all velocities and accelerations in terms of the independent ones.
     fn express_in_independent(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let index_of_dependent_speed = |k: usize| self.dependent.iter().position(|d| *d == k);
         replace_all(e, &|s| match Quantity::from_symbol(s) {
@@ -283,7 +284,7 @@ impl<'g> Solved<'g> {
 /// Formats Kane's equations as plain text, LaTeX and MathML.
 pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     let rates = marks_of_coordinate_rates(model);
-    let names = names_with(model, &[]);
+    let names = typeset_names_with(model, &[]);
     let name_of_symbol = |symbol: Symbol| name_and_derivative_order(model, &rates, symbol);
     let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
     let name_with_dots = |symbol| {
@@ -291,7 +292,7 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
         (names.get(&name), dots)
     };
     let rate_text = |k: usize| name_with_primes(rate_name(model, k));
-    let lines = Lines::new(kane, Plain { name: &primed_name }, &rate_text);
+    let lines = KaneLines::new(kane, Plain { name: &primed_name }, &rate_text);
     let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(wrapped_line).collect();
     plain += "\n";
@@ -303,10 +304,10 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     };
     let latex_rate_symbol =
         |k: usize| Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let latex = Lines::new(kane, Latex { name: &name_with_dots }, &latex_rate_symbol);
+    let latex = KaneLines::new(kane, Latex { name: &name_with_dots }, &latex_rate_symbol);
     let mathml_rate_symbol =
         |k: usize| MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
-    let mathml = Lines::new(kane, MathMl { name: &name_with_dots }, &mathml_rate_symbol);
+    let mathml = KaneLines::new(kane, MathMl { name: &name_with_dots }, &mathml_rate_symbol);
     Written {
         plain,
         latex: format_aligned(&[latex.velocities, latex.motion].concat()),
@@ -315,15 +316,15 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
 }
 
 /// Printed equations, one per string.
-struct Lines {
+struct KaneLines {
     /// Equations for the dependent velocities and for joint velocities that speeds replace.
     velocities: Vec<String>,
     /// Equations of motion, followed by the holonomic constraints.
     motion: Vec<String>,
 }
 
-impl Lines {
-    fn new<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> Lines {
+impl KaneLines {
+    fn new<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> KaneLines {
         let writer = Writer::with_style(&kane.ring, style);
         let of_speeds =
             kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.format_polynomial(p)));
@@ -334,11 +335,11 @@ impl Lines {
         let motion =
             sides.map(|(a, b)| format!("{} = {}", writer.format_polynomial(a), writer.format_polynomial(b)));
         let held = kane.residuals.iter().map(|p| format!("{} = 0", writer.format_polynomial(p)));
-        Lines { velocities: of_speeds.chain(dependent).collect(), motion: motion.chain(held).collect() }
+        KaneLines { velocities: of_speeds.chain(dependent).collect(), motion: motion.chain(held).collect() }
     }
 }
 
-/// Returns sentences that explain the equations.
+/// Returns the sentences of the legend that explain the printed equations.
 fn legend_sentences(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> String) -> String {
     let independent: Vec<String> =
         kane.independent.iter().map(|k| marked(Quantity::Velocity(*k).symbol())).collect();

@@ -58,7 +58,7 @@ pub fn derive_linear_equations<'g>(
 ) -> Option<Linear> {
     let balance = force_balance(model, joints);
     let mut normal = Normal::new(model.graph, rank_of_symbol);
-    normal.ring.allow_more();
+    normal.ring.raise_limits();
     let rest = rest::check_equilibrium(model, at, &balance, &mut normal, cx)?;
     let all = linear_coefficients(model, mass, at, &balance, &rest);
     if let Some(what) = rest::reason_for_unbounded(&all) {
@@ -66,7 +66,7 @@ pub fn derive_linear_equations<'g>(
             .add_help(what);
         return None;
     }
-    let found = written_out(model, at, &all, &rest, normal);
+    let found = expand_linear_rows(model, at, &all, &rest, normal);
     if found.is_none() {
         cx.report_error(
             at.place.clone(),
@@ -86,7 +86,7 @@ pub fn derive_linear_equations<'g>(
         .add_help("linear equations with constant coefficients need forces that stay the same");
         return None;
     }
-    Some(found.with_stability(model, &all))
+    Some(found.add_stability(model, &all))
 }
 
 /// Returns the force balance `h − τ − Jᵀ λ` for each velocity, with symbols for the multipliers.
@@ -100,7 +100,7 @@ fn linear_coefficients<'g>(
     mass: &Matrix<'g>,
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
-    rest: &rest::Rest<'g>,
+    rest: &rest::RestValues<'g>,
 ) -> Coefficients<'g> {
     let (g, nv) = (model.graph, model.nv());
     let rows = linear_equation_rows(model, balance, at);
@@ -138,11 +138,11 @@ fn linear_coefficients<'g>(
 }
 
 /// Converts all rows of the linear equations to simplified polynomials. Returns `None` if they are too long.
-fn written_out<'g>(
+fn expand_linear_rows<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
     all: &Coefficients<'g>,
-    rest: &rest::Rest<'g>,
+    rest: &rest::RestValues<'g>,
     mut normal: Normal<'g>,
 ) -> Option<Linear> {
     let symbols: [fn(usize) -> Quantity; 3] = [deviation_symbol, Quantity::Velocity, Quantity::Acceleration];
@@ -189,7 +189,7 @@ fn add_products<'g>(
 }
 
 impl Linear {
-    /// Returns whether a coefficient varies in time.
+    /// Returns whether a coefficient of the linear equations varies in time.
     fn varies_in_time(&self) -> bool {
         let time = self.ring.mask_of_atoms(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
         let time = self.with_time(time);
@@ -223,7 +223,7 @@ impl Linear {
         found
     }
 
-    fn with_stability<'g>(mut self, model: &Model<'g>, all: &Coefficients<'g>) -> Linear {
+    fn add_stability<'g>(mut self, model: &Model<'g>, all: &Coefficients<'g>) -> Linear {
         if let Some(characteristic) = characteristic::characteristic_polynomial(model, all) {
             self.stability = stability::analyse_stability(characteristic);
         }

@@ -2,7 +2,7 @@
 //! the mass matrix and bias forces of the recursive algorithms, which are already computed and need no
 //! adaptation for ball and free joints. A test shows that Lagrange's equations are the same polynomials.
 
-use crate::algebra::factor::without_noise;
+use crate::algebra::factor::remove_noise;
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Atom, Polynomial, Rank, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
@@ -31,15 +31,15 @@ pub use canonical::{Canonical, canonical_equations, determinant_symbol};
 pub use print::Written;
 pub use written::{format_equations, written_canonical};
 
-/// Limits on the length of equations.
+/// Limits on the length of printed equations.
 pub struct Limits {
     /// Maximum number of operations of the mass matrix, and of all equations, that are expanded to
     /// polynomials. Counting operations is cheap, and the polynomials of longer expressions would be too
     /// long.
     operations: [usize; 2],
-    /// Maximum number of terms of all equations together.
+    /// Maximum number of terms of all printed equations together.
     terms: usize,
-    /// Maximum number of terms before simplification.
+    /// Maximum number of terms of the equations before simplification.
     long: usize,
 }
 
@@ -106,7 +106,7 @@ pub fn derive<'g>(
     }
     let mut normal = Normal::new(model.graph, rank_of_symbol);
     if limits.long > Limits::READABLE.long {
-        normal.ring.allow_more();
+        normal.ring.raise_limits();
     }
     // Angles in the order of `q`, so that sums of angles are printed in this order.
     for angle in trigonometric_coordinates(model) {
@@ -199,7 +199,7 @@ fn bias_of_equations<'g>(
     speeds.without_accelerations(&speeds.transform_forces(&all))
 }
 
-/// Returns the generalized forces of inputs and multipliers.
+/// Returns the right sides of the equations of motion: generalized forces of inputs and multipliers.
 fn right_sides<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let held = constraints::constraint_forces(model, &constraints::multiplier_symbols(model));
     let forces = forces::generalized_forces(model, joints);
@@ -254,7 +254,7 @@ struct Simplifier {
     ring: Ring,
     quaternions: Vec<[Symbol; 4]>,
     long: usize,
-    /// Number of terms that may still be added.
+    /// Number of terms that may still be added to polynomials.
     left: usize,
     /// Number of printed terms that may still be added.
     written_left: usize,
@@ -267,7 +267,7 @@ impl Simplifier {
     }
 
     fn shorten_polynomial(&mut self, p: &Polynomial) -> Option<Polynomial> {
-        let p = without_noise(&self.ring, p);
+        let p = remove_noise(&self.ring, p);
         let mut p = simplify_trigonometry(&mut self.ring, &p)?;
         for quaternion in &self.quaternions {
             p = on_unit_sphere(&mut self.ring, &p, quaternion)?;

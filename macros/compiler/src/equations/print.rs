@@ -231,7 +231,7 @@ pub fn wrap_text(text: &str, width: usize, indent: &str) -> String {
     }
 }
 
-/// Maximum number of characters of an equation's side that gets no line of its own.
+/// Maximum number of characters of an equation's side that shares a line with the other side.
 const SHORT: usize = 24;
 
 /// Returns the position of the line break: the last sign of minimum nesting depth within `room` characters,

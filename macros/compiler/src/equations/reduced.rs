@@ -1,10 +1,10 @@
 //! Printed form of Routh's equations: the Routhian, the equations of the noncyclic coordinates, and the
 //! velocities of the cyclic coordinates in terms of their momenta.
 
-use super::canonical::{determinant_symbol, velocities_of};
+use super::canonical::{determinant_symbol, velocities_of_momenta};
 use super::written::{
-    about_inertias, determinant_names, marks_of_coordinate_rates, name_and_derivative_order, names_with,
-    wrap_sentences,
+    determinant_names, inertias_sentence, marks_of_coordinate_rates, name_and_derivative_order,
+    typeset_names_with, wrap_sentences,
 };
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::Normal;
@@ -18,7 +18,7 @@ use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::routh::{
-    Solved, matrix_block, solve_cyclic_velocities, with_cyclic_velocities, with_velocities,
+    Solved, matrix_block, replace_velocities, solve_cyclic_velocities, with_cyclic_velocities,
 };
 use crate::mechanics::{acceleration_symbols, forces, rnea, velocity_symbols};
 use crate::mechanism::{Model, Quantity};
@@ -26,13 +26,13 @@ use crate::mechanism::{Model, Quantity};
 /// Maximum number of columns of the printed text.
 const WIDTH: usize = 100;
 
-/// Routh's equations as polynomials of one ring. The momenta are program inputs.
+/// Routh's equations as polynomials of one ring, with the momenta as arguments.
 pub struct Reduced {
     /// Ring of all polynomials.
     pub ring: Ring,
     /// Indices of the velocities of the cyclic coordinates.
     pub cyclic: Vec<usize>,
-    /// Routhian `R`.
+    /// Routhian `R` as a polynomial.
     pub routhian: Polynomial,
     /// Left sides of the equations of the noncyclic coordinates, with inertial and bias terms.
     pub motion: Vec<Polynomial>,
@@ -42,7 +42,7 @@ pub struct Reduced {
     pub velocity: Vec<Polynomial>,
     /// Rates of the momenta of the cyclic coordinates: forces of inputs.
     pub momentum_rate: Vec<Polynomial>,
-    /// Inertias that have symbols of their own; for coupled coordinates their determinants.
+    /// Inertias of cyclic coordinates that have symbols of their own; determinants for coupled coordinates.
     pub determinants: Vec<Polynomial>,
 }
 
@@ -55,18 +55,19 @@ pub fn routh_equations<'g>(
 ) -> Option<Reduced> {
     let g = model.graph;
     let mut normal = Normal::new(g, rank_of_symbol);
-    normal.ring.allow_more();
+    normal.ring.raise_limits();
     let own = matrix_block(mass, &cyclic, &cyclic);
     let mut divisors = Vec::new();
     let Solved { routhian, velocity } = solve_cyclic_velocities(model, joints, &cyclic, &mut |p| {
-        let (velocity, found) = velocities_of(&own, &p, &mut normal)?;
+        let (velocity, found) = velocities_of_momenta(&own, &p, &mut normal)?;
         divisors = found;
         Some(velocity)
     })?;
     let all = with_cyclic_velocities(model, &cyclic, &velocity);
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
-    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
-    let inputs = with_velocities(&forces::generalized_forces(model, joints), &all);
+    let bias =
+        replace_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
+    let inputs = replace_velocities(&forces::generalized_forces(model, joints), &all);
     let a = acceleration_symbols(model);
     let dot_product =
         |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
@@ -78,8 +79,8 @@ pub fn routh_equations<'g>(
     let carried =
         across.iter().zip(select_entries(&cyclic, &bias)).map(|(row, bias)| -(dot_product(row, &a) + bias));
     let carried: Vec<Expr<'g>> = carried.collect();
-    let (carried, _) = velocities_of(&own, &carried, &mut normal)?;
-    let (driven, _) = velocities_of(&own, &select_entries(&cyclic, &inputs), &mut normal)?;
+    let (carried, _) = velocities_of_momenta(&own, &carried, &mut normal)?;
+    let (driven, _) = velocities_of_momenta(&own, &select_entries(&cyclic, &inputs), &mut normal)?;
     let (mut motion, mut forces) = (Vec::new(), Vec::new());
     for k in &others {
         let row = select_entries(&cyclic, &mass[*k]);
@@ -119,7 +120,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     let momenta: Vec<String> =
         reduced.cyclic.iter().map(|k| format!("p_{}", model.velocities[*k].0)).collect();
     let inertias = determinant_names(model, reduced.determinants.len());
-    let all = names_with(model, &[momenta.clone(), inertias.clone()].concat());
+    let all = typeset_names_with(model, &[momenta.clone(), inertias.clone()].concat());
     let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
     // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
     let name_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
@@ -152,7 +153,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
         all_of(&names),
         if still { ", and constant" } else { "" }
     );
-    about += &about_inertias(&inertias);
+    about += &inertias_sentence(&inertias);
     plain = plain + "\n" + &wrap_sentences(&about) + "\n";
     let mut lines = self::routh_equation_lines(reduced, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);

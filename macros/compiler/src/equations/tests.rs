@@ -33,7 +33,7 @@ fn with_model<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Model<'g>) ->
     f(model.unwrap_or_else(|| panic!("{:?}", cx.messages())))
 }
 
-fn equations_of(gravity: &str, item: &str) -> String {
+fn equations_text(gravity: &str, item: &str) -> String {
     with_model(gravity, item, |model| crate::equations_as_text(&model))
 }
 
@@ -71,7 +71,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 }
 
 /// Returns the values of the symbols of a mechanism by their printed names.
-fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
+fn values_by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
     let rates = written::marks_of_coordinate_rates(model);
     let quantities_up_to = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
     let quantities = quantities_up_to(model.parameters.len(), Quantity::Parameter)
@@ -94,7 +94,7 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
     }
 }
 
-/// Returns both sides of each equation of a printed text, without the legend.
+/// Returns the left and right side of each equation of a printed text, without the legend.
 fn sides_of_equations(text: &str) -> Vec<(String, String)> {
     let (text, _) = text.trim_end().rsplit_once("\n\n").expect("a legend");
     let joined = text.replace("\n    ", " ");
@@ -102,14 +102,14 @@ fn sides_of_equations(text: &str) -> Vec<(String, String)> {
     lines.map(|(left, right)| (left.to_string(), right.to_string())).collect()
 }
 
-/// Checks that the values of the printed equations are those of the polynomials.
+/// Checks that the printed equations have the values of the polynomials.
 fn check_text(model: &Model<'_>, e: &Equations) {
     let text = format_equations(model, e).plain;
     let lines = sides_of_equations(&text);
     assert_eq!(lines.len(), 1 + e.motion.len(), "{text}");
     for seed in 1..4 {
         let symbol = random_symbol_values(model, seed);
-        let names = by_name(model, &symbol);
+        let names = values_by_name(model, &symbol);
         let read: Vec<f64> =
             lines.iter().flat_map(|(a, b)| [a, b]).skip(1).map(|side| evaluate_text(side, &names)).collect();
         let sides = e.motion.iter().zip(&e.forces).flat_map(|(a, b)| [a, b]);
@@ -156,7 +156,7 @@ fn check_equations(model: &Model<'_>) {
 }
 
 #[test]
-fn normal_forms_are_what_is_generated() {
+fn printed_normal_forms_equal_generated_functions() {
     for item in [CART_POLE, NUMBERS] {
         with_model("-9.81 * z", item, |model| check_equations(&model));
         with_model("-9.81 * y", item, |model| check_equations(&model));
@@ -167,7 +167,7 @@ fn normal_forms_are_what_is_generated() {
     }
 }
 
-/// Places the tip of a link at `place`, rotated by `angle` about z.
+/// Places the tip of a link at the position `place`, rotated by `angle` about z.
 fn place_tip<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
     model.links[link].motion = Motion::Placed;
     model.links[link].parent = None;
@@ -176,7 +176,7 @@ fn place_tip<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle
 
 /// Describes each rod of a double pendulum by its angle from the vertical.
 #[test]
-fn absolute_angles() {
+fn double_pendulum_in_absolute_angles_prints_correctly() {
     let text = with_model("-g * y", DOUBLE_PENDULUM, |mut model| {
         let g = model.graph;
         let [a, b] = [0, 1].map(|k| Quantity::Configuration(k).expr(g));
@@ -194,7 +194,7 @@ fn absolute_angles() {
 
 /// A bead on a hoop that rotates about the vertical at a prescribed speed.
 #[test]
-fn driven_in_time() {
+fn driven_hoop_prints_time_dependent_equations() {
     let text = with_model("-g * z", HOOP, |mut model| {
         model.parameters = ["g", "m", "radius", "speed"].map(String::from).to_vec();
         let g = model.graph;
@@ -215,16 +215,16 @@ m radius (radius theta'' + (g - radius speed² cos(theta)) sin(theta)) = 0
 
 /// Checks that the length of the equations decides whether they are printed, not the number of velocities.
 #[test]
-fn length_decides() {
-    let text = equations_of("-g * z", &masses_with_springs(5));
+fn equation_length_decides_what_is_printed() {
+    let text = equations_text("-g * z", &masses_with_springs(5));
     assert!(text.contains("m x2'' + k (2 x2 - x1 - x3) = 0\n"), "{text}");
-    let text = equations_of("-g * z", &masses_with_springs(20));
+    let text = equations_text("-g * z", &masses_with_springs(20));
     assert!(text.contains("m x19'' + k (x19 - x18) = 0\n"), "{text}");
-    let text = equations_of("-g * z", FREE);
+    let text = equations_text("-g * z", FREE);
     assert!(text.contains("a pose.wx' + (c - b) pose.wy pose.wz = 0\n"), "{text}");
-    let text = equations_of("-g * z", DISK);
+    let text = equations_text("-g * z", DISK);
     assert!(text.contains("1/4 m radius² (pose.wz' + pose.wx pose.wy)\n"), "{text}");
-    let text = equations_of("-g * z", SPHERE);
+    let text = equations_text("-g * z", SPHERE);
     assert!(text.contains("\n-radius + pose.z = 0\n"), "{text}");
     for item in [
         masses_with_springs(5),
@@ -239,8 +239,8 @@ fn length_decides() {
 
 /// Checks that the legend explains each multiplier by the name of its constraint.
 #[test]
-fn multipliers_are_named() {
-    let text = equations_of("-g * z", SPHERE);
+fn legend_names_the_constraint_of_each_multiplier() {
+    let text = equations_text("-g * z", SPHERE);
     let sentence = "lambda1, lambda2 and lambda3 are the multipliers of the constraints contact.normal,
 contact.x and contact.y, in this order.
 ";
@@ -251,8 +251,8 @@ contact.x and contact.y, in this order.
 /// The axle fixes the wheel's height, so that the normal constraint is trivial. Its row is zero up to
 /// rounding and is dropped.
 #[test]
-fn a_condition_that_always_holds_is_dropped() {
-    let text = equations_of("-9.81 * z", CASTOR);
+fn trivial_constraint_rows_are_dropped() {
+    let text = equations_text("-9.81 * z", CASTOR);
     assert!(
         !text.contains("0 = 0") && text.contains("plane.x' - 0.3 cos(plane.angle) roll' = 0\n"),
         "{text}"
@@ -269,16 +269,16 @@ fn a_condition_that_always_holds_is_dropped() {
 }
 
 #[test]
-fn numbers_are_written_by_one_rule() {
-    let text = equations_of("-9.81 * z", TURNS);
+fn printed_numbers_follow_one_rule() {
+    let text = equations_text("-9.81 * z", TURNS);
     for part in ["coil (q - pi/2)", "1/(4 pi²) m lead²", "3/2 q''"] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }
 
 #[test]
-fn large_mechanisms_have_no_text() {
-    assert_eq!(equations_of("-9.81 * z", SKEW), "");
+fn large_mechanisms_print_no_equations() {
+    assert_eq!(equations_text("-9.81 * z", SKEW), "");
     let (mut bodies, mut parent) = (String::new(), "ground".to_string());
     for k in 0..5 {
         bodies += &format!(
@@ -286,11 +286,11 @@ fn large_mechanisms_have_no_text() {
         );
         parent = format!("b{k}.at(x)");
     }
-    assert_eq!(equations_of("-9.81 * y", &format!("struct Five {{ {bodies} }}")), "");
+    assert_eq!(equations_text("-9.81 * y", &format!("struct Five {{ {bodies} }}")), "");
 }
 
 #[test]
-fn cart_pole_as_text() {
+fn cart_pole_equations_are_printed_as_text() {
     let expected = "\
 L = 1/2 (cart_mass + pole_mass) rail'²
     + 1/2 pole_mass pole_length (1/3 pole_length hinge'² - cos(hinge) rail' hinge')
@@ -303,11 +303,11 @@ pole_mass pole_length (1/3 pole_length hinge'' - 1/2 cos(hinge) rail'' - 4.905 s
 
 L is kinetic less potential energy; rail' and rail'' are the first and second rates of rail.
 ";
-    assert_eq!(equations_of("-9.81 * y", CART_POLE), expected);
+    assert_eq!(equations_text("-9.81 * y", CART_POLE), expected);
 }
 
 #[test]
-fn slider_on_shaft_as_text() {
+fn slider_on_shaft_equations_are_printed_as_text() {
     let expected = "\
 L = 1/2 (shaft_inertia + mass slide²) turn'² + 1/2 mass slide'²
     - 1/2 stiffness (slide - free_length)² - g mass slide sin(turn)
@@ -317,11 +317,11 @@ mass (slide'' - slide turn'² + g sin(turn)) + damping slide' + stiffness (slide
 
 L is kinetic less potential energy; turn' and turn'' are the first and second rates of turn.
 ";
-    assert_eq!(equations_of("-g * y", SHAFT), expected);
+    assert_eq!(equations_text("-g * y", SHAFT), expected);
 }
 
 #[test]
-fn gyroscope_as_text() {
+fn gyroscope_equations_are_printed_as_text() {
     let expected = "\
 (axial cos²(nutation) + (transverse + mass lever²) sin²(nutation)) precession''
     + axial cos(nutation) spin''
@@ -332,14 +332,14 @@ fn gyroscope_as_text() {
     - mass lever g) sin(nutation) = 0
 axial (cos(nutation) precession'' + spin'' - sin(nutation) precession' nutation') = 0
 ";
-    let text = equations_of("-g * z", GYROSCOPE);
+    let text = equations_text("-g * z", GYROSCOPE);
     assert!(text.contains(expected), "{text}");
 }
 
 /// Checks the printed equations of a top: quaternion components, and angular velocities, which are not the
 /// rates of these components.
 #[test]
-fn top_as_text() {
+fn top_equations_are_printed_as_text() {
     let expected = "\
 (m l² + a) tip.wx' + (c - m l² - a) tip.wy tip.wz - 2 g m l (tip.qx tip.qw + tip.qy tip.qz) = 0
 (m l² + a) tip.wy' + (m l² + a - c) tip.wx tip.wz + 2 g m l (tip.qx tip.qz - tip.qy tip.qw) = 0
@@ -347,7 +347,7 @@ c tip.wz' = 0
 
 L is kinetic less potential energy; tip.wx' is the rate of tip.wx.
 ";
-    let text = equations_of("-g * z", BALL);
+    let text = equations_text("-g * z", BALL);
     assert!(text.ends_with(expected), "{text}");
 }
 
@@ -392,7 +392,7 @@ fn check_canonical(model: &Model<'_>) -> String {
 }
 
 #[test]
-fn hamiltons_form_is_that_of_the_functions() {
+fn hamiltons_equations_equal_generated_functions() {
     let text = with_model("-9.81 * y", CART_POLE, |model| check_canonical(&model));
     for line in [
         "rail' = pole_mass pole_length (1/3 pole_length p_rail + 1/2 p_hinge cos(hinge))/D\n",
@@ -413,7 +413,7 @@ fn hamiltons_form_is_that_of_the_functions() {
 }
 
 #[test]
-fn forms_that_there_are_not_are_refused() {
+fn undefined_forms_of_equations_are_rejected() {
     let messages_for_form = |words: &str, item: &str| {
         let arguments = format!("gravity = -g * z, equations = {words}").parse().unwrap();
         crate::check_mechanism(arguments, item.parse().unwrap(), Path::new(""))
@@ -437,7 +437,7 @@ fn forms_that_there_are_not_are_refused() {
 
 /// Equations beyond the readable limits are printed on request, and are correct.
 #[test]
-fn long_equations_are_written_on_request() {
+fn long_equations_are_printed_on_request() {
     let arm = "pub struct Arm { g: f64, m: f64,
         #[body(mass = m, com = 0.5 * x, inertia = rod(m, 1, x))] a: Body,
         #[body(mass = m, com = 0.4 * x, inertia = rod(m, 0.8, x))] b: Body,

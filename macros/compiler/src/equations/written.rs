@@ -21,19 +21,19 @@ pub fn format_equations(model: &Model<'_>, equations: &Equations) -> Written {
     Written { plain: plain_text(model, equations, &rates), latex, mathml }
 }
 
-/// Printed Lagrangian, and both sides of the equation of every velocity.
-struct Lines {
+/// Printed lines: the Lagrangian, and the left and right side of the equation of every velocity.
+struct LagrangeLines {
     /// Joint velocities in terms of declared generalized speeds, with their indices.
     rates: Vec<(usize, String)>,
     lagrangian: String,
     motion: Vec<(String, String)>,
 }
 
-impl Lines {
-    fn new<S: Style>(equations: &Equations, style: S) -> Lines {
+impl LagrangeLines {
+    fn new<S: Style>(equations: &Equations, style: S) -> LagrangeLines {
         let writer = Writer::with_style(&equations.ring, style);
         let sides = equations.motion.iter().zip(&equations.forces);
-        Lines {
+        LagrangeLines {
             rates: equations.rates.iter().map(|(k, p)| (*k, writer.format_polynomial(p))).collect(),
             lagrangian: writer.format_energy(&equations.lagrangian),
             motion: sides.map(|(a, b)| (writer.format_polynomial(a), writer.format_polynomial(b))).collect(),
@@ -54,7 +54,7 @@ impl Lines {
 /// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
 fn plain_text(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     let primed_name = |symbol| name_with_primes(name_and_derivative_order(model, rates, symbol));
-    let lines = Lines::new(equations, Plain { name: &primed_name });
+    let lines = LagrangeLines::new(equations, Plain { name: &primed_name });
     let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
     let energy = if equations.without_forces { 'T' } else { 'L' };
     let mut out = wrapped_line(&format!("{energy} = {}", lines.lagrangian));
@@ -78,7 +78,7 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let name_of_momentum = |k: usize| format!("p_{}", model.velocities[k].0);
     let momenta: Vec<String> = (0..model.nv()).map(name_of_momentum).collect();
     let determinants = determinant_names(model, canonical.determinants.len());
-    let all = names_with(model, &[momenta.clone(), determinants.clone()].concat());
+    let all = typeset_names_with(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
     let name_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(k) => (momenta[k].clone(), 0),
@@ -98,7 +98,7 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, \
                      and a prime marks a rate."
         .to_string();
-    about += &about_inertias(&determinants);
+    about += &inertias_sentence(&determinants);
     plain = plain + "\n" + &wrap_sentences(&about) + "\n";
     let mut lines = canonical_lines(canonical, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
@@ -108,13 +108,13 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     Written { plain, latex, mathml: format_equations_as_html(&lines) }
 }
 
-/// Returns an unused name for a generalized force.
+/// Returns a name for a generalized force that no other symbol has.
 fn force_name(model: &Model<'_>, k: usize) -> String {
-    format!("{}{}", free_letter(model, 'Q'), k + 1)
+    format!("{}{}", unused_letter(model, 'Q'), k + 1)
 }
 
 /// Returns a letter, repeated until no name of a parameter or coordinate begins with it.
-fn free_letter(model: &Model<'_>, letter: char) -> String {
+fn unused_letter(model: &Model<'_>, letter: char) -> String {
     let mut found = letter.to_string();
     while model.parameters.iter().chain(&model.configuration).any(|name| name.starts_with(&found)) {
         found.push(letter);
@@ -124,12 +124,12 @@ fn free_letter(model: &Model<'_>, letter: char) -> String {
 
 /// Returns names for determinants that no quantity of the model has.
 pub(super) fn determinant_names(model: &Model<'_>, count: usize) -> Vec<String> {
-    let letter = free_letter(model, 'D');
+    let letter = unused_letter(model, 'D');
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
 }
 
 /// Returns a sentence that explains the determinants, or an empty text without determinants.
-pub(super) fn about_inertias(determinants: &[String]) -> String {
+pub(super) fn inertias_sentence(determinants: &[String]) -> String {
     match determinants {
         [] => String::new(),
         [one] => format!(" {one} is an inertia, of coupled coordinates its determinant."),
@@ -184,22 +184,23 @@ fn typeset_equations(model: &Model<'_>, equations: &Equations, rates: &[bool]) -
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
-    let latex = Lines::new(equations, Latex { name: &name_with_dots }).equation_lines(energy, &|k| {
+    let latex = LagrangeLines::new(equations, Latex { name: &name_with_dots }).equation_lines(energy, &|k| {
         Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
     });
-    let mathml = Lines::new(equations, MathMl { name: &name_with_dots }).equation_lines(of_mathml, &|k| {
-        MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
-    });
+    let mathml = LagrangeLines::new(equations, MathMl { name: &name_with_dots })
+        .equation_lines(of_mathml, &|k| {
+            MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+        });
     (format_aligned(&latex), format_equations_as_html(&mathml))
 }
 
 /// Returns the typeset names of all symbols of a mechanism, which are unambiguous.
 fn typeset_names(model: &Model<'_>) -> Names {
-    names_with(model, &[])
+    typeset_names_with(model, &[])
 }
 
 /// Returns the typeset names of all symbols of a mechanism and of other names, which are unambiguous.
-pub(super) fn names_with(model: &Model<'_>, others: &[String]) -> Names {
+pub(super) fn typeset_names_with(model: &Model<'_>, others: &[String]) -> Names {
     let velocities =
         model.velocities.iter().chain(model.speeds.iter().flat_map(|s| &s.velocities)).map(|(name, _)| name);
     let inputs = model.inputs.iter().map(|(name, _)| name);
@@ -247,7 +248,7 @@ pub(super) fn name_and_derivative_order(model: &Model<'_>, rates: &[bool], symbo
     }
 }
 
-/// Returns sentences that explain the notation.
+/// Returns the sentences of the legend that explain the notation of the equations.
 fn legend_sentences(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String> {
     let energy = if without_forces { "T is kinetic energy" } else { "L is kinetic less potential energy" };
     let rates = match rates.iter().position(|is_rate| *is_rate) {

@@ -2,9 +2,9 @@
 
 /// Standard gravity divided by the gas constant of air, K/m.
 pub const FALL_OVER_GAS: f64 = 9.80665 / GAS;
-/// Gas constant of air, J/(kg·K).
+/// Specific gas constant of air, J/(kg·K).
 pub const GAS: f64 = 287.05287;
-/// Ratio of the heat capacities of air.
+/// Ratio of the specific heat capacities of air.
 pub const HEATS: f64 = 1.4;
 /// Radius of the Earth in the definition of geopotential height, m.
 pub const RADIUS: f64 = 6_356_766.0;
@@ -40,12 +40,12 @@ fn atmosphere_state(h: f64) -> [f64; 3] {
     [temperature, pressure, f64::NAN]
 }
 
-/// Returns the temperature, K, at a geopotential height, m.
+/// Returns the temperature of the standard atmosphere, K, at a geopotential height, m.
 pub fn temperature(h: f64) -> f64 {
     atmosphere_state(h)[0]
 }
 
-/// Returns the pressure, Pa, at a geopotential height, m.
+/// Returns the pressure of the standard atmosphere, Pa, at a geopotential height, m.
 pub fn pressure(h: f64) -> f64 {
     atmosphere_state(h)[1]
 }

@@ -32,7 +32,7 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
         });
         for a in operands {
             // Partial derivative of the node by this operand, all other operands constant.
-            let by_operand = Derivative::by_node(a, g);
+            let by_operand = Derivative::with_respect_to_operand(a, g);
             let step = by_operand.differentiate_node(id);
             if !step.is_zero() {
                 let sum = open.entry(a).or_insert(g.zero());
@@ -46,14 +46,14 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
 /// Directional derivatives of the expressions of one graph, with a cache of computed results.
 pub struct Derivative<'g> {
     graph: &'g Graph,
-    /// Rates of change of the symbols. All other symbols are constant.
+    /// Rates of change of symbols along the direction. All other symbols are constant.
     rates: Vec<(Symbol, Expr<'g>)>,
     /// Index of the derivative of each node that was differentiated.
     known: Memo<'g>,
 }
 
 impl<'g> Derivative<'g> {
-    /// Creates the derivative with respect to `symbol`.
+    /// Creates the differentiation of expressions with respect to `symbol`.
     pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
         Derivative::with_rates(vec![(symbol, graph.one())], graph)
     }
@@ -101,13 +101,13 @@ impl<'g> Derivative<'g> {
 
     /// Creates the partial differentiation of an operation with respect to its operand `id`. Its other
     /// operands are constant.
-    fn by_node(id: Id, graph: &'g Graph) -> Derivative<'g> {
+    fn with_respect_to_operand(id: Id, graph: &'g Graph) -> Derivative<'g> {
         let mut derivative = Derivative::with_rates(Vec::new(), graph);
         derivative.known.assign_number(id, graph.one().id());
         derivative
     }
 
-    /// Returns the derivative of `e`.
+    /// Returns the derivative of the expression `e`.
     pub fn differentiate(&mut self, e: Expr<'g>) -> Expr<'g> {
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
         let mut todo = vec![e.id()];
@@ -238,7 +238,7 @@ mod tests {
 
     /// Reverse and forward mode give the same derivatives.
     #[test]
-    fn gradients_are_derivatives() {
+    fn reverse_and_forward_differentiation_agree() {
         let g = Graph::new();
         let symbols = [0, 1, 2].map(Symbol);
         let [x, y, z] = symbols.map(|s| g.symbol(s));

@@ -4,12 +4,12 @@ use super::lanes::MAX_LANES;
 use super::node::{Id, Node, Symbol};
 use super::{Expr, Graph, Memo};
 
-/// Evaluates several expressions of one graph at the given values of the symbols.
+/// Evaluates several expressions of one graph at these values of the symbols.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
     Tape::new(roots).evaluate_at(symbol)
 }
 
-/// Evaluates one expression at the given values of the symbols.
+/// Evaluates one expression at these values of the symbols.
 pub fn eval_one(root: Expr<'_>, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
     eval(&[root], symbol)[0]
 }
@@ -19,9 +19,9 @@ pub struct Tape<'g> {
     graph: Option<&'g Graph>,
     /// The nodes, with the positions of their operands in this list.
     steps: Vec<(Node, [u32; 3])>,
-    /// Indices in `steps` of the evaluated expressions.
+    /// Indices in `steps` of the expressions whose values are returned.
     roots: Vec<u32>,
-    /// True if a node has several lanes.
+    /// True if a node of the tape has several SIMD lanes.
     in_lanes: bool,
 }
 
@@ -47,7 +47,7 @@ impl<'g> Tape<'g> {
         tape
     }
 
-    /// Returns the number of nodes, symbols and constants included.
+    /// Returns the number of nodes of the tape, including symbols and constants.
     pub fn node_count(&self) -> usize {
         self.steps.len()
     }
@@ -57,7 +57,7 @@ impl<'g> Tape<'g> {
         self.run_with(symbol)
     }
 
-    /// Evaluates the expressions with estimates of their rounding errors.
+    /// Evaluates the expressions of the tape with estimates of their rounding errors.
     pub fn evaluate_with_rounding(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<Rounded> {
         self.run_with(&|s| Rounded::from_number(symbol(s)))
     }
@@ -80,7 +80,7 @@ impl<'g> Tape<'g> {
         let pad_with_none = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
         let mut values: Vec<[V; N]> = Vec::with_capacity(self.steps.len());
         for (node, [a, b, c]) in &self.steps {
-            let value_at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
+            let value_at_place = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
             let value = match *node {
                 Node::Tuple(k) => {
                     pad_with_none(graph.lanes_of_tuple(k).into_iter().map(V::from_number).collect())
@@ -88,12 +88,12 @@ impl<'g> Tape<'g> {
                 Node::Gather(k) => {
                     pad_with_none(graph.symbols_of_gather(k).into_iter().map(symbol).collect())
                 }
-                Node::Sum(n, _) => [V::sum(&value_at(*a)[..usize::from(n)]); N],
-                Node::Lane(k, _) => [value_at(*a)[usize::from(k)]; N],
-                Node::Join(n, _, _) => join_lanes(n.into(), value_at(*a), value_at(*b)),
+                Node::Sum(n, _) => [V::sum(&value_at_place(*a)[..usize::from(n)]); N],
+                Node::Lane(k, _) => [value_at_place(*a)[usize::from(k)]; N],
+                Node::Join(n, _, _) => join_lanes(n.into(), value_at_place(*a), value_at_place(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
-                    let (a, b, c) = (value_at(*a), value_at(*b), value_at(*c));
+                    let (a, b, c) = (value_at_place(*a), value_at_place(*b), value_at_place(*c));
                     std::array::from_fn(|lane| V::step(node, [a[lane], b[lane], c[lane]]))
                 }
             };
@@ -105,7 +105,7 @@ impl<'g> Tape<'g> {
 
 /// Number type in which a tape is evaluated.
 trait Value: Copy {
-    /// Converts a constant to this type.
+    /// Converts a constant to this number type.
     fn from_number(number: f64) -> Self;
     fn sum(lanes: &[Self]) -> Self;
     /// Applies the operation of a node to the values of its operands.
@@ -122,7 +122,7 @@ impl Value for f64 {
     }
 
     fn step(node: Node, operands: [f64; 3]) -> f64 {
-        step(node, operands)
+        apply_operation(node, operands)
     }
 }
 
@@ -132,7 +132,7 @@ impl Value for f64 {
 /// squares, errors do not grow in rotations.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounded {
-    /// Computed value of the node.
+    /// Computed value of a node of the tape.
     pub value: f64,
     /// Standard deviation of the rounding error, in the unit of the value.
     pub error: f64,
@@ -144,7 +144,7 @@ impl Rounded {
     /// pivots is at least `1e9`, or `1e6` if masses differ by twelve orders of magnitude.
     const MOST_ERRORS: f64 = 32.0;
 
-    /// Returns true if the exact value may be zero.
+    /// Returns true if the exact value may be zero within the estimated rounding error.
     pub fn may_be_zero(self) -> bool {
         self.value.abs() <= Self::MOST_ERRORS * self.error
     }
@@ -165,13 +165,13 @@ impl Value for Rounded {
 
     fn step(node: Node, operands: [Rounded; 3]) -> Rounded {
         let at = operands.map(|operand| operand.value);
-        let value = step(node, at);
+        let value = apply_operation(node, at);
         let mut error = f64::EPSILON * value.abs();
         for (k, operand) in operands.iter().enumerate().filter(|(_, operand)| operand.error > 0.0) {
             let moved = [-operand.error, operand.error].map(|by| {
                 let mut at = at;
                 at[k] += by;
-                (step(node, at) - value).abs()
+                (apply_operation(node, at) - value).abs()
             });
             error = libm::hypot(error, moved[0].max(moved[1]));
         }
@@ -210,7 +210,7 @@ pub fn join_lanes<V: Copy, const N: usize>(n: usize, a: [V; N], b: [V; N]) -> [V
 }
 
 /// Applies the operation of a node to the numbers of its operands. NaN for symbols and lane operations.
-fn step(node: Node, [a, b, c]: [f64; 3]) -> f64 {
+fn apply_operation(node: Node, [a, b, c]: [f64; 3]) -> f64 {
     match node {
         Node::Const(number) => number,
         Node::Neg(_) => -a,

@@ -28,7 +28,7 @@ pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g
 /// Maximum nesting depth of sums that are replaced.
 const DEPTH: usize = 16;
 
-/// Returns sine and cosine of an expression, with exact values if known.
+/// Returns sine and cosine of an expression, with exact values for special angles.
 fn sine_and_cosine(x: Expr<'_>) -> [Expr<'_>; 2] {
     known_sine_cosine(x, DEPTH).unwrap_or_else(|| [x.sin(), x.cos()])
 }
@@ -39,7 +39,7 @@ fn known_sine_cosine(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
     let expression_of_id = |id| x.graph().expr(id);
     let one = x.num(1.0);
     match x.node() {
-        Node::Const(value) => of_number(value).map(|point| point.map(|c| x.num(c))),
+        Node::Const(value) => exact_sine_and_cosine(value).map(|point| point.map(|c| x.num(c))),
         Node::Neg(a) => known_sine_cosine(expression_of_id(a), depth).map(|[sin, cos]| [-sin, cos]),
         Node::Add(a, b) => sine_cosine_of_sum(expression_of_id(a), expression_of_id(b), one, depth),
         Node::Sub(a, b) => sine_cosine_of_sum(expression_of_id(a), expression_of_id(b), -one, depth),
@@ -75,7 +75,7 @@ fn sine_cosine_of_sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize
 
 /// Returns sine and cosine of a number that is a multiple of π/6 or π/4, correct to the last digit; multiples
 /// of π/2 have exact values.
-fn of_number(value: f64) -> Option<[f64; 2]> {
+fn exact_sine_and_cosine(value: f64) -> Option<[f64; 2]> {
     let twelfths = value / (PI / 12.0);
     let whole = twelfths.round();
     if (twelfths - whole).abs() > ROUNDING * whole.abs().max(1.0) || whole.abs() > 1e6 {
@@ -99,21 +99,21 @@ mod tests {
     use crate::expr::Graph;
 
     #[test]
-    fn known_angles_have_exact_sines() {
+    fn special_angles_have_exact_sines() {
         for k in -30..30 {
             let x = f64::from(k) * PI / 12.0;
-            let Some([sin, cos]) = of_number(x) else {
+            let Some([sin, cos]) = exact_sine_and_cosine(x) else {
                 assert!(k % 2 != 0 && k % 3 != 0, "{k}");
                 continue;
             };
             assert!((sin - x.sin()).abs() < 1e-14 && (cos - x.cos()).abs() < 1e-14, "{k}");
             assert!(k % 6 != 0 || [sin, cos].iter().all(|c| c.fract() == 0.0), "{k}");
         }
-        assert_eq!(of_number(0.3), None);
+        assert_eq!(exact_sine_and_cosine(0.3), None);
     }
 
     #[test]
-    fn inverse_functions_cancel() {
+    fn inverse_functions_cancel_functions() {
         let g = Graph::new();
         let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
         let fold_expression = |e| replace_exactly(&[e], &|_| None)[0];

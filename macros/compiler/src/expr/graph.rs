@@ -18,13 +18,13 @@ use super::node::{Function, Id, Lookup, Node, Symbol};
 use std::cell::{Ref, RefCell, RefMut};
 use std::fmt;
 
-struct Store {
+struct NodeStore {
     nodes: Vec<Node>,
     /// Hash table with open addressing. Its size is a power of two; free slots contain `EMPTY`.
     table: Vec<Id>,
-    /// Maximum number of nodes of the graph.
+    /// Maximum number of nodes of the expression graph.
     most: usize,
-    /// True if a node was rejected because of `most`.
+    /// True if a node was rejected because the graph has its maximum number of nodes.
     is_full: bool,
 }
 
@@ -35,7 +35,7 @@ const EMPTY: Id = Id::MAX;
 /// the generated code.
 const MOST_NODES: usize = 4_000_000;
 
-impl Store {
+impl NodeStore {
     fn intern_node(&mut self, node: Node) -> Id {
         let mask = self.table.len() - 1;
         let mut slot = node.hash() as usize & mask;
@@ -78,10 +78,10 @@ impl Store {
 
 /// Graph that owns all expressions of a mechanism.
 pub struct Graph {
-    store: RefCell<Store>,
+    store: RefCell<NodeStore>,
     /// Table with a number for every node, all zero between uses.
     table: RefCell<Vec<u32>>,
-    /// Unused tables that contain only zeros, see [`Memo`](super::Memo).
+    /// Unused lookup tables that contain only zeros, see [`Memo`](super::Memo).
     tables: RefCell<Vec<Vec<u32>>>,
     /// Constants and symbols of expressions with SIMD lanes.
     pub(super) lanes: RefCell<Tables>,
@@ -110,10 +110,10 @@ impl Graph {
         Graph::with_room_for(MOST_NODES)
     }
 
-    /// Creates a graph with a maximum number of nodes.
+    /// Creates an expression graph with a maximum number of nodes.
     pub fn with_room_for(most: usize) -> Graph {
         let mut store =
-            Store { nodes: Vec::new(), table: vec![EMPTY; 1024], most: most.max(2), is_full: false };
+            NodeStore { nodes: Vec::new(), table: vec![EMPTY; 1024], most: most.max(2), is_full: false };
         store.intern_node(Node::Const(0.0));
         store.intern_node(Node::Const(1.0));
         Graph {
@@ -136,12 +136,12 @@ impl Graph {
         self.store.borrow().is_full
     }
 
-    /// Returns false, since the constants zero and one always exist.
+    /// Returns false, since a graph always contains the constants zero and one.
     pub fn is_empty(&self) -> bool {
         false
     }
 
-    /// Returns the node with an index.
+    /// Returns the node of the graph with an index.
     pub fn node(&self, id: Id) -> Node {
         self.store.borrow().nodes[id as usize]
     }
@@ -158,13 +158,13 @@ impl Graph {
         table
     }
 
-    /// Returns a table of zeros, of any length.
+    /// Returns a lookup table of zeros, of any length.
     pub(super) fn take_table(&self) -> Vec<u32> {
         self.tables.borrow_mut().pop().unwrap_or_default()
     }
 
-    /// Keeps a table of zeros, so that it can be used again without an allocation.
-    pub(super) fn keep_table(&self, table: Vec<u32>) {
+    /// Returns a lookup table of zeros to the graph, so that it is reused without an allocation.
+    pub(super) fn return_table(&self, table: Vec<u32>) {
         self.tables.borrow_mut().push(table);
     }
 
@@ -173,7 +173,7 @@ impl Graph {
         Expr { graph: self, id }
     }
 
-    /// Returns a constant expression.
+    /// Returns a constant expression with this value.
     pub fn num(&self, value: f64) -> Expr<'_> {
         self.expr(self.intern_constant(value))
     }
@@ -230,7 +230,7 @@ impl Graph {
         }
     }
 
-    /// Returns whether a node is a constant, shared by all lanes or one for each lane.
+    /// Returns whether a node is a constant, or a tuple of constants, one for each SIMD lane.
     pub(super) fn is_constant(&self, id: Id) -> bool {
         matches!(self.node(id), Node::Const(_) | Node::Tuple(_))
     }
@@ -285,8 +285,8 @@ impl Graph {
         match (na, nb) {
             (false, false) => self.plain_sum(a, b),
             (true, true) => self.neg(self.plain_sum(a, b)),
-            (false, true) => self.difference(a, b),
-            (true, false) => self.difference(b, a),
+            (false, true) => self.subtract_nodes(a, b),
+            (true, false) => self.subtract_nodes(b, a),
         }
     }
 
@@ -325,7 +325,7 @@ impl Graph {
         self.intern_node(Node::Add(a.min(b), a.max(b)))
     }
 
-    fn difference(&self, a: Id, b: Id) -> Id {
+    fn subtract_nodes(&self, a: Id, b: Id) -> Id {
         if a == b {
             return ZERO;
         }
@@ -364,7 +364,7 @@ impl Graph {
         self.apply_sign(na != nb, self.plain_product(a, b))
     }
 
-    /// Multiplies two operands whose negations the caller has removed.
+    /// Multiplies two nodes whose negations the caller has removed.
     fn plain_product(&self, a: Id, b: Id) -> Id {
         if let Some(product) = self.fold_constants(a, b, |x, y| x * y) {
             return product;
@@ -434,14 +434,14 @@ impl Graph {
     fn inverse(&self, b: Id) -> Option<Id> {
         match self.node(b) {
             Node::Const(y) if y != 0.0 && (1.0 / y).is_finite() => Some(self.intern_constant(1.0 / y)),
-            Node::Tuple(_) => self.finite_lanes(b, |y| 1.0 / y),
+            Node::Tuple(_) => self.map_lanes_if_finite(b, |y| 1.0 / y),
             _ => None,
         }
     }
 
     pub(super) fn call_function(&self, f: Function, a: Id) -> Id {
         if let Node::Tuple(_) = self.node(a)
-            && let Some(result) = self.finite_lanes(a, |x| f.evaluate_at(x))
+            && let Some(result) = self.map_lanes_if_finite(a, |x| f.evaluate_at(x))
         {
             return result;
         }

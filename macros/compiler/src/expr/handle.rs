@@ -18,7 +18,7 @@ impl PartialEq for Expr<'_> {
 }
 
 impl<'g> Expr<'g> {
-    /// Returns the index of the expression's node.
+    /// Returns the index of the expression's node in its graph.
     pub fn id(self) -> Id {
         self.id
     }
@@ -33,7 +33,7 @@ impl<'g> Expr<'g> {
         self.graph.node(self.id)
     }
 
-    /// Returns the value if the expression is a constant.
+    /// Returns the value of the expression if it is a constant.
     pub fn constant_value(self) -> Option<f64> {
         self.graph.constant_value(self.id)
     }
@@ -52,27 +52,27 @@ impl<'g> Expr<'g> {
         self.id == ZERO
     }
 
-    /// Returns a constant of the same graph.
+    /// Returns a constant of the graph that owns this expression.
     pub fn num(self, value: f64) -> Expr<'g> {
         self.graph.num(value)
     }
 
-    /// Returns the constant zero of the same graph.
+    /// Returns the constant zero of the graph that owns this expression.
     pub fn zero(self) -> Expr<'g> {
         self.graph.zero()
     }
 
-    /// Returns an elementary function of this expression.
+    /// Returns an elementary function applied to this expression.
     pub fn apply_function(self, f: Function) -> Expr<'g> {
         self.graph.expr(self.graph.call_function(f, self.id))
     }
 
-    /// Returns the sine, of an angle in rad.
+    /// Returns the sine of the expression, an angle in rad.
     pub fn sin(self) -> Expr<'g> {
         self.apply_function(Function::Sin)
     }
 
-    /// Returns the cosine, of an angle in rad.
+    /// Returns the cosine of the expression, an angle in rad.
     pub fn cos(self) -> Expr<'g> {
         self.apply_function(Function::Cos)
     }
@@ -178,7 +178,7 @@ mod tests {
     use crate::expr::Symbol;
 
     #[test]
-    fn zeros_ones_and_constants_fold() {
+    fn constant_operations_fold() {
         let g = Graph::new();
         let x = g.symbol(Symbol(0));
         assert_eq!(x * g.zero(), g.zero());
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_lifted_so_that_opposite_expressions_share() {
+    fn signs_move_outwards_so_that_negatives_share() {
         let g = Graph::new();
         let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
         assert_eq!((-x) * y, -(x * y));
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_multiple_that_is_used_again_stays_one_product() {
+    fn reused_multiples_remain_one_product() {
         let g = Graph::new();
         let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
         let twice = g.num(2.0) * x;
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_added_can_be_taken_away() {
+    fn subtracting_an_added_term_cancels_it() {
         let g = Graph::new();
         let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
         assert_eq!((x + y) - y, x);

@@ -8,7 +8,7 @@ use super::node::{Id, Node, Symbol};
 use super::{Expr, Graph};
 use std::collections::BTreeMap;
 
-/// Maximum number of lanes of an expression.
+/// Maximum number of SIMD lanes of an expression.
 pub const MAX_LANES: usize = 8;
 
 /// Interned constants and inputs of expressions with SIMD lanes.
@@ -18,7 +18,7 @@ pub struct Tables {
     /// Index of each tuple of constants, keyed by the bits of its numbers.
     known: BTreeMap<Vec<u64>, u32>,
     gathers: Vec<Vec<Symbol>>,
-    /// Number of lanes of each node, one for expressions without lanes; filled on demand.
+    /// Number of SIMD lanes of each node, one for expressions without lanes; filled on demand.
     widths: Vec<u8>,
 }
 
@@ -42,17 +42,17 @@ impl Graph {
         self.expr(self.intern_node(Node::Gather(k as u32)))
     }
 
-    /// Returns the constants of a tuple, one for each lane.
+    /// Returns the constants of a tuple node, one for each SIMD lane.
     pub fn lanes_of_tuple(&self, k: u32) -> Vec<f64> {
         self.lanes.borrow().tuples[k as usize].clone()
     }
 
-    /// Returns the symbols of a gather, one for each lane.
+    /// Returns the symbols of a gather node, one for each SIMD lane.
     pub fn symbols_of_gather(&self, k: u32) -> Vec<Symbol> {
         self.lanes.borrow().gathers[k as usize].clone()
     }
 
-    /// Returns the number of lanes of a node, one for an expression without lanes.
+    /// Returns the number of SIMD lanes of a node, one for an expression without lanes.
     fn lane_count(&self, id: Id) -> usize {
         let (nodes, mut tables) = (self.nodes(), self.lanes.borrow_mut());
         for node in &nodes[tables.widths.len().min(id as usize + 1)..=id as usize] {
@@ -113,7 +113,7 @@ impl Graph {
 
     /// Applies a function to each constant of a tuple. `None` if a result is not finite or the node is not a
     /// tuple.
-    pub(super) fn finite_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Option<Id> {
+    pub(super) fn map_lanes_if_finite(&self, id: Id, f: impl Fn(f64) -> f64) -> Option<Id> {
         let Node::Tuple(k) = self.node(id) else { return None };
         let values: Vec<f64> = self.lanes_of_tuple(k).into_iter().map(f).collect();
         values.iter().all(|x| x.is_finite()).then(|| self.lane_constant(values))
@@ -151,21 +151,21 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// Returns whether the expression is a constant, shared by all lanes or one for each lane.
+    /// Returns whether the expression is a constant, or a tuple of constants, one for each SIMD lane.
     pub fn is_constant(self) -> bool {
         self.graph().is_constant(self.id())
     }
 
     /// Returns true if the expression and `bound` are constant and the magnitude of the expression is at most
     /// the bound in every lane.
-    pub fn is_within(self, bound: Expr<'g>) -> bool {
+    pub fn is_within_bound(self, bound: Expr<'g>) -> bool {
         match (self.lane_values(MAX_LANES), bound.lane_values(MAX_LANES)) {
             (Some(x), Some(bound)) => x.iter().zip(&bound).all(|(x, bound)| x.abs() <= *bound),
             _ => false,
         }
     }
 
-    /// Returns the sum of the first `n` lanes.
+    /// Returns the sum of the first `n` lanes of the expression.
     pub fn lane_sum(self, n: usize) -> Expr<'g> {
         let g = self.graph();
         if let Some(values) = self.lane_values(n) {
@@ -206,7 +206,7 @@ mod tests {
     use crate::expr::eval::eval;
 
     #[test]
-    fn constants_of_lanes_fold() {
+    fn constant_lanes_fold() {
         let g = Graph::new();
         let constant_lanes = |values: [f64; 3]| g.lane_constants(&values);
         let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn lanes_of_two_stand_side_by_side() {
+    fn pairs_of_lanes_are_concatenated() {
         let g = Graph::new();
         let [x, y] = [[0, 1], [2, 3]].map(|s| g.lane_symbols(&s.map(Symbol)));
         let s = g.symbol(Symbol(0));
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn evaluation_goes_lane_by_lane() {
+    fn lanes_are_evaluated_independently() {
         let g = Graph::new();
         let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
         let y = g.symbol(Symbol(3));

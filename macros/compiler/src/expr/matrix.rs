@@ -20,12 +20,12 @@ impl<'g> Vec3<'g> {
         Vec3(std::array::from_fn(|i| if i == k { g.one() } else { g.zero() }))
     }
 
-    /// Returns a vector of constants.
+    /// Returns a vector of constant expressions.
     pub fn from_numbers(g: &'g Graph, v: [f64; 3]) -> Vec3<'g> {
         Vec3(v.map(|c| g.num(c)))
     }
 
-    /// Applies a function to every component.
+    /// Applies a function to every component of the vector.
     pub fn map(self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
         Vec3(self.0.map(f))
     }
@@ -35,7 +35,7 @@ impl<'g> Vec3<'g> {
         self.0.iter().all(|c| c.is_zero())
     }
 
-    /// Returns the components as numbers if all of them are constant.
+    /// Returns the components of the vector as numbers if all of them are constant.
     pub fn constant_components(self) -> Option<[f64; 3]> {
         Some([self.0[0].constant_value()?, self.0[1].constant_value()?, self.0[2].constant_value()?])
     }
@@ -131,7 +131,7 @@ impl<'g> Mat3<'g> {
         Mat3(std::array::from_fn(|i| Vec3::coordinate_axis(g, i).0))
     }
 
-    /// Returns the matrix with entries `f(i, j)`.
+    /// Returns the matrix with the entries `f(i, j)`.
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> Expr<'g>) -> Mat3<'g> {
         Mat3(std::array::from_fn(|i| std::array::from_fn(|j| f(i, j))))
     }
@@ -157,7 +157,7 @@ impl<'g> Mat3<'g> {
         Mat3::from_fn(|i, j| self.0[j][i])
     }
 
-    /// Returns the entries as numbers if all of them are constant.
+    /// Returns the entries of the matrix as numbers if all of them are constant.
     pub fn constant_entries(self) -> Option<[[f64; 3]; 3]> {
         let mut out = [[0.0; 3]; 3];
         for i in 0..3 {
@@ -198,9 +198,9 @@ impl<'g> Mul<Vec3<'g>> for Mat3<'g> {
 /// Symmetric 3×3 matrix of expressions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sym3<'g> {
-    /// Diagonal entries xx, yy, zz.
+    /// Diagonal entries xx, yy and zz of the symmetric matrix.
     pub diagonal: [Expr<'g>; 3],
-    /// Off-diagonal entries xy, xz, yz.
+    /// Off-diagonal entries xy, xz and yz of the symmetric matrix.
     pub off: [Expr<'g>; 3],
 }
 
@@ -226,12 +226,12 @@ impl<'g> Sym3<'g> {
         Sym3 { diagonal: self.diagonal.map(&mut f), off: self.off.map(f) }
     }
 
-    /// Returns entry `(i, j)`.
+    /// Returns entry `(i, j)` of the symmetric matrix.
     pub fn entry(&self, i: usize, j: usize) -> Expr<'g> {
         if i == j { self.diagonal[i] } else { self.off[i + j - 1] }
     }
 
-    /// Returns the full matrix.
+    /// Returns the symmetric matrix as a full matrix.
     pub fn full_matrix(&self) -> Mat3<'g> {
         Mat3::from_fn(|i, j| self.entry(i, j))
     }

@@ -11,7 +11,7 @@ pub struct Memo<'g> {
     /// Table with one entry per node: its number plus one, or zero if the node has none. The table may be
     /// shorter than the graph.
     table: Vec<u32>,
-    /// Indices of the nodes that have numbers.
+    /// Indices of the nodes to which numbers are assigned.
     written: Vec<Id>,
 }
 
@@ -21,7 +21,7 @@ impl<'g> Memo<'g> {
         Memo { graph, table: graph.take_table(), written: Vec::new() }
     }
 
-    /// Returns the number assigned to a node, `None` if it is unset.
+    /// Returns the number assigned to a node; `None` if none is assigned.
     pub fn get(&self, id: Id) -> Option<u32> {
         match self.table.get(id as usize) {
             None | Some(0) => None,
@@ -29,7 +29,7 @@ impl<'g> Memo<'g> {
         }
     }
 
-    /// Assigns a number less than `u32::MAX` to a node.
+    /// Assigns a number less than `u32::MAX` to a node of the graph.
     pub fn assign_number(&mut self, id: Id, number: u32) {
         let place = id as usize;
         if place >= self.table.len() {
@@ -45,7 +45,7 @@ impl Drop for Memo<'_> {
         for id in &self.written {
             self.table[*id as usize] = 0;
         }
-        self.graph.keep_table(std::mem::take(&mut self.table));
+        self.graph.return_table(std::mem::take(&mut self.table));
     }
 }
 
@@ -55,7 +55,7 @@ mod tests {
     use crate::expr::Symbol;
 
     #[test]
-    fn tables_are_used_again_and_empty() {
+    fn memo_tables_are_recycled_empty() {
         let g = Graph::new();
         let x = g.symbol(Symbol(0));
         let mut first = Memo::new(&g);

@@ -112,27 +112,27 @@ impl Lookup {
     /// Maximum number of tables of a mechanism.
     pub const MAX_TABLES: usize = 256;
 
-    /// Returns the function of table `table`, with one to three variables.
+    /// Returns the lookup of table number `table`, with one to three variables.
     pub fn new(table: usize, variables: usize) -> Lookup {
         Lookup((table as u16) << 8 | (variables as u16 & 3) << 6)
     }
 
-    /// Returns the index of the table.
+    /// Returns the index of the interpolation table that is looked up.
     pub fn table_index(self) -> usize {
         usize::from(self.0 >> 8)
     }
 
-    /// Returns the number of variables.
+    /// Returns the number of variables of the interpolation table.
     pub fn variable_count(self) -> usize {
         usize::from(self.0 >> 6 & 3)
     }
 
-    /// Returns the order of differentiation by a variable.
+    /// Returns the order of differentiation of the table by a variable.
     pub fn derivative_order(self, variable: usize) -> usize {
         usize::from(self.0 >> (2 * variable) & 3)
     }
 
-    /// Returns the orders of differentiation by all variables.
+    /// Returns the orders of differentiation of the table by all variables.
     pub fn derivative_orders(self) -> Vec<usize> {
         (0..self.variable_count()).map(|k| self.derivative_order(k)).collect()
     }
@@ -159,7 +159,7 @@ impl Lookup {
     }
 }
 
-/// Minimum or maximum of two values.
+/// Choice between minimum and maximum of two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "the names say it all")]
 pub enum Extreme {
@@ -188,33 +188,33 @@ impl Extreme {
 /// Node of the expression graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Node {
-    /// Constant with the same value in all lanes.
+    /// Constant with the same value in all SIMD lanes.
     Const(f64),
-    /// Input with the same value in all lanes.
+    /// Input symbol with the same value in all SIMD lanes.
     Symbol(Symbol),
-    /// Negation `-a`.
+    /// Negation `-a` of a node.
     Neg(Id),
-    /// Sum `a + b`.
+    /// Sum `a + b` of two nodes.
     Add(Id, Id),
-    /// Difference `a - b`.
+    /// Difference `a - b` of two nodes.
     Sub(Id, Id),
-    /// Product `a * b`.
+    /// Product `a * b` of two nodes.
     Mul(Id, Id),
-    /// Quotient `a / b`.
+    /// Quotient `a / b` of two nodes.
     Div(Id, Id),
-    /// Elementary function `f(a)`.
+    /// Elementary function `f(a)` of a node.
     Call(Function, Id),
     /// `atan2(a, b)`: the angle, rad, of the point with ordinate `a` and abscissa `b`.
     Atan2(Id, Id),
-    /// Power `a^b`.
+    /// Power `a^b` of two nodes.
     Pow(Id, Id),
-    /// The minimum or maximum of `a` and `b`.
+    /// Minimum or maximum of the nodes `a` and `b`.
     Extreme(Extreme, Id, Id),
     /// Value or derivative of a table at its variables. Surplus operands repeat the last variable.
     Table(Lookup, Id, Id, Id),
-    /// A constant for each lane: an index of the graph's tuples.
+    /// Constants, one for each SIMD lane: an index of the graph's tuples.
     Tuple(u32),
-    /// An input for each lane: an index of the graph's gathers.
+    /// Input symbols, one for each SIMD lane: an index of the graph's gathers.
     Gather(u32),
     /// Sum of the first `n` lanes of `a`: `n` and `a`.
     Sum(u8, Id),

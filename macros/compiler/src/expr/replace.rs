@@ -97,7 +97,7 @@ fn rebuild_node<'g>(
     }
 }
 
-/// Returns the symbols of expressions, in ascending order.
+/// Returns all symbols that occur in expressions, in ascending order.
 pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
     let Some(first) = e.first() else { return Vec::new() };
     let graph = first.graph();

@@ -7,8 +7,8 @@ use super::{Expr, Graph};
 
 /// One step of a rotation, which is applied to the axes after the previous step.
 #[derive(Clone, Copy, Debug)]
-enum Step<'g> {
-    /// Rotation matrix.
+enum RotationStep<'g> {
+    /// Elementary step that is a general rotation matrix.
     Matrix(Mat3<'g>),
     /// A rotation about coordinate axis `axis` by the angle with this sine and cosine.
     Axis { axis: usize, sin: Expr<'g>, cos: Expr<'g> },
@@ -18,7 +18,7 @@ enum Step<'g> {
 /// steps.
 #[derive(Clone, Debug)]
 pub struct Rotation<'g> {
-    steps: Vec<Step<'g>>,
+    steps: Vec<RotationStep<'g>>,
     graph: &'g Graph,
 }
 
@@ -32,7 +32,7 @@ impl<'g> Rotation<'g> {
     pub fn about_axis(axis: usize, angle: Expr<'g>) -> Rotation<'g> {
         let graph = angle.graph();
         let step =
-            Step::Axis { axis, sin: without_rounding(angle.sin()), cos: without_rounding(angle.cos()) };
+            RotationStep::Axis { axis, sin: round_to_zero(angle.sin()), cos: round_to_zero(angle.cos()) };
         let mut rotation = Rotation::identity(graph);
         rotation.append_step(step);
         rotation
@@ -41,7 +41,7 @@ impl<'g> Rotation<'g> {
     /// Returns the rotation with matrix `m`, whose columns are the child's axes in the parent frame.
     pub fn from_matrix(m: Mat3<'g>) -> Rotation<'g> {
         let mut rotation = Rotation::identity(m.0[0][0].graph());
-        rotation.append_step(Step::Matrix(m));
+        rotation.append_step(RotationStep::Matrix(m));
         rotation
     }
 
@@ -79,7 +79,7 @@ impl<'g> Rotation<'g> {
         ]))
     }
 
-    /// Returns this rotation followed by `next`, which is given in the rotated frame.
+    /// Returns the composition of this rotation and `next`, which is relative to the rotated frame.
     pub fn compose_with(mut self, next: &Rotation<'g>) -> Rotation<'g> {
         for step in &next.steps {
             self.append_step(*step);
@@ -95,18 +95,18 @@ impl<'g> Rotation<'g> {
 
     /// Appends a step to the rotation. Adjacent constant steps are combined into one rotation with the
     /// minimum number of steps.
-    fn append_step(&mut self, step: Step<'g>) {
+    fn append_step(&mut self, step: RotationStep<'g>) {
         let Some(mut product) = step.constant_matrix() else {
             self.steps.push(step);
             return;
         };
-        while let Some(last) = self.steps.last().and_then(Step::constant_matrix) {
+        while let Some(last) = self.steps.last().and_then(RotationStep::constant_matrix) {
             product = last * product;
             self.steps.pop();
         }
         match constant_steps(&product) {
             Some(steps) => self.steps.extend(steps),
-            None => self.steps.push(Step::Matrix(product)),
+            None => self.steps.push(RotationStep::Matrix(product)),
         }
     }
 
@@ -135,11 +135,11 @@ impl<'g> Rotation<'g> {
         self.steps.iter().rev().fold(x, |x, step| step.apply_mat(x))
     }
 
-    /// Applies a function to all expressions of the rotation.
+    /// Applies a function to all expressions that the rotation contains.
     pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Rotation<'g> {
-        let map_step = |step: &Step<'g>| match *step {
-            Step::Matrix(m) => Step::Matrix(Mat3::from_fn(|i, j| f(m.0[i][j]))),
-            Step::Axis { axis, sin, cos } => Step::Axis { axis, sin: f(sin), cos: f(cos) },
+        let map_step = |step: &RotationStep<'g>| match *step {
+            RotationStep::Matrix(m) => RotationStep::Matrix(Mat3::from_fn(|i, j| f(m.0[i][j]))),
+            RotationStep::Axis { axis, sin, cos } => RotationStep::Axis { axis, sin: f(sin), cos: f(cos) },
         };
         Rotation { steps: self.steps.iter().map(map_step).collect(), graph: self.graph }
     }
@@ -154,14 +154,14 @@ impl<'g> Rotation<'g> {
         let mut rotation = Rotation::identity(first.graph);
         // The trailing steps that are of the same kind in all lanes are combined one by one. The steps before
         // them become one matrix.
-        let from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
-        let is_common = |k: &usize| {
-            let all = lanes.iter().map(|r| from_end(r, *k).map(|step| step.step_kind()));
+        let step_from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
+        let is_common_step = |k: &usize| {
+            let all = lanes.iter().map(|r| step_from_end(r, *k).map(|step| step.step_kind()));
             let mut kinds = all.collect::<Vec<_>>();
             kinds.dedup();
             kinds.len() == 1 && kinds[0].is_some()
         };
-        let common = (0..first.steps.len()).take_while(is_common).count();
+        let common = (0..first.steps.len()).take_while(is_common_step).count();
         let remaining_rotation = |r: &Rotation<'g>| {
             let steps = r.steps[..r.steps.len() - common].to_vec();
             Rotation { steps, graph: r.graph }
@@ -169,11 +169,11 @@ impl<'g> Rotation<'g> {
         if lanes.iter().any(|r| r.steps.len() > common) {
             let matrices: Vec<Mat3<'g>> =
                 lanes.iter().map(|r| remaining_rotation(r).rotation_matrix()).collect();
-            rotation.steps.push(Step::Matrix(merged_matrix(&matrices, merge)?));
+            rotation.steps.push(RotationStep::Matrix(merged_matrix(&matrices, merge)?));
         }
         for k in (0..common).rev() {
-            let steps: Vec<Step<'g>> = lanes.iter().filter_map(|r| from_end(r, k)).collect();
-            rotation.steps.push(Step::side_by_side(&steps, merge)?);
+            let steps: Vec<RotationStep<'g>> = lanes.iter().filter_map(|r| step_from_end(r, k)).collect();
+            rotation.steps.push(RotationStep::side_by_side(&steps, merge)?);
         }
         Some(rotation)
     }
@@ -188,7 +188,7 @@ impl<'g> Rotation<'g> {
 
 /// Replaces a constant of the magnitude of rounding error by zero: in floating point, the sine of π and the
 /// cosine of π/2 are not exactly zero.
-fn without_rounding(e: Expr<'_>) -> Expr<'_> {
+fn round_to_zero(e: Expr<'_>) -> Expr<'_> {
     match e.constant_value() {
         Some(x) if x.abs() <= 4.0 * f64::EPSILON => e.zero(),
         _ => e,
@@ -210,14 +210,14 @@ fn merged_matrix<'g>(
 
 /// Factors a constant rotation matrix with a zero entry into a rotation by right angles and at most two
 /// rotations about coordinate axes. `None` if no entry is zero.
-fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
+fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<RotationStep<'g>>> {
     let g = m.0[0][0].graph();
     let steps = axis_steps(m).or_else(|| {
         let (r, c) = (0..9).map(|k| (k / 3, k % 3)).find(|(r, c)| m.0[*r][*c].is_zero())?;
         // Column c is normal to axis r. After a rotation about r, column c of the remainder is a coordinate
         // axis.
         let (s, t) = ((r + 1) % 3, (r + 2) % 3);
-        let first = Step::Axis { axis: r, sin: m.0[t][c], cos: m.0[s][c] };
+        let first = RotationStep::Axis { axis: r, sin: m.0[t][c], cos: m.0[s][c] };
         let mut rest = first.inverse().step_matrix() * *m;
         (rest.0[r][c], rest.0[s][c], rest.0[t][c]) = (g.zero(), g.one(), g.zero());
         rest.0[s][(c + 1) % 3] = g.zero();
@@ -232,7 +232,7 @@ fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
 
 /// Factors a constant rotation matrix that has a coordinate axis as a column: a rotation by right angles,
 /// followed by a rotation about that axis. Returns `None` for other matrices.
-fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
+fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<RotationStep<'g>>> {
     let g = m.0[0][0].graph();
     let values = m.constant_entries()?;
     if *m == Mat3::identity(g) {
@@ -256,10 +256,10 @@ fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
     let (cos, sin) = (near.dot(m.column(i)), last.dot(m.column(i)));
     let mut steps = Vec::new();
     if right != Mat3::identity(g) {
-        steps.push(Step::Matrix(right));
+        steps.push(RotationStep::Matrix(right));
     }
     if !sin.is_zero() {
-        steps.push(Step::Axis { axis: b, sin, cos });
+        steps.push(RotationStep::Axis { axis: b, sin, cos });
     }
     Some(steps)
 }
@@ -275,32 +275,32 @@ impl<'g> Rotation<'g> {
     }
 }
 
-impl<'g> Step<'g> {
+impl<'g> RotationStep<'g> {
     /// Returns the coordinate axis of the rotation, or 3 for a matrix.
     fn step_kind(&self) -> usize {
         match self {
-            Step::Axis { axis, .. } => *axis,
-            Step::Matrix(_) => 3,
+            RotationStep::Axis { axis, .. } => *axis,
+            RotationStep::Matrix(_) => 3,
         }
     }
 
-    /// Combines steps of one kind, one for each lane, into a step with lanes.
+    /// Combines elementary rotations of one kind, one for each SIMD lane, into a rotation with lanes.
     fn side_by_side(
-        lanes: &[Step<'g>],
+        lanes: &[RotationStep<'g>],
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
-    ) -> Option<Step<'g>> {
-        let Step::Axis { axis, .. } = *lanes.first()? else {
-            let matrices: Vec<Mat3<'g>> = lanes.iter().map(Step::step_matrix).collect();
-            return Some(Step::Matrix(merged_matrix(&matrices, merge)?));
+    ) -> Option<RotationStep<'g>> {
+        let RotationStep::Axis { axis, .. } = *lanes.first()? else {
+            let matrices: Vec<Mat3<'g>> = lanes.iter().map(RotationStep::step_matrix).collect();
+            return Some(RotationStep::Matrix(merged_matrix(&matrices, merge)?));
         };
         let merge_candidates = |sine: bool| {
-            let lane_part = |step: &Step<'g>| match *step {
-                Step::Axis { sin, cos, .. } => Some(if sine { sin } else { cos }),
-                Step::Matrix(_) => None,
+            let lane_part = |step: &RotationStep<'g>| match *step {
+                RotationStep::Axis { sin, cos, .. } => Some(if sine { sin } else { cos }),
+                RotationStep::Matrix(_) => None,
             };
             lanes.iter().map(lane_part).collect::<Option<Vec<_>>>()
         };
-        Some(Step::Axis {
+        Some(RotationStep::Axis {
             axis,
             sin: merge(&merge_candidates(true)?)?,
             cos: merge(&merge_candidates(false)?)?,
@@ -309,14 +309,14 @@ impl<'g> Step<'g> {
 
     fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
         match *self {
-            Step::Axis { axis, sin, cos } => {
-                let speed = match angle_of(sin) {
+            RotationStep::Axis { axis, sin, cos } => {
+                let speed = match angle_of_sine(sin) {
                     Some(angle) => rate(angle),
                     None => cos * rate(sin) - sin * rate(cos),
                 };
                 Vec3::coordinate_axis(sin.graph(), axis) * speed
             }
-            Step::Matrix(m) => {
+            RotationStep::Matrix(m) => {
                 let d = Mat3::from_fn(|i, j| rate(m.0[i][j]));
                 Vec3([
                     m.column(2).dot(d.column(1)),
@@ -327,7 +327,7 @@ impl<'g> Step<'g> {
         }
     }
 
-    /// Returns the matrix if every entry is constant.
+    /// Returns the matrix of an elementary rotation if every entry is constant.
     fn constant_matrix(&self) -> Option<Mat3<'g>> {
         let matrix = self.step_matrix();
         matrix.constant_entries().map(|_| matrix)
@@ -335,8 +335,8 @@ impl<'g> Step<'g> {
 
     fn step_matrix(&self) -> Mat3<'g> {
         match *self {
-            Step::Matrix(m) => m,
-            Step::Axis { axis, sin, cos } => {
+            RotationStep::Matrix(m) => m,
+            RotationStep::Axis { axis, sin, cos } => {
                 let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
                 let mut m = Mat3::zero(sin.graph()).0;
                 m[axis][axis] = sin.num(1.0);
@@ -346,17 +346,17 @@ impl<'g> Step<'g> {
         }
     }
 
-    fn inverse(&self) -> Step<'g> {
+    fn inverse(&self) -> RotationStep<'g> {
         match *self {
-            Step::Matrix(m) => Step::Matrix(m.transpose()),
-            Step::Axis { axis, sin, cos } => Step::Axis { axis, sin: -sin, cos },
+            RotationStep::Matrix(m) => RotationStep::Matrix(m.transpose()),
+            RotationStep::Axis { axis, sin, cos } => RotationStep::Axis { axis, sin: -sin, cos },
         }
     }
 
     fn rotate_vector(&self, v: Vec3<'g>) -> Vec3<'g> {
         match *self {
-            Step::Matrix(m) => m * v,
-            Step::Axis { axis, sin, cos } => {
+            RotationStep::Matrix(m) => m * v,
+            RotationStep::Axis { axis, sin, cos } => {
                 let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
                 let mut out = v.0;
                 out[i] = cos * v[i] - sin * v[j];
@@ -368,8 +368,8 @@ impl<'g> Step<'g> {
 
     fn apply_mat(&self, x: Mat3<'g>) -> Mat3<'g> {
         match *self {
-            Step::Matrix(m) => m * x * m.transpose(),
-            Step::Axis { axis: k, sin, cos } => {
+            RotationStep::Matrix(m) => m * x * m.transpose(),
+            RotationStep::Axis { axis: k, sin, cos } => {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
                 let x = &x.0;
                 let mut out = *x;
@@ -387,13 +387,13 @@ impl<'g> Step<'g> {
 
     fn apply_sym(&self, x: Sym3<'g>) -> Sym3<'g> {
         match self {
-            Step::Matrix(m) => {
+            RotationStep::Matrix(m) => {
                 let half = *m * x.full_matrix();
                 let upper =
                     Mat3::from_fn(|i, j| if i <= j { half.row(i).dot(m.row(j)) } else { m.0[0][0].zero() });
                 Sym3::from_upper(&upper)
             }
-            Step::Axis { axis: k, sin, cos } => {
+            RotationStep::Axis { axis: k, sin, cos } => {
                 let (i, j, k) = ((k + 1) % 3, (k + 2) % 3, *k);
                 // Same formula as in `apply_mat`. Twice the sine can be shared between several tensors, but
                 // if `xy` is a multiple, doubling its coefficient costs nothing.
@@ -418,11 +418,11 @@ impl<'g> Step<'g> {
 }
 
 /// Returns the angle of an expression that is a sine, or the negative of a sine.
-fn angle_of(sin: Expr<'_>) -> Option<Expr<'_>> {
+fn angle_of_sine(sin: Expr<'_>) -> Option<Expr<'_>> {
     let graph = sin.graph();
     match sin.node() {
         Node::Call(Function::Sin, angle) => Some(graph.expr(angle)),
-        Node::Neg(inner) => angle_of(graph.expr(inner)).map(|angle| -angle),
+        Node::Neg(inner) => angle_of_sine(graph.expr(inner)).map(|angle| -angle),
         _ => None,
     }
 }
@@ -436,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn constant_rotations_take_as_few_steps_as_they_can() {
+    fn constant_rotations_use_the_fewest_elementary_steps() {
         let g = Graph::new();
         let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let right = Mat3([[0, 1, 0], [0, 0, -1], [-1, 0, 0]].map(|r| r.map(|c| g.num(f64::from(c)))));
@@ -459,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_turn_vectors_and_tensors_as_the_matrix_does() {
+    fn elementary_rotations_equal_the_rotation_matrix() {
         let g = Graph::new();
         let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let v = Vec3::from_numbers(&g, [0.7, -1.1, 0.4]);

@@ -1,9 +1,9 @@
-//! Random values of symbols, to test identities numerically.
+//! Random values of symbols, for numeric tests of identities between expressions.
 
 use super::eval::eval_one;
 use super::{Expr, Symbol};
 
-/// Tolerance of the comparison of sampled values.
+/// Tolerance for comparing values of expressions at random symbols.
 const TOLERANCE: f64 = 1e-9;
 
 /// Returns a reproducible value in [0.5, 1.5) for a symbol. Each `seed` gives another set of values; special

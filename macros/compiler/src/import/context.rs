@@ -10,10 +10,10 @@ use std::rc::Rc;
 /// Maximum number of errors that one import reports, since a file of the wrong kind may have thousands.
 const MISTAKES_SHOWN: usize = 32;
 
-/// Distance in bytes between stored source positions.
+/// Distance in bytes between positions in a file whose line and column are stored.
 const BLOCK: usize = 256;
 
-/// File that was read, with its source positions.
+/// Robot file that was read, with stored line and column positions.
 struct File<'a> {
     text: &'a str,
     path: Rc<str>,
@@ -22,14 +22,14 @@ struct File<'a> {
     blocks: Vec<(u32, u32)>,
 }
 
-/// Piece of the composed text that is copied from one file.
+/// Piece of the text composed of several files that is copied from one file.
 #[derive(Clone, Copy)]
 pub(super) struct Piece {
-    /// Offset of the piece in the composed text.
+    /// Offset of the piece in the text composed of several files, bytes.
     pub(super) start: usize,
-    /// Index of the file.
+    /// Index of the file from which the piece is copied.
     pub(super) file: usize,
-    /// Offset of the piece in the file.
+    /// Offset of the piece in the file from which it is copied, bytes.
     pub(super) offset: usize,
 }
 
@@ -48,15 +48,15 @@ pub(super) struct Cx<'a> {
 }
 
 impl<'a> Cx<'a> {
-    /// Creates the context of the file `text` at `path`.
+    /// Creates the import context of the file `text` at `path`.
     pub(super) fn new(text: &'a str, path: &Name, diagnostics: &'a mut Diagnostics) -> Cx<'a> {
         let piece = Piece { start: 0, file: 0, offset: 0 };
-        Cx::of_pieces(&[(text, &path.text)], vec![piece], path.place.span, diagnostics)
+        Cx::context_of_pieces(&[(text, &path.text)], vec![piece], path.place.span, diagnostics)
     }
 
     /// Creates the context of a text that is composed of pieces of files. `files` contains text and path of
     /// each file; the first piece starts at offset zero.
-    pub(super) fn of_pieces(
+    pub(super) fn context_of_pieces(
         files: &[(&'a str, &str)],
         pieces: Vec<Piece>,
         span: Span,
@@ -82,7 +82,7 @@ impl<'a> Cx<'a> {
     }
 
     /// Converts an offset in the parsed text to the index of a file and the offset in that file.
-    fn in_file(&self, offset: usize) -> (usize, usize) {
+    fn offset_in_file(&self, offset: usize) -> (usize, usize) {
         let (start, bytes, _) = self.added;
         let offset = if offset <= start { offset } else { offset.saturating_sub(bytes).max(start) };
         let after = self.pieces.partition_point(|piece| piece.start <= offset);
@@ -92,13 +92,13 @@ impl<'a> Cx<'a> {
 
     /// Returns the source position of the byte at `offset` of the parsed text.
     pub(super) fn source_position(&self, offset: usize) -> Place {
-        let (file, offset) = self.in_file(offset);
+        let (file, offset) = self.offset_in_file(offset);
         let (line, column) = self.files[file].line_and_column(offset);
         self.place_at(file, line, column)
     }
 
     /// Returns the source position for a line and a column of the parsed text, both counted from one.
-    pub(super) fn parsed_at(&self, line: u32, column: u32) -> Place {
+    pub(super) fn place_in_parsed_text(&self, line: u32, column: u32) -> Place {
         let (start, _, characters) = self.added;
         let (first, from) = self.files[0].line_and_column(start);
         if line != first || column <= from {
@@ -122,7 +122,8 @@ impl<'a> Cx<'a> {
     /// Returns the text of the file in a range of the parsed text. Returns `None` if the range spans several
     /// files or splits a character.
     pub(super) fn file_text_in_range(&self, range: std::ops::Range<usize>) -> Option<&'a str> {
-        let ((file, start), (other, end)) = (self.in_file(range.start), self.in_file(range.end));
+        let ((file, start), (other, end)) =
+            (self.offset_in_file(range.start), self.offset_in_file(range.end));
         self.files[file].text.get(start..end).filter(|_| file == other)
     }
 
@@ -161,12 +162,12 @@ impl<'a> Cx<'a> {
 
     /// Reports an internal error: something that was read from the file has no counterpart in the mechanism,
     /// although no error was reported.
-    pub(super) fn report_lost(&mut self, name: &Name) {
+    pub(super) fn report_lost_element(&mut self, name: &Name) {
         let message = format!("internal error: {} of the file is lost", quote_word(&name.text));
         self.report_error(&name.place, message, |d| d.add_help("please report this with the file"));
     }
 
-    /// Returns whether an error was reported.
+    /// Returns whether the import reported an error.
     pub(super) fn has_errors(&self) -> bool {
         self.mistakes > 0
     }

@@ -12,12 +12,12 @@ pub(super) type Node<'a> = roxmltree::Node<'a, 'a>;
 /// Attribute of an XML element of a robot file.
 pub(super) type Attribute<'a> = roxmltree::Attribute<'a, 'a>;
 
-/// Returns the source position of an element.
+/// Returns the source position of an XML element.
 pub(super) fn element_position(node: Node<'_>, cx: &Cx<'_>) -> Place {
     cx.source_position(node.range().start)
 }
 
-/// Returns the tag `<name>` of an element, in backticks.
+/// Returns the tag `<name>` of an XML element, in backticks.
 pub(super) fn quoted_tag(node: Node<'_>) -> String {
     quote_word(&format!("<{}>", node.tag_name().name()))
 }
@@ -41,7 +41,7 @@ pub(super) fn known_children<'a, const N: usize>(
         let name = child.tag_name().name();
         match known.iter().position(|k| *k == name) {
             Some(k) if found[k].is_none() => found[k] = Some(child),
-            Some(k) => report_second(child, found[k], cx),
+            Some(k) => report_duplicate(child, found[k], cx),
             None => check_element_name(child, &known, cx),
         }
     }
@@ -49,7 +49,7 @@ pub(super) fn known_children<'a, const N: usize>(
 }
 
 /// Reports an element that occurs a second time in its parent.
-pub(super) fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
+pub(super) fn report_duplicate(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
     let first = first.map(|node| format_position(&element_position(node, cx))).unwrap_or_default();
     let message = format!("second {} of one element", quoted_tag(child));
     cx.report_error(&element_position(child, cx), message, |d| {
@@ -74,8 +74,8 @@ pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>
 /// not two.
 pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&str], cx: &mut Cx<'_>) {
     let mut missing: Vec<&str> = required.iter().copied().filter(|name| !node.has_attribute(*name)).collect();
-    let is_known = |name: &str| required.contains(&name) || optional.contains(&name);
-    for attribute in node.attributes().filter(|a| a.namespace().is_none() && !is_known(a.name())) {
+    let is_known_attribute = |name: &str| required.contains(&name) || optional.contains(&name);
+    for attribute in node.attributes().filter(|a| a.namespace().is_none() && !is_known_attribute(a.name())) {
         let absent = optional.iter().copied().filter(|name| !node.has_attribute(*name));
         let candidates: Vec<&str> = missing.iter().copied().chain(absent).collect();
         if let Some(best) = nearest_candidate(attribute.name(), &candidates) {
@@ -93,10 +93,9 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
     }
 }
 
-/// Reports all contents of an element except attributes in `required`, `optional` and `foreign`: other
-/// attributes, text and child elements of the same namespace would be ignored silently. Attributes in
-/// `foreign` belong to other tools.
-pub(super) fn check_only(
+/// Reports all contents of an element other than the attributes in `required`, `optional` and `foreign`
+/// (attributes of other tools), since they would be ignored silently.
+pub(super) fn check_contents(
     node: Node<'_>,
     required: &[&str],
     optional: &[&str],
@@ -104,10 +103,10 @@ pub(super) fn check_only(
     cx: &mut Cx<'_>,
 ) {
     let all = [required, optional].concat();
-    let is_known = |name: &str| all.contains(&name) || foreign.contains(&name);
+    let is_known_element = |name: &str| all.contains(&name) || foreign.contains(&name);
     let help =
         expected_element_text(node.tag_name().name(), if required.is_empty() { optional } else { required });
-    let unknown = node.attributes().find(|a| a.namespace().is_none() && !is_known(a.name()));
+    let unknown = node.attributes().find(|a| a.namespace().is_none() && !is_known_element(a.name()));
     if let Some(child) = relevant_contents(node).next() {
         report_unexpected(child, node, help, cx);
     } else if let Some(attribute) = unknown.filter(|a| nearest_candidate(a.name(), &all).is_none()) {
@@ -139,8 +138,8 @@ fn report_unexpected(child: Node<'_>, node: Node<'_>, help: impl Into<String>, c
     cx.report_error(&cx.source_position(start), message, |d| d.add_help(help));
 }
 
-/// Reports attributes other than `known` of an element whose values are text or child elements.
-pub(super) fn check_plain(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
+/// Reports attributes that are not in `known` on an element whose values are text or child elements.
+pub(super) fn check_value_element(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
     check_attributes(node, &[], known, cx);
     let unknown = node.attributes().filter(|a| a.namespace().is_none() && !known.contains(&a.name()));
     for attribute in unknown.filter(|a| nearest_candidate(a.name(), known).is_none()) {
@@ -284,8 +283,8 @@ const LARGEST_TURN: f64 = 7.0;
 /// Reports angles that are most likely in degrees: multiples of ½ beyond a full revolution. Multiples of π
 /// are accepted. `help` states the unit of the format.
 pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, cx: &mut Cx<'_>) {
-    let is_likely = |n: &&f64| n.abs() > LARGEST_TURN && (2.0 * **n).fract() == 0.0;
-    let Some(n) = angles.iter().find(is_likely) else { return };
+    let is_likely_in_degrees = |n: &&f64| n.abs() > LARGEST_TURN && (2.0 * **n).fract() == 0.0;
+    let Some(n) = angles.iter().find(is_likely_in_degrees) else { return };
     let (degrees, turned) = (n.to_radians(), n % std::f64::consts::TAU);
     let message = format!(
         "an angle of {n} rad is more than a full turn: {n}° are {degrees} rad, {n} rad is the same rotation \

@@ -1,4 +1,4 @@
-//! Reading of files. This module knows no file format.
+//! Reading of robot files as text, for all formats.
 
 use super::context::quote_word;
 use crate::diag::{Diagnostics, nearest_candidate};
@@ -22,20 +22,20 @@ const INVISIBLE: [char; 3] = ['\u{200b}', '\u{2060}', '\u{feff}'];
 /// parsers of XML and of numbers do not know, such as no-break spaces, by spaces.
 pub fn with_plain_blanks(text: &str) -> Cow<'_, str> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let is_strange = |c: char| !c.is_ascii() && (c.is_whitespace() || INVISIBLE.contains(&c));
-    match text.contains(is_strange) {
-        true => Cow::Owned(text.replace(is_strange, " ")),
+    let is_invisible_character = |c: char| !c.is_ascii() && (c.is_whitespace() || INVISIBLE.contains(&c));
+    match text.contains(is_invisible_character) {
+        true => Cow::Owned(text.replace(is_invisible_character, " ")),
         false => Cow::Borrowed(text),
     }
 }
 
 /// Reads the file at `path`. `options` contain the path as the user wrote it and its source position.
 pub fn read_file(path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<String> {
-    read_named(path, &options.path, options.format, cx)
+    read_named_file(path, &options.path, options.format, cx)
 }
 
 /// Reads the file at `path`. `name` is the path as shown in messages, with its source position.
-pub(super) fn read_named(
+pub(super) fn read_named_file(
     path: &Path,
     name: &Name,
     format: FileFormat,
@@ -47,7 +47,7 @@ pub(super) fn read_named(
     });
     match bytes {
         Ok(Ok(bytes)) if bytes.len() > LARGEST_FILE => {
-            report_file_error(&too_large(bytes.len() as u64), name, cx)
+            report_file_error(&too_large_message(bytes.len() as u64), name, cx)
         }
         Ok(Ok(bytes)) => return decode_text(bytes, name, cx),
         Ok(Err(reason)) => report_file_error(&reason, name, cx),
@@ -56,22 +56,22 @@ pub(super) fn read_named(
     None
 }
 
-/// Returns the reason why a file is not opened, if there is one; to read a pipe or a device might never end.
+/// Returns the reason why a file must not be opened, such as being a pipe or a device.
 fn reason_to_refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
     match () {
         _ if about.is_dir() => Some(format!("is a directory, expected {}", format.phrase_with_article())),
         _ if !about.is_file() => Some("is not a regular file".to_string()),
-        _ if about.len() > LARGEST_FILE as u64 => Some(too_large(about.len())),
+        _ if about.len() > LARGEST_FILE as u64 => Some(too_large_message(about.len())),
         _ => None,
     }
 }
 
 /// Returns the error text for a file that exceeds the maximum size.
-pub(super) fn too_large(bytes: u64) -> String {
+pub(super) fn too_large_message(bytes: u64) -> String {
     format!("has {} MiB, expected at most {} MiB", bytes.div_ceil(1 << 20), LARGEST_FILE >> 20)
 }
 
-/// Reports an error of the file as a whole.
+/// Reports an error that concerns a robot file as a whole.
 pub(super) fn report_file_error(reason: &str, name: &Name, cx: &mut Diagnostics) {
     cx.report_error(name.place.clone(), format!("{} {reason}", quote_word(&name.text)));
 }

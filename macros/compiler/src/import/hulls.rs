@@ -16,7 +16,7 @@ const MIN_VERTICES: usize = 6;
 /// Largest distance of a vertex of a mesh from its hull, relative to the size of the hull.
 const MAX_ERROR: f64 = 0.1;
 
-/// Maximum number of triangles of a mesh.
+/// Maximum number of triangles of a mesh whose hull is computed.
 const MAX_TRIANGLES: usize = 200_000;
 
 /// Reads the meshes that contacts use, and replaces them by the vertices of their convex hulls. Paths in
@@ -26,7 +26,7 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
     let mut notes = Vec::new();
     for contact in &mut description.contacts {
         for side in [&mut contact.first, &mut contact.second] {
-            read_written(side, folder, (&mut files, &mut notes), cx);
+            replace_hull_file(side, folder, (&mut files, &mut notes), cx);
         }
     }
     let is_mesh = |part: &Collision| part.shape == Shape::Mesh && part.mesh.is_some();
@@ -45,8 +45,8 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
         let Some(source) = part.mesh.as_ref().filter(|_| is_mesh(part) && most >= MIN_VERTICES) else {
             continue;
         };
-        if let Some((hull, count)) = hull_of(source, most, &mut files, cx) {
-            notes.extend(note(&format!("the mesh of `{}`", part.on.body.text), &hull, count));
+        if let Some((hull, count)) = hull_of_mesh(source, most, &mut files, cx) {
+            notes.extend(hull_note(&format!("the mesh of `{}`", part.on.body.text), &hull, count));
             part.hull = hull.vertices;
         }
     }
@@ -56,7 +56,7 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
 }
 
 /// Replaces the file of `body.hull("…")` by the vertices of the hull.
-fn read_written(
+fn replace_hull_file(
     surface: &mut Expr,
     folder: &Path,
     (files, notes): (&mut Vec<PathBuf>, &mut Vec<String>),
@@ -65,9 +65,9 @@ fn read_written(
     let ExprKind::Method(_, _, arguments) = &mut surface.kind else { return };
     let [Expr { kind: ExprKind::Text(path), place }] = arguments.as_slice() else { return };
     let name = Name { text: path.clone(), place: place.clone() };
-    let source = MeshVertices::scaled(name, mesh::candidates(folder, path), [1.0; 3]);
-    if let Some((hull, count)) = hull_of(&source, MAX_VERTICES, files, cx) {
-        notes.extend(note(&format!("the mesh `{path}`"), &hull, count));
+    let source = MeshVertices::scaled(name, mesh::candidate_paths(folder, path), [1.0; 3]);
+    if let Some((hull, count)) = hull_of_mesh(&source, MAX_VERTICES, files, cx) {
+        notes.extend(hull_note(&format!("the mesh `{path}`"), &hull, count));
         let points = hull.vertices.iter().map(|p| Expr::vector_at(*p, place)).collect();
         let points = Expr { kind: ExprKind::Array(points), place: place.clone() };
         *arguments = vec![points];
@@ -75,7 +75,7 @@ fn read_written(
 }
 
 /// Returns a line of the documentation for a hull that does not contain all vertices of its mesh.
-fn note(mesh: &str, hull: &Hull, count: usize) -> Option<String> {
+fn hull_note(mesh: &str, hull: &Hull, count: usize) -> Option<String> {
     let (kept, error) = (hull.vertices.len(), hull.error);
     let hull = format!("the convex hull of {kept} of its {count} vertices");
     (error > 0.0).then(|| format!("the part of {mesh} outside of {hull}: at most {error:.2e} m"))
@@ -83,7 +83,7 @@ fn note(mesh: &str, hull: &Hull, count: usize) -> Option<String> {
 
 /// Returns the hull of a mesh with at most `maximum` vertices, and the number of vertices of the mesh; `None`
 /// after an error, or if so few vertices do not represent the mesh.
-fn hull_of(
+fn hull_of_mesh(
     source: &MeshVertices,
     maximum: usize,
     files: &mut Vec<PathBuf>,
@@ -93,7 +93,7 @@ fn hull_of(
     let mut points: Vec<Vector> = source.written.clone();
     if let Some(first) = source.paths.first() {
         let path = source.paths.iter().find(|path| path.is_file()).unwrap_or(first);
-        match mesh::read(path, name) {
+        match mesh::read_triangles(path, name) {
             Ok(triangles) if triangles.len() > MAX_TRIANGLES => {
                 let message = format!("mesh `{name}` has more than {MAX_TRIANGLES} triangles");
                 cx.report_error(place, message).add_help("use a simplified mesh for contacts");
@@ -128,14 +128,17 @@ fn hull_of(
         }
         Ok(hull) => Some((hull, points.len())),
         Err(error) => {
-            cx.report_error(place, format!("mesh `{name}` has no convex hull: {}", describe(error)));
+            cx.report_error(
+                place,
+                format!("mesh `{name}` has no convex hull: {}", describe_hull_error(error)),
+            );
             None
         }
     }
 }
 
 /// Returns the reason why points have no hull, for messages.
-fn describe(error: HullError) -> String {
+fn describe_hull_error(error: HullError) -> String {
     match error {
         HullError::NotFinite => "a coordinate is not finite".to_string(),
         HullError::TooFew(count) => format!("it has {count} different vertices, fewer than four"),
@@ -145,8 +148,8 @@ fn describe(error: HullError) -> String {
 
 /// Returns the number of friction moments of a contact, and one for the contact itself.
 fn contacts_per_point(contact: &Contact) -> usize {
-    let has = |key| usize::from(contact.arguments.get(key).is_some());
-    1 + has(Key::TorsionalFriction) + has(Key::RollingFriction)
+    let count_of_argument = |key| usize::from(contact.arguments.get(key).is_some());
+    1 + count_of_argument(Key::TorsionalFriction) + count_of_argument(Key::RollingFriction)
 }
 
 /// Returns the number of vertices for each mesh in the contacts with planes that the file declares: the

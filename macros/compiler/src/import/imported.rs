@@ -1,4 +1,4 @@
-//! Result of the import of a robot file.
+//! Result of the import of a robot file: bodies, joints and elements.
 
 use crate::diag::Place;
 use crate::syntax::file_parameters::FileField;
@@ -10,18 +10,18 @@ use std::path::PathBuf;
 pub struct Imported {
     /// Bodies of the links, each after its parent.
     pub bodies: Vec<Body>,
-    /// Joints in coordinate order: first the root's joint, then depth first. Joints of one parent are sorted
-    /// by name.
+    /// Joints in coordinate order: first the root's joint, then depth first, with the joints of one parent
+    /// sorted by name.
     pub joints: Vec<Joint>,
-    /// Springs, dampers, rotors and motors on coordinates.
+    /// Springs, dampers, rotors and motors on joint coordinates.
     pub drives: Vec<Drive>,
     /// Rayleigh dissipation functions: damping of ball and free joints, and drag of the surrounding fluid.
     pub dissipations: Vec<(Name, Expr)>,
-    /// Constraints on coordinates.
+    /// Constraints on joint coordinates of the file.
     pub constraints: Vec<Constraint>,
     /// Gravitational acceleration, m/s²; `None` if the format does not specify one.
     pub gravity: Option<Expr>,
-    /// Limits of the joints.
+    /// Limits of the joints of the file.
     pub limits: Vec<Limit>,
     /// Fields of the mechanism that hold values of the file.
     pub fields: Vec<FileField>,
@@ -43,11 +43,11 @@ pub struct Imported {
     pub files: Vec<PathBuf>,
 }
 
-/// Value of a file with its source position.
+/// Value read from a file, with its source position.
 #[derive(Clone, Debug)]
 pub struct Placed<T> {
-    /// Value as written in the file.
+    /// Value as written in the file, in the file's units.
     pub value: T,
-    /// Source position of the value.
+    /// Source position of the value in the file.
     pub place: Place,
 }

@@ -6,18 +6,18 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Largest size of a mesh file, bytes.
+/// Maximum size of a mesh file, bytes.
 const LARGEST: u64 = 64 << 20;
 
 /// Number of folders above that of a robot file in which its packages are searched.
 const ABOVE: usize = 4;
 
-/// Corners of a triangle.
+/// Corners of a triangle of a mesh, m.
 pub(super) type Triangle = [Vector; 3];
 
 /// Returns the paths at which a mesh may be, most likely first. `package://` and `model://` begin with the
 /// name of a folder, which contains the robot file or is next to a folder that contains it.
-pub(super) fn candidates(folder: &Path, uri: &str) -> Vec<PathBuf> {
+pub(super) fn candidate_paths(folder: &Path, uri: &str) -> Vec<PathBuf> {
     let Some((scheme, rest)) = uri.split_once("://") else { return vec![folder.join(uri)] };
     if scheme == "file" {
         return vec![folder.join(rest)];
@@ -28,14 +28,14 @@ pub(super) fn candidates(folder: &Path, uri: &str) -> Vec<PathBuf> {
 }
 
 /// Reads the triangles of a mesh file, or returns an error message. `name` is the path for messages.
-pub(super) fn read(path: &Path, name: &str) -> Result<Vec<Triangle>, String> {
+pub(super) fn read_triangles(path: &Path, name: &str) -> Result<Vec<Triangle>, String> {
     let shown = quote_word(name);
     let bytes = read_bytes(path).map_err(|why| format!("cannot read the mesh {shown}: {why}"))?;
     let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let triangles = match end.as_str() {
-        "stl" => stl(&bytes),
-        "obj" => obj(&bytes),
-        "msh" => msh(&bytes),
+        "stl" => read_stl(&bytes),
+        "obj" => read_obj(&bytes),
+        "msh" => read_msh(&bytes),
         _ => {
             return Err(format!("mesh {shown} has an unsupported format: expected `.stl`, `.obj` or `.msh`"));
         }
@@ -57,36 +57,40 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Returns three little-endian single-precision numbers.
-fn vector(bytes: &[u8], at: usize) -> Option<Vector> {
-    let number = |k: usize| {
+/// Returns three little-endian single-precision numbers of a binary mesh file.
+fn read_f32_vector(bytes: &[u8], at: usize) -> Option<Vector> {
+    let read_f32 = |k: usize| {
         let word = bytes.get(at + 4 * k..at + 4 * k + 4)?;
         Some(f64::from(f32::from_le_bytes(word.try_into().ok()?)))
     };
-    Some([number(0)?, number(1)?, number(2)?])
+    Some([read_f32(0)?, read_f32(1)?, read_f32(2)?])
 }
 
-fn word(bytes: &[u8], at: usize) -> Option<usize> {
+fn read_u32(bytes: &[u8], at: usize) -> Option<usize> {
     let word = bytes.get(at..at + 4)?;
     usize::try_from(i32::from_le_bytes(word.try_into().ok()?)).ok()
 }
 
 /// Reads STL, binary or as text. A binary file has a header of 80 bytes, the number of triangles, and for
 /// each triangle a normal, three corners and two more bytes.
-fn stl(bytes: &[u8]) -> Option<Vec<Triangle>> {
-    let Some(count) = word(bytes, 80).filter(|count| bytes.len() == 84 + 50 * count) else {
-        return stl_text(std::str::from_utf8(bytes).ok()?);
+fn read_stl(bytes: &[u8]) -> Option<Vec<Triangle>> {
+    let Some(count) = read_u32(bytes, 80).filter(|count| bytes.len() == 84 + 50 * count) else {
+        return read_stl_text(std::str::from_utf8(bytes).ok()?);
     };
     (0..count)
         .map(|k| {
             let at = 84 + 50 * k;
-            Some([vector(bytes, at + 12)?, vector(bytes, at + 24)?, vector(bytes, at + 36)?])
+            Some([
+                read_f32_vector(bytes, at + 12)?,
+                read_f32_vector(bytes, at + 24)?,
+                read_f32_vector(bytes, at + 36)?,
+            ])
         })
         .collect()
 }
 
 /// Reads STL as text: lines `vertex x y z`, three for each triangle.
-fn stl_text(text: &str) -> Option<Vec<Triangle>> {
+fn read_stl_text(text: &str) -> Option<Vec<Triangle>> {
     let mut corners = Vec::new();
     for line in text.lines() {
         let mut words = line.split_ascii_whitespace();
@@ -101,22 +105,24 @@ fn stl_text(text: &str) -> Option<Vec<Triangle>> {
 
 /// Reads MuJoCo's own format: the numbers of vertices, normals, texture coordinates and triangles, followed
 /// by these data.
-fn msh(bytes: &[u8]) -> Option<Vec<Triangle>> {
+fn read_msh(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let [vertices, normals, coordinates, faces] =
-        [word(bytes, 0)?, word(bytes, 4)?, word(bytes, 8)?, word(bytes, 12)?];
+        [read_u32(bytes, 0)?, read_u32(bytes, 4)?, read_u32(bytes, 8)?, read_u32(bytes, 12)?];
     let start = 16 + 12 * vertices + 12 * normals + 8 * coordinates;
     if faces == 0 || bytes.len() != start + 12 * faces {
         return None;
     }
-    let corner = |face: usize, k: usize| {
-        let number = word(bytes, start + 12 * face + 4 * k).filter(|number| *number < vertices)?;
-        vector(bytes, 16 + 12 * number)
+    let triangle_corner = |face: usize, k: usize| {
+        let number = read_u32(bytes, start + 12 * face + 4 * k).filter(|number| *number < vertices)?;
+        read_f32_vector(bytes, 16 + 12 * number)
     };
-    (0..faces).map(|face| Some([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?])).collect()
+    (0..faces)
+        .map(|face| Some([triangle_corner(face, 0)?, triangle_corner(face, 1)?, triangle_corner(face, 2)?]))
+        .collect()
 }
 
 /// Reads Wavefront OBJ: lines `v x y z` and `f a/b/c …`. Indices count from one, or from the end if negative.
-pub(super) fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
+pub(super) fn read_obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let text = std::str::from_utf8(bytes).ok()?;
     let (mut vertices, mut triangles): (Vec<Vector>, Vec<Triangle>) = (Vec::new(), Vec::new());
     for line in text.lines() {
@@ -127,12 +133,12 @@ pub(super) fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
                 vertices.push([number()?, number()?, number()?]);
             }
             Some("f") => {
-                let corner = |word: &str| {
+                let referenced_vertex = |word: &str| {
                     let number: i64 = word.split('/').next()?.parse().ok()?;
                     let index = if number < 0 { vertices.len() as i64 + number } else { number - 1 };
                     vertices.get(usize::try_from(index).ok()?).copied()
                 };
-                let corners = words.map(corner).collect::<Option<Vec<Vector>>>()?;
+                let corners = words.map(referenced_vertex).collect::<Option<Vec<Vector>>>()?;
                 add_face(&corners, &mut triangles)?;
             }
             _ => {}
@@ -145,8 +151,8 @@ pub(super) fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
 fn add_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
     match corners {
         [a, b, c, d] => {
-            let across = |a: &Vector, b: &Vector| length(add(*a, scale_vector(*b, -1.0)));
-            if across(a, c) < across(b, d) {
+            let distance_between = |a: &Vector, b: &Vector| length(add(*a, scale_vector(*b, -1.0)));
+            if distance_between(a, c) < distance_between(b, d) {
                 triangles.extend([[*a, *b, *c], [*a, *c, *d]]);
             } else {
                 triangles.extend([[*a, *b, *d], [*b, *c, *d]]);
@@ -165,34 +171,45 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_triangle_in_every_format() {
+    fn triangle_mesh_is_read_in_every_format() {
         let corners: Triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.5]];
-        let numbers = || corners.iter().flatten().flat_map(|x| (*x as f32).to_le_bytes());
-        let word = |n: u32| n.to_le_bytes();
-        let binary: Vec<u8> =
-            [b'x'; 80].into_iter().chain(word(1)).chain([0; 12]).chain(numbers()).chain([0; 2]).collect();
-        let counts = [3, 0, 0, 1].into_iter().flat_map(word);
-        let own: Vec<u8> = counts.chain(numbers()).chain([0, 1, 2].into_iter().flat_map(word)).collect();
+        let corner_bytes = || corners.iter().flatten().flat_map(|x| (*x as f32).to_le_bytes());
+        let u32_bytes = |n: u32| n.to_le_bytes();
+        let binary: Vec<u8> = [b'x'; 80]
+            .into_iter()
+            .chain(u32_bytes(1))
+            .chain([0; 12])
+            .chain(corner_bytes())
+            .chain([0; 2])
+            .collect();
+        let counts = [3, 0, 0, 1].into_iter().flat_map(u32_bytes);
+        let own: Vec<u8> =
+            counts.chain(corner_bytes()).chain([0, 1, 2].into_iter().flat_map(u32_bytes)).collect();
         let text = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 2 5e-1\n\
                     endloop\nendfacet\nendsolid";
         let object = "v 0 0 0\nv 1 0 0\nv 0 2 0.5\nf 1/1/1 2/2/2 -1\n";
-        for found in [stl(&binary), stl(text.as_bytes()), obj(object.as_bytes()), msh(&own)] {
+        for found in
+            [read_stl(&binary), read_stl(text.as_bytes()), read_obj(object.as_bytes()), read_msh(&own)]
+        {
             assert_eq!(found, Some(vec![corners]));
         }
-        assert!((0..binary.len()).all(|end| stl(&binary[..end]).is_none() && msh(&binary[..end]).is_none()));
+        assert!(
+            (0..binary.len())
+                .all(|end| read_stl(&binary[..end]).is_none() && read_msh(&binary[..end]).is_none())
+        );
     }
 
     #[test]
-    fn packages_are_above_the_robot_file() {
-        let found = candidates(Path::new("/a/robot/urdf"), "package://robot/meshes/foot.stl");
+    fn package_paths_are_resolved_above_the_robot_file() {
+        let found = candidate_paths(Path::new("/a/robot/urdf"), "package://robot/meshes/foot.stl");
         assert_eq!(found[0], Path::new("/a/robot/urdf/robot/meshes/foot.stl"));
         assert!(found.contains(&PathBuf::from("/a/robot/meshes/foot.stl")));
-        assert_eq!(candidates(Path::new("/a"), "b/c.obj"), [PathBuf::from("/a/b/c.obj")]);
-        assert_eq!(candidates(Path::new("/a"), "file:///b/c.obj"), [PathBuf::from("/b/c.obj")]);
+        assert_eq!(candidate_paths(Path::new("/a"), "b/c.obj"), [PathBuf::from("/a/b/c.obj")]);
+        assert_eq!(candidate_paths(Path::new("/a"), "file:///b/c.obj"), [PathBuf::from("/b/c.obj")]);
     }
 
     #[test]
-    fn damaged_meshes_are_none() {
+    fn damaged_mesh_files_are_rejected() {
         for text in [
             "",
             "v 1 2",
@@ -202,8 +219,8 @@ mod tests {
             "f a b c",
             "v 0 0 0\nf 9999999999999999999 1 1",
         ] {
-            assert!(obj(text.as_bytes()).is_none(), "{text}");
+            assert!(read_obj(text.as_bytes()).is_none(), "{text}");
         }
-        assert!(stl(&[0xff; 84]).is_none() && msh(&[0x7f; 40]).is_none());
+        assert!(read_stl(&[0xff; 84]).is_none() && read_msh(&[0x7f; 40]).is_none());
     }
 }

@@ -58,10 +58,10 @@ const WORDS: [&str; 47] = [
 
 /// Reports attributes, text, and elements other than `own` in a robot, a link, a joint or a part of them, if
 /// they have a meaning elsewhere in the file. Text between links is accepted as a comment.
-pub(super) fn check_misplaced(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
+pub(super) fn report_misplaced_contents(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
     for child in child_elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
         // Misspelt names of elements in `own` are reported by other functions.
-        if nearest_candidate(child.tag_name().name(), own).is_none() && !is_neutral(child) {
+        if nearest_candidate(child.tag_name().name(), own).is_none() && !has_no_effect(child) {
             let message = format!("unexpected {} in {}", quoted_tag(child), quoted_tag(node));
             cx.report_error(&element_position(child, cx), message, |d| d.add_help(help));
         }
@@ -83,7 +83,7 @@ pub(super) fn check_misplaced(node: Node<'_>, own: &[&str], help: &str, cx: &mut
 }
 
 /// Returns true for an element without effect: it has no text or children, and all its attributes are zero.
-fn is_neutral(node: Node<'_>) -> bool {
+fn has_no_effect(node: Node<'_>) -> bool {
     let is_zero_list = |text: &str| text.split_whitespace().all(|word| word.parse() == Ok(0.0));
     node.attributes().all(|attribute| is_zero_list(attribute.value()))
         && node.children().all(|child| child.text().is_none_or(|text| text.trim().is_empty()))

@@ -44,13 +44,13 @@ pub fn import_file(
     cx: &mut Diagnostics,
 ) -> Option<Imported> {
     if text.len() > LARGEST_FILE {
-        file::report_file_error(&file::too_large(text.len() as u64), &options.path, cx);
+        file::report_file_error(&file::too_large_message(text.len() as u64), &options.path, cx);
         return None;
     }
     let text = &*xml::clean_xml_text(text);
     match options.format {
         FileFormat::Urdf => import_urdf(text, &folder.join(&options.path.text), options, cx),
-        FileFormat::Mjcf => mjcf::import(text, &folder.join(&options.path.text), options, cx),
+        FileFormat::Mjcf => mjcf::import_file(text, &folder.join(&options.path.text), options, cx),
         FileFormat::Sdf => sdf::import_sdf(text, &folder.join(&options.path.text), options, cx),
     }
 }
@@ -58,6 +58,6 @@ pub fn import_file(
 fn import_urdf(text: &str, path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
     let cx = &mut context::Cx::new(text, &options.path, cx);
     let declared = OnceCell::new();
-    let document = xml::parse(text, &declared, options.format, cx)?;
+    let document = xml::parse_document(text, &declared, options.format, cx)?;
     urdf::read_root_element(document.root_element(), path.parent().unwrap_or(path), options, cx)
 }

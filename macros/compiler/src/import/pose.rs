@@ -1,4 +1,4 @@
-//! Numeric rotations, positions and symmetric matrices of the importers.
+//! Numeric vectors, rotations, poses and symmetric matrices for robot files.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -42,7 +42,7 @@ impl Pose {
     }
 }
 
-/// Returns the sum of two vectors.
+/// Returns the sum of two numeric vectors.
 pub(in crate::import) fn add(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| a[k] + b[k])
 }
@@ -52,12 +52,12 @@ pub(in crate::import) fn scale_vector(a: Vector, factor: f64) -> Vector {
     a.map(|x| x * factor)
 }
 
-/// Returns the dot product.
+/// Returns the dot product of two numeric vectors.
 pub(in crate::import) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns the cross product.
+/// Returns the cross product of two numeric vectors.
 pub(in crate::import) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
@@ -89,7 +89,7 @@ pub(in crate::import) fn rotated_tensor(m: &Matrix, s: &Matrix) -> Matrix {
 }
 
 /// Returns the rotation matrix of a unit quaternion (w, x, y, z).
-pub(in crate::import) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
+pub(in crate::import) fn rotation_of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
     [
         [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)],
@@ -123,7 +123,7 @@ fn sin_cos(angle: f64) -> (f64, f64) {
 }
 
 /// Returns the smallest rotation that maps the z axis to `direction`.
-pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
+pub(in crate::import) fn rotation_from_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
     let size = length(axis);
     let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale_vector(axis, 1.0 / size) };
@@ -177,7 +177,7 @@ mod tests {
         a.iter().flatten().zip(b.iter().flatten()).all(|(x, y)| (x - y).abs() < 4e-15)
     }
 
-    fn of_rpy([roll, pitch, yaw]: Vector) -> Matrix {
+    fn rotation_of_rpy([roll, pitch, yaw]: Vector) -> Matrix {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
         matrix_product(
             &matrix_product(&axis_rotation(z, yaw), &axis_rotation(y, pitch)),
@@ -186,29 +186,35 @@ mod tests {
     }
 
     #[test]
-    fn angles_of_a_rotation_give_it_back_even_where_two_axes_meet() {
+    fn euler_angles_reproduce_rotations_in_gimbal_lock() {
         let angles = [0.0, 1e-9, 0.3, FRAC_PI_2 - 1e-9, FRAC_PI_2, 2.5, -FRAC_PI_2, -3.0];
         for roll in angles {
             for pitch in angles {
                 for yaw in angles {
-                    let m = of_rpy([roll, pitch, yaw]);
-                    assert!(is_close(&of_rpy(roll_pitch_yaw(&m)), &m), "{roll} {pitch} {yaw}");
+                    let m = rotation_of_rpy([roll, pitch, yaw]);
+                    assert!(is_close(&rotation_of_rpy(roll_pitch_yaw(&m)), &m), "{roll} {pitch} {yaw}");
                 }
             }
         }
-        assert_eq!(roll_pitch_yaw(&of_quaternion([0.5, 0.5, 0.5, 0.5])), [FRAC_PI_2, 0.0, FRAC_PI_2]);
+        assert_eq!(
+            roll_pitch_yaw(&rotation_of_quaternion([0.5, 0.5, 0.5, 0.5])),
+            [FRAC_PI_2, 0.0, FRAC_PI_2]
+        );
     }
 
     #[test]
-    fn quaternions_and_turns_about_an_axis_agree() {
+    fn quaternions_equal_rotations_about_an_axis() {
         let (axis, angle) = (scale_vector([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
         let [x, y, z] = scale_vector(axis, (angle / 2.0).sin());
-        assert!(is_close(&axis_rotation(axis, angle), &of_quaternion([(angle / 2.0).cos(), x, y, z])));
-        assert!((matrix_times_vector(&of_z(axis), [0.0, 0.0, 1.0])[1] - axis[1]).abs() < 1e-15);
+        assert!(is_close(
+            &axis_rotation(axis, angle),
+            &rotation_of_quaternion([(angle / 2.0).cos(), x, y, z])
+        ));
+        assert!((matrix_times_vector(&rotation_from_z(axis), [0.0, 0.0, 1.0])[1] - axis[1]).abs() < 1e-15);
     }
 
     #[test]
-    fn principal_axes_make_the_matrix_diagonal() {
+    fn principal_axes_diagonalise_the_inertia() {
         let s = [[3.0, 0.4, -0.2], [0.4, 2.0, 0.1], [-0.2, 0.1, 5.0]];
         let (values, axes) = eigen_decomposition(&s);
         let diagonal: Matrix =

@@ -14,31 +14,31 @@ pub(super) const MAX_DEPTH: usize = 32;
 /// Maximum number of included files.
 pub(super) const MAX_FILES: usize = 256;
 
-/// Robot file that was read, with its path.
-pub(super) struct Read {
-    /// Text of the file.
+/// Robot file that was read: its text and its paths.
+pub(super) struct ReadFile {
+    /// Text of the robot file.
     pub(super) text: String,
-    /// Path of the file for messages.
+    /// Path of the file as messages show it.
     pub(super) shown: String,
-    /// Canonical path of the file.
+    /// Canonical path of the file on disk.
     pub(super) path: PathBuf,
 }
 
-/// Files of an import and the text composed of them.
-pub(super) struct Whole {
+/// Robot file with its included files, and the text composed of them.
+pub(super) struct ComposedText {
     /// Files that were read; the first one is the file that the user names.
-    pub(super) files: Vec<Read>,
-    /// Text that has been composed so far.
+    pub(super) files: Vec<ReadFile>,
+    /// Text of the robot file with its included files so far.
     pub(super) text: String,
     /// Pieces of the text, each with its file of origin.
     pub(super) pieces: Vec<Piece>,
 }
 
-impl Whole {
+impl ComposedText {
     /// Creates an empty text. The file that the user names is file 0.
-    pub(super) fn new(text: &str, path: &Path, name: &Name) -> Whole {
-        let first = Read { text: text.to_string(), shown: name.text.clone(), path: path.to_path_buf() };
-        Whole { files: vec![first], text: String::new(), pieces: Vec::new() }
+    pub(super) fn new(text: &str, path: &Path, name: &Name) -> ComposedText {
+        let first = ReadFile { text: text.to_string(), shown: name.text.clone(), path: path.to_path_buf() };
+        ComposedText { files: vec![first], text: String::new(), pieces: Vec::new() }
     }
 
     /// Appends bytes of a file to the composed text.
@@ -71,7 +71,7 @@ impl Whole {
 
     fn check_size(&self, name: &Name, cx: &mut Diagnostics) -> Option<()> {
         if self.text.len() > LARGEST_FILE {
-            file::report_file_error(&file::too_large(self.text.len() as u64), name, cx);
+            file::report_file_error(&file::too_large_message(self.text.len() as u64), name, cx);
             return None;
         }
         Some(())
@@ -80,7 +80,7 @@ impl Whole {
 
 /// Parses a composed text and calls `read` with its root element. `name` is the file that the user names.
 pub(super) fn import_composed_text(
-    whole: Whole,
+    whole: ComposedText,
     name: &Name,
     format: FileFormat,
     cx: &mut Diagnostics,
@@ -88,9 +88,9 @@ pub(super) fn import_composed_text(
 ) -> Option<Imported> {
     let files: Vec<(&str, &str)> =
         whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
-    let cx = &mut Cx::of_pieces(&files, whole.pieces, name.place.span, cx);
+    let cx = &mut Cx::context_of_pieces(&files, whole.pieces, name.place.span, cx);
     let declared = OnceCell::new();
-    let document = xml::parse(&whole.text, &declared, format, cx)?;
+    let document = xml::parse_document(&whole.text, &declared, format, cx)?;
     let mut imported = read(document.root_element(), cx)?;
     imported.files.extend(whole.files.into_iter().skip(1).map(|file| file.path));
     Some(imported)
@@ -98,10 +98,10 @@ pub(super) fn import_composed_text(
 
 /// Reports a file that includes itself. `open` are the files of the chain of includes, and `places` the
 /// `<include>` of each file.
-pub(super) fn report_circle(
+pub(super) fn report_include_cycle(
     known: usize,
     open: &[usize],
-    files: &[Read],
+    files: &[ReadFile],
     places: &[Name],
     at: &Name,
     cx: &mut Diagnostics,
@@ -114,14 +114,14 @@ pub(super) fn report_circle(
     }
 }
 
-/// Reports too many included files or too deep nesting.
-pub(super) fn report_many(depth: usize, at: &Name, cx: &mut Diagnostics) {
+/// Reports too many included files, or includes that are nested too deeply.
+pub(super) fn report_too_many_includes(depth: usize, at: &Name, cx: &mut Diagnostics) {
     let (most, what) =
         if depth > MAX_DEPTH { (MAX_DEPTH, "nested files") } else { (MAX_FILES, "included files") };
     cx.report_error(at.place.clone(), format!("more than {most} {what}"));
 }
 
-/// Returns the canonical path, so that a file has only one path.
+/// Returns the canonical path of a file, so that equal files have equal paths.
 pub(super) fn canonical_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }

@@ -63,7 +63,7 @@ const MOST_PREFIXES: usize = 16;
 /// Exporters drop the declarations of simulators' prefixes (`drake:`, `sensor:`) but keep the elements and
 /// attributes with these prefixes. The importers skip all of these, so missing declarations are not an error:
 /// the prefixes are declared in the root element.
-pub(super) fn parse<'t>(
+pub(super) fn parse_document<'t>(
     text: &'t str,
     declared: &'t OnceCell<String>,
     format: FileFormat,
@@ -76,11 +76,11 @@ pub(super) fn parse<'t>(
             return None;
         }
     };
-    let error = match parse_plain(text) {
-        Ok(document) => return refuse_template(&document, format, cx).then_some(document),
+    let error = match parse_without_prefixes(text) {
+        Ok(document) => return reject_template(&document, format, cx).then_some(document),
         Err(error) => error,
     };
-    let at = behind_name(text, root);
+    let at = end_of_name(text, root);
     let declarations = match &error {
         Error::UnknownNamespace(..) if root < text.len() => prefix_declarations(&text[root..], &prefixes),
         _ => String::new(),
@@ -88,8 +88,8 @@ pub(super) fn parse<'t>(
     cx.add(at, &declarations);
     let error = match &declarations {
         none if none.is_empty() => error,
-        some => match parse_plain(declared.get_or_init(|| insert_text(text, at, some))) {
-            Ok(document) => return refuse_template(&document, format, cx).then_some(document),
+        some => match parse_without_prefixes(declared.get_or_init(|| insert_text(text, at, some))) {
+            Ok(document) => return reject_template(&document, format, cx).then_some(document),
             Err(error) => error,
         },
     };
@@ -99,7 +99,7 @@ pub(super) fn parse<'t>(
 }
 
 /// Returns the index of the byte after the name of the element that starts at byte `element`.
-fn behind_name(text: &str, element: usize) -> usize {
+fn end_of_name(text: &str, element: usize) -> usize {
     let name = text.get(element + 1..).unwrap_or_default();
     let end = name.find(|c: char| c.is_whitespace() || matches!(c, '/' | '>' | '='));
     end.map_or(text.len(), |length| element + 1 + length)
@@ -133,13 +133,13 @@ fn not_in_a_name(c: char) -> bool {
     c.is_ascii() && !c.is_ascii_alphanumeric() && !matches!(c, '_' | '-' | '.')
 }
 
-fn parse_plain(text: &str) -> Result<Document<'_>, Error> {
+fn parse_without_prefixes(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, ParsingOptions { allow_dtd: false, ..ParsingOptions::default() })
 }
 
-/// Result of a scan of a file's markup.
+/// Result of a scan of an XML file's markup without building a tree.
 struct Scan<'t> {
-    /// Byte offset of the first element.
+    /// Byte offset of the root element.
     root: usize,
     /// Byte offset of the innermost element that is never closed.
     unclosed: Option<usize>,
@@ -147,7 +147,7 @@ struct Scan<'t> {
     prefixes: Vec<&'t str>,
 }
 
-/// Checks the limits without building a tree.
+/// Checks the limits on size and nesting of an XML file without building a tree.
 ///
 /// The scan agrees with the parser up to the first syntax error. After it the scan may be wrong, which has no
 /// effect because the parser stops there.
@@ -169,11 +169,11 @@ fn scan_limits(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, Strin
         let rest = &text[start..];
         at = start
             + if rest.starts_with("<!--") {
-                end_behind(rest, 4, "-->")
+                end_of_markup(rest, 4, "-->")
             } else if rest.starts_with("<![CDATA[") {
-                end_behind(rest, 9, "]]>")
+                end_of_markup(rest, 9, "]]>")
             } else if rest.starts_with("<?") {
-                end_behind(rest, 2, "?>")
+                end_of_markup(rest, 2, "?>")
             } else if rest.starts_with("<!DOCTYPE") {
                 return Err((
                     start,
@@ -184,7 +184,7 @@ fn scan_limits(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, Strin
                 ));
             } else if rest.starts_with("</") {
                 open.pop();
-                end_behind(rest, 2, ">")
+                end_of_markup(rest, 2, ">")
             } else {
                 root.get_or_insert(start);
                 let length = scan_tag(rest, start, &mut open, &mut note)?;
@@ -198,7 +198,7 @@ fn scan_limits(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, Strin
 }
 
 /// Returns the length of a piece of markup that ends with `end`.
-fn end_behind(rest: &str, skip: usize, end: &str) -> usize {
+fn end_of_markup(rest: &str, skip: usize, end: &str) -> usize {
     rest.get(skip..).and_then(|body| body.find(end)).map_or(rest.len(), |k| skip + k + end.len())
 }
 
@@ -237,20 +237,20 @@ fn scan_tag<'t>(
 
 /// Reports a template that xacro must expand first; only its first instruction or expression is reported.
 /// Returns true if the document is not a template.
-fn refuse_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>) -> bool {
+fn reject_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>) -> bool {
     for node in document.descendants().filter(Node::is_element) {
         let name = node.tag_name();
         if name.namespace().is_some_and(|uri| uri.contains("xacro")) {
             let message =
                 format!("{} is an instruction to xacro", quote_word(&format!("<xacro:{}>", name.name())));
             cx.report_error(&cx.source_position(node.range().start), message, |d| {
-                d.add_help(run_xacro(format))
+                d.add_help(xacro_help(format))
             });
             return false;
         }
         if let Some((offset, value)) = unexpanded_xacro_expression(node, format) {
             let message = format!("{} is an expression of xacro", quote_word(value));
-            cx.report_error(&cx.source_position(offset), message, |d| d.add_help(run_xacro(format)));
+            cx.report_error(&cx.source_position(offset), message, |d| d.add_help(xacro_help(format)));
             return false;
         }
     }
@@ -279,7 +279,7 @@ fn document_slice<'t>(node: Node<'_, 't>, range: std::ops::Range<usize>) -> Opti
 }
 
 /// Returns the help text with the command that expands a template.
-fn run_xacro(format: FileFormat) -> &'static str {
+fn xacro_help(format: FileFormat) -> &'static str {
     match format {
         FileFormat::Urdf => "expand the file first: `xacro robot.urdf.xacro > robot.urdf`",
         FileFormat::Mjcf => "expand the file first: `xacro robot.xml.xacro > robot.xml`",
@@ -287,7 +287,7 @@ fn run_xacro(format: FileFormat) -> &'static str {
     }
 }
 
-/// Reports an error of the parser.
+/// Reports a syntax error that the XML parser found.
 fn report_parser_error(
     error: &Error,
     text: &str,
@@ -315,7 +315,7 @@ fn report_parser_error(
             "this `&` does not begin an entity".to_string()
         }
         Error::UnknownNamespace(prefix, _) => {
-            help = (prefix == "xacro").then_some(run_xacro(format));
+            help = (prefix == "xacro").then_some(xacro_help(format));
             format!("unknown namespace prefix {}", quote_word(prefix))
         }
         other => other.to_string().replace(&format!(" at {}", other.pos()), "").replace('\'', "`"),
@@ -327,17 +327,21 @@ fn report_parser_error(
             FileFormat::Sdf => "an SDF file is XML: `<sdf version=\"…\"> … </sdf>`",
         });
     }
-    cx.report_error(&place_of(error, unclosed, cx), format!("malformed XML: {message}"), |d| match help {
-        Some(help) => d.add_help(help),
-        None => d,
-    });
+    cx.report_error(
+        &place_of_error(error, unclosed, cx),
+        format!("malformed XML: {message}"),
+        |d| match help {
+            Some(help) => d.add_help(help),
+            None => d,
+        },
+    );
 }
 
 /// Returns the position of a parser error. The parser gives no position for a premature end of the file.
-fn place_of(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
+fn place_of_error(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
     match (error, unclosed) {
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.source_position(offset),
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, None) => cx.end_of_file(),
-        _ => cx.parsed_at(error.pos().row, error.pos().col),
+        _ => cx.place_in_parsed_text(error.pos().row, error.pos().col),
     }
 }

@@ -1,4 +1,4 @@
-//! Unit vectors that are orthogonal to given vectors.
+//! Unit vectors that are perpendicular to given vectors.
 
 use crate::expr::Vec3;
 use crate::expr::diff::TINY;
@@ -23,8 +23,8 @@ pub fn normalised_or_zero(v: Vec3<'_>) -> Vec3<'_> {
 pub fn perpendicular_directions(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
     let g = axis[0].graph();
     let words: [(&'static str, Vec3<'_>); 3] = [0, 1, 2].map(|k| (AXES[k], Vec3::coordinate_axis(g, k)));
-    let is_along = |k: usize| axis.constant_components().is_some_and(|n| n[k].abs() == 1.0);
-    if let Some(k) = (0..3).find(|k| is_along(*k)) {
+    let is_along_coordinate_axis = |k: usize| axis.constant_components().is_some_and(|n| n[k].abs() == 1.0);
+    if let Some(k) = (0..3).find(|k| is_along_coordinate_axis(*k)) {
         return [words[(k + 1) % 3], words[(k + 2) % 3]];
     }
     let [first, second] = match in_plane(axis) {

@@ -10,11 +10,11 @@ use crate::mechanism::{LinkId, Model, Quantity};
 
 /// A scalar with its first time derivative, and its second time derivative at zero accelerations.
 pub struct Jet<'g> {
-    /// Value of the moving scalar.
+    /// Value of the scalar.
     pub value: Expr<'g>,
-    /// First time derivative of the scalar.
+    /// First time derivative of the moving scalar.
     pub rate: Expr<'g>,
-    /// Second time derivative at zero accelerations.
+    /// Second time derivative of the scalar at zero accelerations.
     pub second: Expr<'g>,
 }
 
@@ -22,11 +22,11 @@ pub struct Jet<'g> {
 /// of a link that is treated as fixed.
 #[derive(Clone, Copy)]
 pub struct Moving<'g> {
-    /// Value of the moving vector.
+    /// Value of the vector, in the axes of one link.
     pub value: Vec3<'g>,
-    /// First time derivative of the vector.
+    /// First time derivative of the moving vector.
     pub rate: Vec3<'g>,
-    /// Second time derivative at zero accelerations.
+    /// Second time derivative of the vector at zero accelerations.
     pub second: Vec3<'g>,
 }
 
@@ -54,11 +54,11 @@ impl<'g> Moving<'g> {
 
 /// Motion of a link relative to one of its ancestors, in the link's axes.
 pub struct Relative<'g> {
-    /// Link whose motion is described; `None` for the ground.
+    /// Link whose relative motion is described; `None` for the ground.
     pub link: Option<LinkId>,
     /// Ancestor that the motion is relative to; `None` for the ground.
     pub ancestor: Option<LinkId>,
-    /// Velocity of the link's origin, and angular velocity.
+    /// Relative velocity of the link's origin, and relative angular velocity.
     pub twist: Spatial<'g>,
     /// Acceleration of the origin, angular acceleration, at zero accelerations of the coordinates.
     pub acceleration: Spatial<'g>,
@@ -113,16 +113,20 @@ pub fn motion_of_point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>)
     let (w, a) = (on.twist.angular, &on.acceleration);
     let rate = on.twist.linear + w.cross(p);
     let second = a.linear + a.angular.cross(p) + w.cross(w.cross(p));
-    let in_ancestor = |v| change_axes(joints, v, on.link, on.ancestor);
-    Moving { value, rate: in_ancestor(rate), second: in_ancestor(second) }
+    let vector_in_ancestor = |v| change_axes(joints, v, on.link, on.ancestor);
+    Moving { value, rate: vector_in_ancestor(rate), second: vector_in_ancestor(second) }
 }
 
 /// Returns the motion of a direction fixed in a link, in the axes of the ancestor.
 pub fn motion_of_direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
     let w = on.twist.angular;
     let second = on.acceleration.angular.cross(e) + w.cross(w.cross(e));
-    let in_ancestor = |v| direction_out(joints, on, v);
-    Moving { value: in_ancestor(e), rate: in_ancestor(w.cross(e)), second: in_ancestor(second) }
+    let vector_in_ancestor = |v| direction_out(joints, on, v);
+    Moving {
+        value: vector_in_ancestor(e),
+        rate: vector_in_ancestor(w.cross(e)),
+        second: vector_in_ancestor(second),
+    }
 }
 
 /// Returns the components of a vector, given in a link's axes, in the axes of the ancestor.

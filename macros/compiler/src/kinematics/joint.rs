@@ -9,13 +9,13 @@ use crate::expr::replace::symbols_in;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
 
-/// One degree of freedom of a joint: a column of its motion subspace, in link axes. It is constant there
-/// except for links that are placed by expressions.
+/// One degree of freedom of a joint: a column of its motion subspace, in link axes, which is constant except
+/// for links placed by expressions.
 #[derive(Clone, Debug)]
 pub struct Dof<'g> {
     /// Index of the degree of freedom in `v`.
     pub index: usize,
-    /// Joint velocity per unit of the entry of `v`.
+    /// Joint velocity per unit of the entry of `v` that drives it.
     pub ratio: f64,
     /// Twist of the link per unit of joint velocity, in link axes.
     pub subspace: Spatial<'g>,
@@ -65,7 +65,7 @@ impl<'g> Joint<'g> {
         parent.plus(&map_spatial(&wrench, |c| self.lane_sum(c)))
     }
 
-    /// Returns the sum over identical limbs in lanes.
+    /// Returns the sum of an expression over identical limbs in SIMD lanes.
     pub fn lane_sum(&self, e: Expr<'g>) -> Expr<'g> {
         if self.limbs == 1 { e } else { e.lane_sum(self.limbs) }
     }
@@ -74,9 +74,10 @@ impl<'g> Joint<'g> {
     /// lanes.
     pub fn composite_inertia(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
         if self.limbs == 1 {
-            return parent.plus_placed(link, &self.rotation, self.translation);
+            return parent.add_placed_inertia(link, &self.rotation, self.translation);
         }
-        let alone = Inertia::zero(parent.mass.graph()).plus_placed(link, &self.rotation, self.translation);
+        let alone =
+            Inertia::zero(parent.mass.graph()).add_placed_inertia(link, &self.rotation, self.translation);
         parent.plus(&Inertia {
             mass: self.lane_sum(alone.mass),
             moment: alone.moment.map(|c| self.lane_sum(c)),
@@ -204,8 +205,8 @@ fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partia
     let mut subspace_rates = Vec::new();
     // The twist is linear in the velocities, so its value at zero velocities is the motion prescribed in
     // time.
-    let drift = map_spatial(&twist, |c| at_rest(space.graph, c));
-    for index in velocities_in(&twist) {
+    let drift = map_spatial(&twist, |c| with_zero_velocities(space.graph, c));
+    for index in velocities_in_twist(&twist) {
         let subspace = map_spatial(&twist, |c| partials.derivative(Quantity::Velocity(index).symbol(), c));
         subspace_rates.push(map_spatial(&subspace, |c| partials.time_derivative(space, c)));
         dofs.push(Dof { index, ratio: 1.0, subspace });
@@ -232,7 +233,7 @@ fn rate_of_placement<'g>(
     Spatial { linear: rotation.to_child(translation.map(|c| partials.time_derivative(space, c))), angular }
 }
 
-fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
+fn velocities_in_twist(twist: &Spatial<'_>) -> Vec<usize> {
     let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
     let velocity_index = |s: Symbol| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(k),
@@ -241,8 +242,8 @@ fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
     symbols_in(&all).into_iter().filter_map(velocity_index).collect()
 }
 
-/// Returns an expression with all velocities set to zero.
-fn at_rest<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
+/// Returns an expression with all velocity symbols set to zero.
+fn with_zero_velocities<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
     substitute_symbols(e, &|s| {
         matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| graph.zero())
     })

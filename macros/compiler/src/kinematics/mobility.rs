@@ -15,9 +15,9 @@ const STARTS: u64 = 24;
 const WITNESSES: usize = 3;
 /// Approximate bound on the operations of the search: large mechanisms are searched from fewer starts.
 const WORK: u64 = 40_000_000;
-/// Maximum number of Newton steps from each start.
+/// Maximum number of Newton steps for closing the loops from each start.
 const STEPS: u64 = 60;
-/// Residual below which the constraints are satisfied.
+/// Residual below which the loop constraints count as satisfied.
 const CLOSED: f64 = 1e-11;
 /// Residuals above this, m or rad, are not reduced to zero by more steps.
 const OPEN: f64 = 1e-4;
@@ -33,7 +33,7 @@ pub type Sample = (Vec<f64>, u64);
 pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) -> Vec<Sample> {
     let mut found: Vec<Sample> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
-    let wanted = if is_numeric(model) { STARTS } else { STARTS / 3 };
+    let wanted = if has_constant_residuals(model) { STARTS } else { STARTS / 3 };
     let possible = WORK / rows.evaluation_cost().max(1);
     let starts = wanted.min(possible / STEPS).max(1);
     let steps = STEPS.min(possible);
@@ -57,7 +57,7 @@ pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagno
 }
 
 /// Returns true if no residual depends on a parameter or on time.
-fn is_numeric(model: &Model<'_>) -> bool {
+fn has_constant_residuals(model: &Model<'_>) -> bool {
     let residuals: Vec<Expr<'_>> = model.constraints.iter().filter_map(|c| c.residual).collect();
     symbols_in(&residuals)
         .into_iter()
@@ -171,7 +171,7 @@ fn close_loops(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Res
     }
 }
 
-/// Returns `−Jᵀ (J Jᵀ + damping)⁻¹ r` by elimination.
+/// Returns the damped least-squares step `−Jᵀ (J Jᵀ + damping)⁻¹ r` by elimination.
 fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
     let n = rows.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

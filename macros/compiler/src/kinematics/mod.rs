@@ -17,8 +17,9 @@ pub use directions::{AXES, in_plane, normalised_or_zero, perpendicular_direction
 pub use joint::{Dof, Drift, Joint, joint_of_link, joints_of_model};
 pub use links::{accelerations, change_axes, twists};
 pub use rates::{
-    Partials, configuration_rate, coordinate_position, coordinate_velocity, energy_gradient, known_gradient,
-    motion_rates, position_in, rotation_rates, time_derivative, velocity_gradient, velocity_gradients,
+    Partials, configuration_rate, coordinate_position, coordinate_velocity, differentiated_gradient,
+    energy_gradient, motion_rates, position_in, rotation_rates, time_derivative, velocity_gradient,
+    velocity_gradients,
 };
-pub use rows::{Rows, random_configuration, value_of};
+pub use rows::{Rows, random_configuration, sampled_value};
 pub use spatial::{Spatial, map_spatial};

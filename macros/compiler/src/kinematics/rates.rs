@@ -23,7 +23,7 @@ pub fn coordinate_velocity<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 
 /// Returns the time derivative of an expression of `q`, `v` and `t` along the motion, at constant `v`.
 pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
-    rate_by(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).differentiate(e))
+    time_derivative_with(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).differentiate(e))
 }
 
 /// Returns the time derivatives of expressions of `q`, `v` and `t` along the motion, with accelerations or at
@@ -92,11 +92,15 @@ impl<'g> Partials<'g> {
 
     /// Returns the time derivative of an expression along the motion, at constant `v`.
     pub fn time_derivative(&mut self, space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
-        rate_by(space, e, |symbol| self.derivative(symbol, e))
+        time_derivative_with(space, e, |symbol| self.derivative(symbol, e))
     }
 }
 
-fn rate_by<'g>(space: Space<'_, 'g>, e: Expr<'g>, mut partial: impl FnMut(Symbol) -> Expr<'g>) -> Expr<'g> {
+fn time_derivative_with<'g>(
+    space: Space<'_, 'g>,
+    e: Expr<'g>,
+    mut partial: impl FnMut(Symbol) -> Expr<'g>,
+) -> Expr<'g> {
     let mut sum = e.zero();
     for symbol in symbols_in(&[e]) {
         let rate = match Quantity::from_symbol(symbol) {
@@ -180,10 +184,10 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
 /// to the velocities, at constant time.
 pub fn energy_gradient<'g>(model: &Model<'g>, energy: Expr<'g>) -> Gradient<'g> {
     let gradient_of_energy_rate = || velocity_gradient(time_derivative(model.configuration_space(), energy));
-    model.gradients.of_energy(&model.charts, energy, gradient_of_energy_rate)
+    model.gradients.gradient_of_energy(&model.charts, energy, gradient_of_energy_rate)
 }
 
 /// Returns the derivatives of an expression with respect to all velocities from the model's cache.
-pub fn known_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> Gradient<'g> {
+pub fn differentiated_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> Gradient<'g> {
     model.gradients.by_velocity(e, || velocity_gradient(e))
 }

@@ -3,14 +3,14 @@
 //! random parameters, so that only rows that are redundant in every configuration are recognised.
 
 use super::mobility::Sample;
-use super::rows::{Rows, random_configuration, value_of};
+use super::rows::{Rows, random_configuration, sampled_value};
 use crate::diag::Diagnostics;
 use crate::expr::eval::Tape;
 use crate::mechanism::{Constraint, Model};
 
 /// A row counts as a linear combination of others if its relative remainder is below this tolerance.
 const TOLERANCE: f64 = 1e-9;
-/// Number of random configurations that are tested.
+/// Number of random configurations in which redundancy is tested.
 const SAMPLES: u64 = 3;
 
 /// Rounding error of a row that is zero, relative to the other rows of the same vector.
@@ -24,7 +24,7 @@ pub fn constant_rows(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
     let sample_jacobian = |seed| rows.jacobian(&random_configuration(model, seed), seed);
     let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sample_jacobian).collect();
     let group_of_row = |row: usize| model.constraints[row].group;
-    let is_small = |sizes: &[f64], row: usize| {
+    let is_negligible_row = |sizes: &[f64], row: usize| {
         let all = sizes.iter().copied().fold(0.0, f64::max);
         let own = (0..sizes.len())
             .filter(|k| group_of_row(*k) == group_of_row(row))
@@ -39,7 +39,7 @@ pub fn constant_rows(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
     let is_constant_row = |row| {
         rows.is_constant(row)
             || zeros.iter().all(|zeros| zeros[row])
-            || sizes.iter().all(|sizes| is_small(sizes, row))
+            || sizes.iter().all(|sizes| is_negligible_row(sizes, row))
     };
     (0..model.constraints.len()).map(is_constant_row).collect()
 }
@@ -52,7 +52,7 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
     let tape = Tape::new(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
     let sample_gap_values = |seed| {
         let q = random_configuration(model, seed);
-        tape.evaluate_at(&|s| value_of(s, &q, seed))
+        tape.evaluate_at(&|s| sampled_value(s, &q, seed))
     };
     let is_violated = |gap: f64| gap.abs() > TOLERANCE || gap.is_nan();
     for ((c, gap), again) in constant.iter().zip(sample_gap_values(0)).zip(sample_gap_values(1)) {
@@ -107,7 +107,7 @@ pub fn prune_redundant_rows(
     !model.redundant.is_empty()
 }
 
-/// Orthonormal basis of the span of rows.
+/// Orthonormal basis of the span of Jacobian rows.
 #[derive(Default)]
 pub struct Basis(Vec<Vec<f64>>);
 

@@ -13,12 +13,12 @@ pub struct Rows<'g> {
     at: Vec<(usize, usize)>,
     entries: Tape<'g>,
     rates: Tape<'g>,
-    /// Number of constraints, and number of velocities.
+    /// Number of constraints, and number of velocities of the model.
     size: (usize, usize),
 }
 
 impl<'g> Rows<'g> {
-    /// Compiles all constraints of a model.
+    /// Compiles the residuals and Jacobians of all constraints of a model.
     pub fn new(model: &Model<'g>) -> Rows<'g> {
         let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
         let gradients = velocity_gradients(&rates).into_iter().enumerate();
@@ -46,20 +46,20 @@ impl<'g> Rows<'g> {
             + rows * rows * (rows / 3 + columns / 2)
     }
 
-    /// Returns true for a row that no velocity influences.
+    /// Returns true for a constraint row that no velocity influences.
     pub fn is_constant(&self, row: usize) -> bool {
         self.at.iter().all(|(r, _)| *r != row)
     }
 
     /// Returns the residuals of the holonomic constraints, which come first.
     pub fn residuals(&self, q: &[f64], seed: u64) -> Vec<f64> {
-        self.residuals.evaluate_at(&|s| value_of(s, q, seed))
+        self.residuals.evaluate_at(&|s| sampled_value(s, q, seed))
     }
 
     /// Returns the coefficients of the velocities at a configuration, with parameters sampled by `seed`.
     pub fn jacobian(&self, q: &[f64], seed: u64) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.size.1]; self.size.0];
-        let values = self.entries.evaluate_at(&|s| value_of(s, q, seed));
+        let values = self.entries.evaluate_at(&|s| sampled_value(s, q, seed));
         for ((row, column), value) in self.at.iter().zip(values) {
             rows[*row][*column] = value;
         }
@@ -69,14 +69,17 @@ impl<'g> Rows<'g> {
     /// Returns true if some constraint is violated at zero velocities beyond rounding: its rate has a
     /// velocity-free term.
     pub fn has_drift(&self, q: &[f64], seed: u64) -> bool {
-        self.rates.evaluate_with_rounding(&|s| value_of(s, q, seed)).iter().any(|rate| !rate.may_be_zero())
+        self.rates
+            .evaluate_with_rounding(&|s| sampled_value(s, q, seed))
+            .iter()
+            .any(|rate| !rate.may_be_zero())
     }
 
     /// Returns for each row whether all of its coefficients at a configuration are zero up to rounding
     /// errors.
     pub fn may_be_zero(&self, q: &[f64], seed: u64) -> Vec<bool> {
         let mut may_be = vec![true; self.size.0];
-        let entries = self.entries.evaluate_with_rounding(&|s| value_of(s, q, seed));
+        let entries = self.entries.evaluate_with_rounding(&|s| sampled_value(s, q, seed));
         for ((row, _), entry) in self.at.iter().zip(entries) {
             may_be[*row] &= entry.may_be_zero();
         }
@@ -85,7 +88,7 @@ impl<'g> Rows<'g> {
 }
 
 /// Returns the value of a symbol at zero velocities, with parameters sampled by `seed`.
-pub fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
+pub fn sampled_value(s: Symbol, q: &[f64], seed: u64) -> f64 {
     match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(_) => 0.0,
@@ -93,7 +96,7 @@ pub fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
     }
 }
 
-/// Returns random coordinates with unit quaternions.
+/// Returns a random configuration with unit quaternions.
 pub fn random_configuration(model: &Model<'_>, seed: u64) -> Vec<f64> {
     let mut q: Vec<f64> = (0..model.nq())
         .map(|k| 2.0 * sample_of_symbol(Quantity::Configuration(k).symbol(), seed) - 2.0)

@@ -7,9 +7,9 @@ use crate::mechanism::Model;
 /// velocity), or a wrench (force, moment about the link's origin).
 #[derive(Clone, Copy, Debug)]
 pub struct Spatial<'g> {
-    /// Linear part: velocity of the origin, or force.
+    /// Linear part of a spatial vector: velocity of the origin, or force.
     pub linear: Vec3<'g>,
-    /// Angular part: angular velocity, or moment about the origin.
+    /// Angular part of a spatial vector: angular velocity, or moment about the origin.
     pub angular: Vec3<'g>,
 }
 
@@ -35,7 +35,7 @@ impl<'g> Spatial<'g> {
     }
 }
 
-/// Applies a function to every component.
+/// Applies a function to every component of a spatial vector.
 pub fn map_spatial<'g>(s: &Spatial<'g>, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Spatial<'g> {
     Spatial { linear: s.linear.map(&mut f), angular: s.angular.map(&mut f) }
 }

@@ -1,7 +1,7 @@
 //! Generalized speeds: the velocities on which they depend, their invertibility, and the inverse matrix.
 
 use super::redundancy::Basis;
-use super::rows::{random_configuration, value_of};
+use super::rows::{random_configuration, sampled_value};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Rank, polynomial_to_expression};
 use crate::algebra::trigonometry::simplify_trigonometry;
@@ -26,7 +26,7 @@ fn sample_matrix(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
     let (tape, width) = (Tape::new(&entries), rows.first().map_or(0, Vec::len).max(1));
     let sampled_rows = |seed| {
         let q = random_configuration(model, seed);
-        tape.evaluate_at(&|s| value_of(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
+        tape.evaluate_at(&|s| sampled_value(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
     };
     (0..SAMPLES).map(sampled_rows).collect()
 }
@@ -42,7 +42,7 @@ pub fn named_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
 /// Returns the first row that is a combination of its predecessors in every configuration; `None` if there is
 /// none.
 pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
-    let depends_at = |sample: &Vec<Vec<f64>>| {
+    let first_dependent_row = |sample: &Vec<Vec<f64>>| {
         let mut basis = Basis::default();
         sample.iter().position(|row| {
             let before = basis.rank();
@@ -50,7 +50,7 @@ pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
             basis.rank() == before
         })
     };
-    let found: Vec<Option<usize>> = sample_matrix(model, rows).iter().map(depends_at).collect();
+    let found: Vec<Option<usize>> = sample_matrix(model, rows).iter().map(first_dependent_row).collect();
     found.into_iter().collect::<Option<Vec<usize>>>().and_then(|rows| rows.into_iter().max())
 }
 
@@ -106,9 +106,9 @@ fn block_inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
     let n = rows.len();
     let mut minors = Minors { model, rows, known: BTreeMap::new() };
     let all = (1_u32 << n) - 1;
-    let whole = minors.determinant(all, all);
+    let whole = minors.submatrix_determinant(all, all);
     let mut entry = |i: usize, j: usize| {
-        let minor = minors.determinant(all & !(1 << j), all & !(1 << i));
+        let minor = minors.submatrix_determinant(all & !(1 << j), all & !(1 << i));
         let signed = if (i + j).is_multiple_of(2) { minor } else { -minor };
         shorten_expression(model, signed / whole)
     };
@@ -124,7 +124,7 @@ struct Minors<'a, 'g> {
 
 impl<'g> Minors<'_, 'g> {
     /// Returns the determinant of a submatrix, expanded along its first row.
-    fn determinant(&mut self, rows: u32, columns: u32) -> Expr<'g> {
+    fn submatrix_determinant(&mut self, rows: u32, columns: u32) -> Expr<'g> {
         if rows == 0 {
             return self.model.graph.one();
         }
@@ -139,7 +139,7 @@ impl<'g> Minors<'_, 'g> {
             if entry.is_zero() {
                 continue;
             }
-            let product = entry * self.determinant(rows & (rows - 1), columns & !(1 << j));
+            let product = entry * self.submatrix_determinant(rows & (rows - 1), columns & !(1 << j));
             if k % 2 == 0 { sum += product } else { sum -= product }
         }
         let sum = shorten_expression(self.model, sum);
@@ -151,11 +151,11 @@ impl<'g> Minors<'_, 'g> {
 /// Returns an equivalent expression of the configuration with fewer operations, if identities of sines and
 /// cosines or of unit quaternions give one; otherwise the expression itself.
 pub fn shorten_expression<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
-    let found = short_form(model, e);
+    let found = shorter_form(model, e);
     found.filter(|found| Tape::new(&[*found]).node_count() < Tape::new(&[e]).node_count()).unwrap_or(e)
 }
 
-fn short_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
+fn shorter_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
     let mut normal = Normal::new(model.graph, |_: Symbol| Rank::Position);
     let p = normal.normal_form(e)?;
     let mut p = simplify_trigonometry(&mut normal.ring, &p)?;

@@ -11,26 +11,26 @@ pub struct Argument {
     pub kind: ArgumentKind,
 }
 
-/// Quantity that an argument expects.
+/// Quantity that an argument of a solid, surface or rotation expects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArgumentKind {
-    /// A mass, kg.
+    /// The argument is a mass, kg.
     Mass,
-    /// A length, m.
+    /// The argument is a length, m.
     Length,
-    /// A moment of inertia, kg·m².
+    /// The argument is a moment of inertia, kg·m².
     Inertia,
-    /// An angle, rad.
+    /// The argument is an angle, rad.
     Angle,
-    /// A half angle of a cone, rad.
+    /// The argument is the half angle of a cone, rad.
     HalfAngle,
-    /// A plain number.
+    /// The argument is a dimensionless number.
     Number,
-    /// A direction.
+    /// The argument is a direction (unit vector).
     Direction,
     /// A vector or a curve that is not a length.
     Vector,
-    /// A coordinate, by its name.
+    /// The argument is the name of a coordinate.
     Coordinate,
     /// A height, m, as an expression of the horizontal coordinates `u`, `w`.
     Height,
@@ -39,12 +39,12 @@ pub enum ArgumentKind {
 }
 
 impl Argument {
-    /// A mass.
+    /// The argument `mass` of solids.
     pub const MASS: Argument = Argument { name: "mass", kind: ArgumentKind::Mass };
-    /// The axis of a body of revolution.
+    /// The argument `axis`: the axis of a body of revolution.
     pub const AXIS: Argument = Argument { name: "axis", kind: ArgumentKind::Direction };
 
-    /// Returns a length of this name.
+    /// Returns an argument with this name that is a length.
     pub const fn length(name: &'static str) -> Argument {
         Argument { name, kind: ArgumentKind::Length }
     }
@@ -54,7 +54,7 @@ impl Argument {
         Argument { name, kind }
     }
 
-    /// Returns the names of arguments, separated by commas.
+    /// Returns the names of arguments as text, separated by commas.
     pub fn list_argument_names(arguments: &[Argument]) -> String {
         arguments.iter().map(|argument| argument.name).collect::<Vec<_>>().join(", ")
     }

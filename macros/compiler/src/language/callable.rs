@@ -8,28 +8,28 @@ use crate::expr::Function;
 pub enum Callable {
     /// A piecewise expression `if a < b { below } else { above }`, with its operands and pieces.
     If,
-    /// Elementary function of one variable.
+    /// Elementary function of one variable, such as `sin`.
     Elementary(Function),
-    /// Function of the language with its own row.
+    /// Function of the language with a row in the table of functions.
     Function(FunctionId),
-    /// A solid, as in `inertia = …`.
+    /// Solid as a function of the language, as in `inertia = rod(…)`.
     Solid(Solid),
-    /// A rotation.
+    /// Rotation as a function of the language, such as `x(angle)`.
     Rotation(Rotation),
-    /// `rolls(surface, surface)`.
+    /// The function `rolls(surface, surface)`.
     Rolls,
-    /// `slips(surface, surface)`.
+    /// The function `slips(surface, surface)`.
     Slips,
-    /// `collision()`: the collision geometry of a file.
+    /// The function `collision()`: the collision geometry of a file.
     Collision,
-    /// `poisson(e)`: a coefficient of restitution by impulses.
+    /// The function `poisson(e)`: a coefficient of restitution by impulses.
     Poisson,
 }
 
 /// Name of the calls that represent piecewise expressions; a keyword, so that no function can have it.
 pub const IF: &str = "if";
 
-/// Name of the collision geometry of a file's link.
+/// Name of the method for the collision geometry of a file's link.
 pub const COLLISION: &str = "collision";
 
 /// Names that can be called and belong to no table.
@@ -42,7 +42,7 @@ const OTHERS: [(&str, Callable); 5] = [
 ];
 
 impl Callable {
-    /// Returns the callable with this name.
+    /// Returns the callable function of the language with this name.
     pub fn of_name(name: &str) -> Option<Callable> {
         let elementary = Function::ALL.iter().find(|(known, _)| *known == name);
         let find_other_callable = || OTHERS.iter().find(|(known, _)| *known == name);

@@ -2,13 +2,13 @@
 
 use super::ratio::Ratio;
 
-/// Index of an unknown dimension.
+/// Index of an unknown dimension in unit inference.
 pub type Variable = usize;
 
 /// A dimension: powers of metre, kilogram and second, times powers of unknown dimensions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dimension {
-    /// Exponents of length, mass and time.
+    /// Exponents of length, mass and time in the dimension.
     pub base: [Ratio; 3],
     /// Nonzero exponents of the unknown dimensions, in ascending order of their numbers.
     pub unknown: Vec<(Variable, Ratio)>,
@@ -21,7 +21,7 @@ impl Dimension {
         Dimension { base, unknown: Vec::new() }
     }
 
-    /// Returns the dimension that is a single unknown.
+    /// Returns the dimension that consists of a single unknown.
     pub fn unknown_dimension(v: Variable) -> Dimension {
         Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
     }
@@ -31,7 +31,7 @@ impl Dimension {
         self.unknown.is_empty()
     }
 
-    /// Returns whether the dimension is that of plain numbers and angles.
+    /// Returns whether the dimension is that of plain numbers and angles (all exponents zero).
     pub fn is_plain(&self) -> bool {
         self.is_known() && self.base.iter().all(|e| e.is_zero())
     }
@@ -56,7 +56,7 @@ impl Dimension {
         Dimension::new(0, 0, 0).times_power(self, exponent)
     }
 
-    /// Returns `self × other^exponent`, or `None` if the exponents become too large.
+    /// Returns the dimension `self × other^exponent`, or `None` if the exponents become too large.
     pub fn times_power(&self, other: &Dimension, exponent: Ratio) -> Option<Dimension> {
         let mut base = self.base;
         for (sum, e) in base.iter_mut().zip(other.base) {
@@ -79,43 +79,43 @@ impl Dimension {
     }
 }
 
-/// Plain numbers and angles.
+/// Dimension of plain numbers and angles: all exponents are zero.
 pub const PLAIN: Dimension = Dimension::new(0, 0, 0);
-/// Length, m.
+/// Dimension of a length, m.
 pub const LENGTH: Dimension = Dimension::new(1, 0, 0);
-/// Mass, kg.
+/// Dimension of a mass, kg.
 pub const MASS: Dimension = Dimension::new(0, 1, 0);
-/// Time, s.
+/// Dimension of a time, s.
 pub const TIME: Dimension = Dimension::new(0, 0, 1);
-/// Speed, m/s.
+/// Dimension of a speed, m/s.
 pub const SPEED: Dimension = Dimension::new(1, 0, -1);
-/// Reciprocal of a speed, s/m.
+/// Dimension of the reciprocal of a speed, s/m.
 pub const SLOWNESS: Dimension = Dimension::new(-1, 0, 1);
-/// Acceleration, m/s².
+/// Dimension of an acceleration, m/s².
 pub const ACCELERATION: Dimension = Dimension::new(1, 0, -2);
-/// Rate of an angle, 1/s.
+/// Dimension of the rate of an angle, 1/s.
 pub const RATE: Dimension = Dimension::new(0, 0, -1);
-/// Angular acceleration, 1/s².
+/// Dimension of an angular acceleration, 1/s².
 pub const RATE_OF_RATE: Dimension = Dimension::new(0, 0, -2);
-/// Moment of inertia, kg·m².
+/// Dimension of a moment of inertia, kg·m².
 pub const INERTIA: Dimension = Dimension::new(2, 1, 0);
-/// Force, N.
+/// Dimension of a force, N.
 pub const FORCE: Dimension = Dimension::new(1, 1, -2);
-/// Density, kg/m³.
+/// Dimension of a density, kg/m³.
 pub const DENSITY: Dimension = Dimension::new(-3, 1, 0);
-/// Pressure, Pa.
+/// Dimension of a pressure, Pa.
 pub const PRESSURE: Dimension = Dimension::new(-1, 1, -2);
-/// Energy, J, and torque, N·m.
+/// Dimension of an energy, J, or a torque, N·m.
 pub const ENERGY: Dimension = Dimension::new(2, 1, -2);
-/// Momentum, kg·m/s.
+/// Dimension of a momentum, kg·m/s.
 pub const MOMENTUM: Dimension = Dimension::new(1, 1, -1);
-/// Angular momentum, kg·m²/s.
+/// Dimension of an angular momentum, kg·m²/s.
 pub const ANGULAR_MOMENTUM: Dimension = Dimension::new(2, 1, -1);
-/// Power, W.
+/// Dimension of a power, W.
 pub const POWER: Dimension = Dimension::new(2, 1, -3);
 /// Strength of an attraction by the square of the distance, N·m².
 pub const STRENGTH: Dimension = Dimension::new(3, 1, -2);
-/// Constant of gravity, m³/(kg·s²).
+/// Dimension of the constant of gravity, m³/(kg·s²).
 pub const GRAVITATION: Dimension = Dimension::new(3, -1, -2);
-/// Gravitational parameter, m³/s².
+/// Dimension of a gravitational parameter, m³/s².
 pub const ATTRACTION: Dimension = Dimension::new(3, 0, -2);

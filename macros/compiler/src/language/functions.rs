@@ -17,13 +17,13 @@ pub struct FunctionRow {
     pub name: &'static str,
     /// Names of the function in other tools.
     pub synonyms: &'static str,
-    /// Arguments of the function, as the message about wrong arguments lists them.
+    /// Arguments of the function, as the error message about wrong arguments lists them.
     pub takes: &'static str,
-    /// Help of the message about wrong arguments.
+    /// Help line of the error message about wrong arguments of the function.
     pub usage: &'static str,
-    /// Quantities on which the value depends.
+    /// Quantities on which the value of the function depends.
     pub depends_on: Dependence,
-    /// Dimension of the value, and those that the arguments must have.
+    /// Dimension of the function's value, and dimensions that its arguments must have.
     pub unit: UnitRule,
 }
 
@@ -32,13 +32,13 @@ pub struct FunctionRow {
 pub enum Dependence {
     /// The configuration, and the quantities that its arguments depend on.
     Arguments,
-    /// The value depends on velocities.
+    /// The value of the function depends on velocities.
     Motion,
-    /// The value depends on accelerations.
+    /// The value of the function depends on accelerations.
     Acceleration,
     /// Velocities, and accelerations where an argument is a motion itself.
     Rate,
-    /// Velocities, and inputs where an argument is a contact.
+    /// The value depends on velocities, and on inputs if an argument is a contact.
     Power,
     /// Velocities and inputs, which determine the forces of joints and contacts.
     Reaction,
@@ -51,38 +51,38 @@ pub enum UnitRule {
     Unknown,
     /// Fixed dimension, for the value and all arguments.
     Of(Dimension),
-    /// Dimension of a direction.
+    /// The value has the dimension of a direction: dimensionless.
     Direction,
-    /// Dimension of the arguments, which must be equal.
+    /// The value has the dimension of the arguments, which must be equal.
     Alike,
-    /// A plain number; the dimensions of the arguments must be equal.
+    /// The value is dimensionless; the dimensions of the arguments must be equal.
     Quotient,
-    /// Dimension of the first argument.
+    /// The value has the dimension of the first argument.
     LikeFirst,
-    /// Dimension of the last argument.
+    /// The value has the dimension of the last argument.
     LikeLast,
     /// Dimension of the product of the arguments; for a scalar the product of two directions is plain.
     Product {
-        /// Whether the value is a scalar.
+        /// Whether the value of the function is a scalar.
         scalar: bool,
     },
-    /// Dimension of the first argument, plain for a direction.
+    /// The value has the dimension of the first argument; it is dimensionless for a direction.
     Magnitude,
     /// Dimension of the first argument raised to the second argument.
     Power,
-    /// Dimension of the first argument over time.
+    /// The value has the dimension of the first argument over time.
     TimeDerivative,
-    /// Inverse of the dimension of the first argument.
+    /// The value has the inverse of the dimension of the first argument.
     Inverse,
-    /// Dimension of a field over a length.
+    /// The value has the dimension of a field over a length.
     Gradient,
     /// A fixed dimension; the first argument is a pair of points or frames, `y / x`.
     Places(Dimension),
-    /// A moment of inertia, if all directions are plain.
+    /// The value is a moment of inertia, if all directions are dimensionless.
     Moment,
     /// A length; the arguments are two points and a round surface.
     Cable,
-    /// This dimension, if it has a unit; the argument is a height.
+    /// The value has this dimension, if it has a unit; the argument is a height.
     OfHeight(Option<Dimension>),
 }
 
@@ -92,7 +92,7 @@ const THREE: &str = "3 arguments";
 const CURVE: &str = "a curve and the coordinate along it";
 const MOVING: &str = "a body and a frame";
 
-/// Returns a row from its fields, in their order.
+/// Returns a row of the table of functions from its fields, in their order.
 const fn row(
     name: &'static str,
     synonyms: &'static str,
@@ -198,7 +198,7 @@ table! {
         Skew = row("skew", "", (ONE, "write `skew(a)`"), Arguments, LikeFirst);
         /// The outer product `a bᵀ`.
         Outer = row("outer", "", (TWO, "write `outer(a, b)`"), Arguments, Product { scalar: false });
-        /// The rotation that takes the axes of one frame to those of another.
+        /// Rotation matrix that takes the axes of one frame to those of another.
         Rotation = row("rotation", "",
             ("two frames", "write `rotation(B / A)`, which rotates the axes of A into those of B"),
             Arguments, Of(PLAIN));

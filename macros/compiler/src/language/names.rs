@@ -1,13 +1,13 @@
 //! Names that have a value in every expression.
 
-/// A name with a value in every expression.
+/// Built-in name of the language, with a value in every expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Builtin {
     /// Direction of an axis of the current frame, by its index.
     Axis(usize),
-    /// The number π.
+    /// Built-in name of the number π.
     Pi,
-    /// Time.
+    /// Built-in name of the time, s.
     Time,
 }
 

@@ -9,23 +9,23 @@ pub struct Ratio {
     d: i64,
 }
 
-/// Largest numerator and denominator of an exponent.
+/// Largest numerator and denominator of an exponent in dimensions.
 const LIMIT: i64 = 1_000_000;
 /// Largest denominator of a power that is read from a number.
 const READABLE: i64 = 120;
 
 impl Ratio {
-    /// The exponent zero.
+    /// The exponent zero as a fraction.
     pub const ZERO: Ratio = Ratio::from_integer(0);
-    /// The exponent one.
+    /// The exponent one as a fraction.
     pub const ONE: Ratio = Ratio::from_integer(1);
 
-    /// Returns an integer as a fraction.
+    /// Returns an integer as a fraction with the denominator one.
     pub const fn from_integer(n: i64) -> Ratio {
         Ratio { n, d: 1 }
     }
 
-    /// Returns the fraction `n / d`.
+    /// Returns the fraction `n / d` in lowest terms.
     pub fn new(n: i64, d: i64) -> Option<Ratio> {
         if d == 0 {
             return None;
@@ -35,7 +35,7 @@ impl Ratio {
         (n.abs() <= LIMIT && d <= LIMIT).then_some(Ratio { n, d })
     }
 
-    /// Returns the simple fraction that equals a number, if there is one.
+    /// Returns the simple fraction that equals a number, if one exists.
     pub fn from_value(x: f64) -> Option<Ratio> {
         let numerator_for = |d: i64| {
             let n = x * d as f64;
@@ -54,22 +54,22 @@ impl Ratio {
         (self.n, self.d)
     }
 
-    /// Returns `−self`.
+    /// Returns the negative `−self` of the fraction.
     pub fn negated(self) -> Ratio {
         Ratio { n: -self.n, d: self.d }
     }
 
-    /// Returns `self + other`.
+    /// Returns the sum `self + other` of two fractions; `None` on overflow.
     pub fn checked_sum(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.d + other.n * self.d, self.d * other.d)
     }
 
-    /// Returns `self × other`.
+    /// Returns the product `self × other` of two fractions; `None` on overflow.
     pub fn checked_product(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.n, self.d * other.d)
     }
 
-    /// Returns `1 / self`.
+    /// Returns the reciprocal `1 / self` of the fraction; `None` for zero.
     pub fn inverse(self) -> Option<Ratio> {
         Ratio::new(self.d, self.n)
     }

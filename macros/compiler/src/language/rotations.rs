@@ -9,7 +9,7 @@ pub struct RotationRow {
     pub name: &'static str,
     /// Names of the rotation in other tools.
     pub synonyms: &'static str,
-    /// Arguments of the rotation.
+    /// Arguments of the rotation function.
     pub arguments: &'static [Argument],
     /// True for axes that a vector or a curve determines; such axes come first in a `Frame`.
     pub natural: bool,
@@ -35,7 +35,7 @@ const fn number_argument(name: &'static str) -> Argument {
 }
 
 table! {
-    /// A rotation of the language.
+    /// Rotation function of the language.
     Rotation: RotationRow {
         /// Rotation about the x axis.
         X = rotation_row("x", "rx rotx rotatex xrot", &[ANGLE]);

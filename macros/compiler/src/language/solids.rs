@@ -34,27 +34,27 @@ const fn moment_argument(name: &'static str) -> Argument {
 }
 
 table! {
-    /// A homogeneous solid, or individual moments of inertia.
+    /// Solid of the language: a homogeneous solid, or individual moments of inertia.
     Solid: SolidRow {
-        /// A thin rod.
+        /// Thin rod, by mass, length and axis.
         Rod = SolidRow {
             name: "rod", synonyms: "bar stick thinrod slenderrod beam line",
             arguments: &[MASS, LENGTH, AXIS], piece: Some(PieceKind::Rod),
             inertia: |n, axis| axisymmetric(n[0].zero(), n[0] * n[1].square() * (1.0 / 12.0), axis),
         };
-        /// A thin ring.
+        /// Thin ring, a homogeneous solid of inertia expressions.
         Ring = SolidRow {
             name: "ring", synonyms: "hoop",
             arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Ring),
             inertia: |n, axis| axisymmetric(n[0] * n[1].square(), n[0] * n[1].square() * 0.5, axis),
         };
-        /// A thin disk.
+        /// Thin disk, a homogeneous solid of inertia expressions.
         Disk = SolidRow {
             name: "disk", synonyms: "disc",
             arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Disk),
             inertia: |n, axis| axisymmetric(n[0] * n[1].square() * 0.5, n[0] * n[1].square() * 0.25, axis),
         };
-        /// A cylinder.
+        /// Solid cylinder, for inertia expressions.
         Cylinder = SolidRow {
             name: "cylinder", synonyms: "",
             arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cylinder),
@@ -64,7 +64,7 @@ table! {
                 axisymmetric(axial, n[0] * transverse, axis)
             },
         };
-        /// A cylinder with a coaxial hole.
+        /// Hollow cylinder: a cylinder with a coaxial hole, for inertia expressions.
         Tube = SolidRow {
             name: "tube", synonyms: "pipe hollowcylinder",
             arguments: &[
@@ -76,7 +76,7 @@ table! {
                 axisymmetric(n[0] * radii * 0.5, n[0] * (radii * 0.25 + n[3].square() * (1.0 / 12.0)), axis)
             },
         };
-        /// A cone.
+        /// Solid cone, for inertia expressions.
         Cone = SolidRow {
             name: "cone", synonyms: "",
             arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cone),
@@ -86,7 +86,7 @@ table! {
                 axisymmetric(axial, n[0] * transverse, axis)
             },
         };
-        /// A cylinder of the given height between two half balls.
+        /// Capsule: a cylinder of the given height between two half balls, for inertia expressions.
         Capsule = SolidRow {
             name: "capsule", synonyms: "pill",
             arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Capsule),
@@ -101,31 +101,31 @@ table! {
                 axisymmetric(axial, transverse, axis)
             },
         };
-        /// A ball.
+        /// Solid ball, for inertia expressions.
         Sphere = SolidRow {
             name: "sphere", synonyms: "ball",
             arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
             inertia: |n, _| Sym3::multiple_of_identity(n[0] * n[1].square() * 0.4),
         };
-        /// A thin hollow ball.
+        /// Thin hollow ball, for inertia expressions.
         Shell = SolidRow {
             name: "shell", synonyms: "hollowsphere sphericalshell",
             arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
             inertia: |n, _| Sym3::multiple_of_identity(n[0] * n[1].square() * (2.0 / 3.0)),
         };
-        /// A cuboid.
+        /// Solid cuboid, for inertia expressions.
         Cuboid = SolidRow {
             name: "cuboid", synonyms: "cube brick block cuboid3 parallelepiped rectangle",
             arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
             inertia: |n, _| of_three_lengths(n[0] * (1.0 / 12.0), n),
         };
-        /// A cuboid by its other name.
+        /// Solid cuboid under the name `box`, for inertia expressions.
         Box = SolidRow {
             name: "box", synonyms: "",
             arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
             inertia: |n, _| of_three_lengths(n[0] * (1.0 / 12.0), n),
         };
-        /// A thin rectangle.
+        /// Thin rectangular plate, for inertia expressions.
         Plate = SolidRow {
             name: "plate", synonyms: "sheet lamina",
             arguments: &[MASS, X, Y], piece: Some(PieceKind::Cuboid),
@@ -134,7 +134,7 @@ table! {
                 diagonal_inertia([m * n[2].square(), m * n[1].square(), m * (n[1].square() + n[2].square())])
             },
         };
-        /// An ellipsoid.
+        /// Solid ellipsoid, for inertia expressions.
         Ellipsoid = SolidRow {
             name: "ellipsoid", synonyms: "",
             arguments: &[
@@ -143,7 +143,7 @@ table! {
             piece: Some(PieceKind::Ellipsoid),
             inertia: |n, _| of_three_lengths(n[0] * 0.2, n),
         };
-        /// Three principal moments of inertia.
+        /// Three principal moments of inertia instead of a solid.
         Diagonal = SolidRow {
             name: "diagonal", synonyms: "diag principal",
             arguments: &[moment_argument("xx"), moment_argument("yy"), moment_argument("zz")], piece: None,
@@ -153,7 +153,7 @@ table! {
 }
 
 impl Solid {
-    /// Returns the syntax of the solid: `rod(mass, length, axis)`.
+    /// Returns the syntax of the solid's function, such as `rod(mass, length, axis)`.
     pub fn usage_syntax(self) -> String {
         format!("{}({})", self.name(), Argument::list_argument_names(self.row().arguments))
     }

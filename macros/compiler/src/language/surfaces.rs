@@ -7,11 +7,11 @@ use SurfaceId::{Capsule, Circle, Cone, Cuboid, Cylinder, Drum, Ellipsoid, Hull, 
 /// A row of the table of surfaces.
 #[derive(Debug)]
 pub struct SurfaceRow {
-    /// The name. Surfaces of one name differ in the number of their arguments.
+    /// Name of the surface. Surfaces of the same name differ in the number of their arguments.
     pub name: &'static str,
-    /// Words of other tools.
+    /// Names of the surface in other tools.
     pub synonyms: &'static str,
-    /// The arguments.
+    /// Arguments of the surface.
     pub arguments: &'static [Argument],
     /// Surfaces with which contacts are supported; `None` for a point.
     pub contacts: &'static [Option<SurfaceId>],
@@ -50,44 +50,44 @@ const fn surface_row(
 }
 
 table! {
-    /// A surface of a body.
+    /// Surface of a body, for rolling pairs and contacts.
     SurfaceId: SurfaceRow {
-        /// The rim of a disk.
+        /// Surface `circle`: the rim of a disk.
         Circle = surface_row("circle", &[RADIUS, AXIS], NONE, &[]);
         /// A tyre: radius of the centre line, radius of the section.
         Torus = surface_row("torus", &[RADIUS, Argument::length("tube_radius"), AXIS], NONE, &[]);
-        /// A sphere.
+        /// Surface `sphere`: the outside of a sphere.
         Sphere = surface_row("sphere", &[RADIUS], ROUND, &[Sphere]);
-        /// An ellipsoid, by its semi-axes.
+        /// Surface `ellipsoid`, given by its semi-axes.
         Ellipsoid = surface_row("ellipsoid", AXES, NONE, &[]);
-        /// A plane, by its normal towards the other surface.
+        /// Surface `plane`, given by its normal towards the other surface.
         Plane = surface_row("plane", &[Argument::new("normal", ArgumentKind::Direction)], ON_PLANE,
             &[Circle, Torus, Sphere, Ellipsoid, Cone]);
-        /// The inside of a sphere.
+        /// Surface `bowl`: the inside of a sphere.
         Bowl = surface_row("bowl", &[RADIUS], ROUND, &[Sphere]);
-        /// The outside of an infinitely long cylinder.
+        /// Surface `cylinder` without length: the outside of an infinitely long cylinder.
         Cylinder = surface_row("cylinder", &[RADIUS, AXIS], &[None, Some(Sphere), Some(Capsule)], &[Sphere]);
-        /// A cylinder with two ends.
+        /// Surface `cylinder` with length: a cylinder with two end faces.
         Drum = surface_row("cylinder", &[RADIUS, LENGTH, AXIS], &[Some(Sphere), Some(Capsule)], &[]);
-        /// The inside of a cylinder.
+        /// Surface `tube`: the inside of a cylinder.
         Tube = surface_row("tube", &[RADIUS, AXIS], ROUND, &[Sphere]);
         /// The outside of a cone, with the axis from the apex into the cone.
         Cone = surface_row("cone", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
         /// The inside of a cone, with the axis from the apex to the opening.
         Funnel = surface_row("funnel", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
-        /// A surface given by its points, which depend on two coordinates.
+        /// Surface `surface`: a parametric surface, given by points that depend on two coordinates.
         Sheet = surface_row("surface",
             &[Argument::new("u", ArgumentKind::Coordinate), Argument::new("w", ArgumentKind::Coordinate),
                 Argument::length("point")],
             NONE, &[Circle, Torus, Sphere, Ellipsoid]);
         /// A height over x and y, as an expression of the horizontal coordinates `u`, `w`.
         Terrain = surface_row("terrain", &[Argument::new("height", ArgumentKind::Height)], ON_TERRAIN, &[]);
-        /// A box, by its edges.
+        /// Surface `box`, given by the lengths of its edges.
         Cuboid = surface_row("cuboid", AXES,
             &[Some(Sphere), Some(Capsule), Some(Cuboid), Some(Cylinder), Some(Drum)], &[]);
         /// A cylinder between two hemispheres, by radius and distance of their centres.
         Capsule = surface_row("capsule", &[RADIUS, LENGTH, AXIS], &[None, Some(Sphere), Some(Capsule)], &[]);
-        /// The convex hull of points.
+        /// Surface `hull`: the convex hull of points.
         Hull = surface_row("hull", &[Argument::new("points", ArgumentKind::Points)], &[Some(Sphere)], &[]);
     }
 }

@@ -4,23 +4,23 @@ use super::{Op, Operand, Program};
 use crate::expr::{Function as Elementary, Symbol};
 use std::cmp::Reverse;
 
-/// One angle with the instructions that compute its sine and cosine.
+/// Angle of a program with the instructions that compute its sine and cosine.
 pub struct Angle {
     /// Angle whose sine and cosine are computed.
     pub angle: Operand,
-    /// Instruction that computes the sine of the angle.
+    /// Index of the instruction that computes the sine of the angle.
     pub sine: Option<usize>,
-    /// Instruction that computes the cosine of the angle.
+    /// Index of the instruction that computes the cosine of the angle.
     pub cosine: Option<usize>,
 }
 
-/// Angles that are arithmetic expressions of the arguments.
+/// Angles of a program that are arithmetic expressions of the arguments alone.
 pub struct Angles {
-    /// Angles of the program.
+    /// Angles of the program whose sine or cosine is computed.
     pub list: Vec<Angle>,
     /// Whether each instruction is the sine or cosine of one of the angles.
     pub covered: Vec<bool>,
-    /// Whether an angle depends on each instruction.
+    /// Whether an angle depends on each instruction's value.
     pub before: Vec<bool>,
 }
 

@@ -4,7 +4,7 @@
 //! if `a` is computed so late that the sum would wait.
 
 use super::terms::{LONGEST, Sum, Term};
-use super::times::Times;
+use super::times::InstructionTimes;
 use super::{Operand, Program};
 use crate::machine::{ADD, MULTIPLY};
 
@@ -13,7 +13,7 @@ impl Program {
     pub(super) fn order_terms_for_fusion(mut self) -> Program {
         // Rewritten additions move to where their sum is used, after all its operands.
         let mut late = vec![false; self.instructions.len()];
-        let mut times = Times::default();
+        let mut times = InstructionTimes::default();
         for k in 0..self.instructions.len() {
             let before = times.instruction_time(&self, k);
             times.known.push(before);
@@ -39,7 +39,7 @@ impl Program {
 
     /// Returns the sum that ends with instruction `k`, if another order of its terms saves an instruction.
     fn sum_to_chain(&self, k: usize) -> Option<Sum> {
-        let ends = self.instructions[k].two_terms()?;
+        let ends = self.instructions[k].addition_terms()?;
         // With a product among its terms the last addition is fused already.
         if ends.iter().any(|t| self.is_fusable_product(*t)) {
             return None;
@@ -59,7 +59,8 @@ impl Program {
     /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it
     /// is not, or if the sum is too long.
     fn collect_terms(&self, top: Term, sum: &mut Sum) -> bool {
-        let Some(terms) = self.lone_addition(top.operand).filter(|_| sum.additions.len() < LONGEST) else {
+        let Some(terms) = self.single_use_addition(top.operand).filter(|_| sum.additions.len() < LONGEST)
+        else {
             return false;
         };
         let mut terms = terms.map(|t| t.with_outer_sign(top.negative));
@@ -94,7 +95,7 @@ impl Program {
 
     /// Returns true for a product whose only use is this term.
     fn is_fusable_product(&self, term: Term) -> bool {
-        self.lone_product(term.operand).is_some()
+        self.single_use_product(term.operand).is_some()
     }
 
     /// Sorts the instructions so that operands precede operations; `late` instructions come right before
@@ -133,7 +134,7 @@ mod tests {
     /// Sums of tens of thousands of terms with two products at the beginning or at the end, on the small
     /// stack of a test thread.
     #[test]
-    fn long_sums_need_no_stack() {
+    fn long_sums_do_not_overflow_the_stack() {
         let g = Graph::new();
         let symbols: Vec<_> = (0..40_000).map(|k| g.symbol(Symbol(k))).collect();
         let products = symbols[0] * symbols[1] + symbols[2] * symbols[3];

@@ -10,7 +10,7 @@ impl Program {
         let inner = self.inner_additions();
         let sums = (0..self.instructions.len()).filter(|k| !inner[*k]);
         let mut groups =
-            sums.filter_map(|k| Some((k, self.group_by_common_factor(self.terms_of(k)?)?))).peekable();
+            sums.filter_map(|k| Some((k, self.group_by_common_factor(self.terms_of_sum(k)?)?))).peekable();
         if groups.peek().is_none() {
             drop(groups);
             return self;
@@ -39,9 +39,9 @@ impl Program {
     fn inner_additions(&self) -> Vec<bool> {
         let mut inner = vec![false; self.instructions.len()];
         for op in &self.instructions {
-            for term in op.two_terms().into_iter().flatten() {
+            for term in op.addition_terms().into_iter().flatten() {
                 if let Operand::Value(k) = term.operand {
-                    inner[k] = self.lone_addition(term.operand).is_some();
+                    inner[k] = self.single_use_addition(term.operand).is_some();
                 }
             }
         }
@@ -49,15 +49,15 @@ impl Program {
     }
 
     /// Returns the terms of the sum that ends with instruction `k`, from left to right.
-    fn terms_of(&self, k: usize) -> Option<Vec<Term>> {
+    fn terms_of_sum(&self, k: usize) -> Option<Vec<Term>> {
         let mut terms = Vec::new();
-        let [a, b] = self.instructions[k].two_terms()?;
+        let [a, b] = self.instructions[k].addition_terms()?;
         let mut todo = vec![b, a];
         while let Some(term) = todo.pop() {
             if terms.len() + todo.len() > LONGEST {
                 return None;
             }
-            match self.lone_addition(term.operand) {
+            match self.single_use_addition(term.operand) {
                 Some([a, b]) => {
                     todo.extend([b.with_outer_sign(term.negative), a.with_outer_sign(term.negative)])
                 }
@@ -68,7 +68,7 @@ impl Program {
     }
 
     /// Groups the terms of a sum by common factors. Returns `None` if no factor is common to two terms.
-    fn group_by_common_factor(&self, mut open: Vec<Term>) -> Option<Vec<Group>> {
+    fn group_by_common_factor(&self, mut open: Vec<Term>) -> Option<Vec<FactorGroup>> {
         if !self.may_share_factors(&open) {
             return None;
         }
@@ -77,19 +77,19 @@ impl Program {
         while let Some(factor) = self.most_common_factor(&open) {
             saved = true;
             let mut others = Vec::new();
-            open.retain(|t| match self.cofactor(*t, factor) {
+            open.retain(|t| match self.cofactor_of_term(*t, factor) {
                 Some(other) => {
                     others.push(other);
                     false
                 }
                 None => true,
             });
-            groups.push(Group { factor: Some(factor), others });
+            groups.push(FactorGroup { factor: Some(factor), others });
         }
         // A term without common factor forms a group of its own.
-        groups.extend(open.into_iter().map(|t| match self.lone_product(t.operand) {
-            Some((a, b)) => Group { factor: Some(a), others: vec![Term { operand: b, ..t }] },
-            None => Group { factor: None, others: vec![t] },
+        groups.extend(open.into_iter().map(|t| match self.single_use_product(t.operand) {
+            Some((a, b)) => FactorGroup { factor: Some(a), others: vec![Term { operand: b, ..t }] },
+            None => FactorGroup { factor: None, others: vec![t] },
         }));
         // Groups are ordered by when their values are computed.
         groups.sort_by_key(|g| g.others.iter().map(|t| t.operand.instruction_index()).max());
@@ -100,7 +100,7 @@ impl Program {
     fn may_share_factors(&self, terms: &[Term]) -> bool {
         let mut factors: Vec<u64> = Vec::new();
         for term in terms {
-            let Some((a, b)) = self.lone_product(term.operand) else { continue };
+            let Some((a, b)) = self.single_use_product(term.operand) else { continue };
             let [a, b] = [a, b].map(sign_independent_key);
             if factors.contains(&a) || factors.contains(&b) {
                 return true;
@@ -110,13 +110,13 @@ impl Program {
         false
     }
 
-    /// Returns the factor that most terms have, if at least two have it.
+    /// Returns the factor that most terms of a sum have, if at least two have it.
     fn most_common_factor(&self, terms: &[Term]) -> Option<Operand> {
         let mut best: Option<(usize, Operand)> = None;
         for term in terms {
-            let Some((a, b)) = self.lone_product(term.operand) else { continue };
+            let Some((a, b)) = self.single_use_product(term.operand) else { continue };
             for factor in [a, b] {
-                let count = terms.iter().filter(|t| self.cofactor(**t, factor).is_some()).count();
+                let count = terms.iter().filter(|t| self.cofactor_of_term(**t, factor).is_some()).count();
                 if count > best.map_or(1, |(most, _)| most) {
                     best = Some((count, factor));
                 }
@@ -126,8 +126,8 @@ impl Program {
     }
 
     /// Returns the other factor of a term that is a product with this factor.
-    fn cofactor(&self, term: Term, factor: Operand) -> Option<Term> {
-        let (a, b) = self.lone_product(term.operand)?;
+    fn cofactor_of_term(&self, term: Term, factor: Operand) -> Option<Term> {
+        let (a, b) = self.single_use_product(term.operand)?;
         let sign_of_cofactor = |x: Operand| match (x, factor) {
             (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
             (x, f) if x == f => Some(false),
@@ -139,10 +139,10 @@ impl Program {
     }
 
     /// Adds the instructions for a sum of groups, each a factor times a sum.
-    fn add_groups(&mut self, groups: &[Group], at: &dyn Fn(Operand) -> Operand) -> Operand {
+    fn add_groups(&mut self, groups: &[FactorGroup], at: &dyn Fn(Operand) -> Operand) -> Operand {
         let mut sum: Option<Term> = None;
         for group in groups {
-            let mut value = self.sum_of(&group.others, at);
+            let mut value = self.append_sum(&group.others, at);
             if let Some(factor) = group.factor {
                 value.operand = self.append_instruction(Op::Mul(at(factor), value.operand));
             }
@@ -155,8 +155,8 @@ impl Program {
         }
     }
 
-    /// Adds the instructions for a sum of terms.
-    fn sum_of(&mut self, terms: &[Term], at: &dyn Fn(Operand) -> Operand) -> Term {
+    /// Appends the instructions for a sum of terms to a program.
+    fn append_sum(&mut self, terms: &[Term], at: &dyn Fn(Operand) -> Operand) -> Term {
         let known: f64 = terms.iter().filter_map(signed_constant).sum();
         let is_known = terms.iter().any(|t| signed_constant(t).is_some());
         let constant = is_known.then_some(Term::positive_term(Operand::Const(known)));
@@ -166,20 +166,21 @@ impl Program {
         all.fold(first, |sum, term| self.sum_of_two(sum, term))
     }
 
-    /// Adds the instruction for a sum of two terms.
+    /// Appends the instruction for a sum of two terms to a program.
     fn sum_of_two(&mut self, a: Term, b: Term) -> Term {
         let (op, negative) = Term::add_two_terms(a, b);
         Term { operand: self.append_instruction(op), negative }
     }
 }
 
-/// Terms of a sum that have a common factor, divided by it; terms without a factor form a group of their own.
-struct Group {
+/// Terms of a sum that have a common factor, divided by the factor; terms without a factor form a separate
+/// group.
+struct FactorGroup {
     factor: Option<Operand>,
     others: Vec<Term>,
 }
 
-/// Returns a key that is the same for operands equal up to sign.
+/// Returns a key of an operand that is independent of the operand's sign.
 fn sign_independent_key(o: Operand) -> u64 {
     match o {
         Operand::Const(c) => c.abs().to_bits(),
@@ -190,7 +191,7 @@ fn sign_independent_key(o: Operand) -> u64 {
     }
 }
 
-/// Returns the value of a constant term.
+/// Returns the value of a term if it is a constant, with its sign.
 fn signed_constant(term: &Term) -> Option<f64> {
     match term.operand {
         Operand::Const(c) => Some(if term.negative { -c } else { c }),

@@ -20,7 +20,7 @@ impl Program {
     }
 
     /// Returns a copy with products fused into sums, for cost estimates.
-    pub(super) fn as_fused(&self) -> Program {
+    pub(super) fn fused_copy(&self) -> Program {
         Program { simd: None, ..self.clone() }.with_fused_products()
     }
 
@@ -40,7 +40,7 @@ impl Program {
 
     fn fuse_instruction(&self, k: usize) -> Option<Op> {
         let product = self.product_to_fuse(k)?;
-        let (x, y) = self.lone_product(product)?;
+        let (x, y) = self.single_use_product(product)?;
         match self.instructions[k] {
             Op::Add(a, b) => Some(Op::MulAdd(x, y, if product == a { b } else { a })),
             Op::Sub(a, b) if product == b => Some(Op::NegMulAdd(x, y, a)),
@@ -51,7 +51,7 @@ impl Program {
 
     /// Returns the product that fuses into the sum of instruction `k`.
     fn product_to_fuse(&self, k: usize) -> Option<Operand> {
-        let is_product = |o: Operand| self.lone_product(o).is_some();
+        let is_product = |o: Operand| self.single_use_product(o).is_some();
         let product = match self.instructions[k] {
             // Of two products the later one is fused, because the earlier one is ready by then.
             Op::Add(a, b)

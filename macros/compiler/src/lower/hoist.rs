@@ -15,7 +15,7 @@ pub fn node_of_hoisted_symbol(symbol: Symbol) -> Option<(Id, bool)> {
 }
 
 /// Replaces symbols of hoisted nodes by other symbols.
-pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
+pub fn replace_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
     let mut placed = |o: Operand| match o {
         Operand::Symbol(s) => match node_of_hoisted_symbol(s) {
             Some((id, negative)) => Operand::Symbol(place(id, negative)),
@@ -30,7 +30,7 @@ pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> S
         *output = placed(*output);
     }
     if let Some(program) = &mut program.simd {
-        place_hoisted(program, place);
+        replace_hoisted(program, place);
     }
 }
 
@@ -40,7 +40,7 @@ pub(super) fn operand_of_hoisted_node(id: Id) -> Operand {
 }
 
 /// Returns whether an operand is a constant or a hoisted value.
-pub(super) fn is_constant(o: Operand) -> bool {
+pub(super) fn is_constant_or_hoisted(o: Operand) -> bool {
     match o {
         Operand::Const(_) | Operand::Tuple(_) => true,
         Operand::Symbol(s) => node_of_hoisted_symbol(s).is_some(),
@@ -86,15 +86,15 @@ pub(super) fn hoisted_nodes(
 mod tests {
     use crate::expr::eval::eval_one;
     use crate::expr::{Graph, Symbol};
-    use crate::lower::{lower_without, node_of_hoisted_symbol};
+    use crate::lower::{draft_without_hoisted, node_of_hoisted_symbol};
 
     /// Checks a program with two parameters and two variables: it neither computes nor negates values of the
     /// parameters alone.
     #[test]
-    fn hoisted_values_are_not_computed() {
+    fn programs_do_not_compute_hoisted_values() {
         let g = Graph::new();
         let [m, l, x, y] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
-        let is_known = |s: Symbol| s.0 < 2;
+        let is_parameter_symbol = |s: Symbol| s.0 < 2;
         let value_of_symbol = |s: Symbol| 0.7 + f64::from(s.0);
         let ml = m * l;
         for (outputs, operations) in [
@@ -104,7 +104,7 @@ mod tests {
             (vec![m / (l + g.num(2.0)), g.num(3.0)], 0),
             (vec![x * y - ml, ml - x * y + y], 3),
         ] {
-            let program = lower_without(&outputs, &is_known);
+            let program = draft_without_hoisted(&outputs, &is_parameter_symbol);
             let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value_of_symbol)).collect();
             let found = program.interpret_program(&|s| match node_of_hoisted_symbol(s) {
                 Some((id, negative)) => {

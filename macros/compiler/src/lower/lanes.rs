@@ -1,4 +1,4 @@
-//! Lanes of the values of a program, and cost estimates of programs with and without lanes.
+//! Numbers of SIMD lanes of a program's values, and cost estimates of programs with and without lanes.
 
 use super::{Op, Operand, Program};
 use crate::expr::{Graph, Id, Node};
@@ -6,10 +6,10 @@ use crate::machine::{
     CACHED_INSTRUCTIONS, CALL_COST, FETCH_COST, GATHER_COST, LANE_COST, SUM_COST, cost_of_lanes,
 };
 
-/// Numbers of lanes of the values of a program that is being written.
+/// Numbers of SIMD lanes of the values of a program that is being written.
 #[derive(Default)]
 pub(super) struct Lanes {
-    /// Number of lanes of each value; one for scalars.
+    /// Number of SIMD lanes of each value; one for scalars.
     widths: Vec<usize>,
     gathers: Vec<usize>,
     tuples: Vec<usize>,
@@ -17,7 +17,7 @@ pub(super) struct Lanes {
 
 impl Lanes {
     /// Returns the lanes of the constants and inputs of a program, before its instructions.
-    pub(super) fn of_inputs(program: &Program) -> Lanes {
+    pub(super) fn lanes_of_inputs(program: &Program) -> Lanes {
         let gathers = program.gathers.iter().map(Vec::len).collect();
         Lanes { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }
     }
@@ -48,7 +48,7 @@ impl Lanes {
         })
     }
 
-    /// Returns the operation that sums `n` lanes of an operand.
+    /// Returns the operation that sums `n` SIMD lanes of an operand.
     pub(super) fn lane_sum_operation(&self, n: usize, a: Operand) -> Op {
         match self.lane_count(a) {
             1 => Op::Mul(Operand::Const(n as f64), a),
@@ -56,13 +56,13 @@ impl Lanes {
         }
     }
 
-    /// Records the number of lanes of the next instruction.
+    /// Records the number of SIMD lanes of the next instruction.
     pub(super) fn record_lanes(&mut self, op: &Op) {
-        let width = self.width_of(op);
+        let width = self.width_of_operation(op);
         self.widths.push(width);
     }
 
-    fn width_of(&self, op: &Op) -> usize {
+    fn width_of_operation(&self, op: &Op) -> usize {
         let mut width = 1;
         if let Op::Join(n, ..) = op {
             return 2 * n;
@@ -73,7 +73,7 @@ impl Lanes {
         width
     }
 
-    /// Returns the number of lanes of an operand.
+    /// Returns the number of SIMD lanes of an operand.
     pub(super) fn lane_count(&self, o: Operand) -> usize {
         match o {
             Operand::Const(_) | Operand::Symbol(_) => 1,
@@ -85,7 +85,7 @@ impl Lanes {
 }
 
 impl Program {
-    /// Adds the cheapest candidate with lanes as the SIMD variant, if it is cheaper than the program itself.
+    /// Adds the cheapest candidate with SIMD lanes as variant, if it is cheaper than the program itself.
     pub fn or_in_lanes(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
         let costs = candidates.into_iter().map(|program| (program.estimated_cost(), program));
         let best = costs.min_by_key(|(cost, _)| *cost);
@@ -114,9 +114,9 @@ impl Program {
         gathers + instructions.max(fetched)
     }
 
-    /// Returns the number of lanes of each value; one for scalars.
+    /// Returns the number of SIMD lanes of each value; one for scalars.
     pub fn lane_counts(&self) -> Vec<usize> {
-        let mut lanes = Lanes::of_inputs(self);
+        let mut lanes = Lanes::lanes_of_inputs(self);
         for op in &self.instructions {
             lanes.record_lanes(op);
         }

@@ -57,7 +57,7 @@ mod tests {
     use crate::lower::lower;
 
     #[test]
-    fn numbers_are_held_until_their_last_use() {
+    fn values_are_live_until_their_last_use() {
         let g = Graph::new();
         let [a, b, c, d] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
         // Live at once: the partial sum, the next product, and their sum.
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn only_angles_tables_and_the_library_branch() {
+    fn only_angles_tables_and_library_calls_contain_branches() {
         let g = Graph::new();
         let [a, b] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
         assert_eq!(lower(&[(a * b).sqrt() + a / b]).branch_count(), 0);

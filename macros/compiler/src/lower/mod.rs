@@ -24,18 +24,18 @@ mod text;
 mod times;
 
 pub use angles::{Angle, Angles};
-pub use hoist::{node_of_hoisted_symbol, place_hoisted};
+pub use hoist::{node_of_hoisted_symbol, replace_hoisted};
 pub use program::{Counts, Op, Operand, Program};
 
 /// Drafts a program of the outputs. Products and sums are separate instructions until [`pipeline::FINISH`] or
 /// [`pipeline::PART`] fuses them.
 pub fn lower(outputs: &[Expr<'_>]) -> Program {
-    lower_without(outputs, &|_| false)
+    draft_without_hoisted(outputs, &|_| false)
 }
 
 /// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see the
 /// module `hoist`.
-pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
+pub fn draft_without_hoisted(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let start = Instant::now();
     let program = select_instructions(outputs, known);
     pipeline::report_to_observer(pipeline::SELECT, &program, start.elapsed());
@@ -55,7 +55,7 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
     let mut places = graph.borrow_table();
     let order = collect_needed_nodes(outputs, &mut places);
     let index_of_node = |id: Id| places[id as usize] as usize - 1;
-    let nodes = nodes_of(graph, &order);
+    let nodes = nodes_of_ids(graph, &order);
     let hoisted = hoist::hoisted_nodes(&nodes, index_of_node, known);
     let mut uses = vec![0_u32; order.len()];
     for (node, _) in nodes.iter().zip(&hoisted).filter(|(_, hoisted)| !**hoisted) {
@@ -123,7 +123,7 @@ pub fn operation_count(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
     let graph = first.graph();
     let mut places = graph.borrow_table();
     let order = collect_needed_nodes(outputs, &mut places);
-    let nodes = nodes_of(graph, &order);
+    let nodes = nodes_of_ids(graph, &order);
     let hoisted = hoist::hoisted_nodes(&nodes, |id| places[id as usize] as usize - 1, known);
     for id in &order {
         places[*id as usize] = 0;
@@ -134,8 +134,8 @@ pub fn operation_count(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
     nodes.iter().zip(hoisted).filter(|(node, hoisted)| !hoisted && is_counted_operation(node)).count()
 }
 
-/// Returns the nodes with these ids.
-fn nodes_of(graph: &Graph, ids: &[Id]) -> Vec<Node> {
+/// Returns the expression nodes with these indices.
+fn nodes_of_ids(graph: &Graph, ids: &[Id]) -> Vec<Node> {
     let nodes = graph.nodes();
     ids.iter().map(|id| nodes[*id as usize]).collect()
 }

@@ -6,7 +6,7 @@
 //! be stored with plus and costs a negation otherwise. The search starts with all free signs plus and changes
 //! single signs while that saves negations.
 
-use super::hoist::{self, is_constant};
+use super::hoist::{self, is_constant_or_hoisted};
 use super::terms::Term;
 use super::{Op, Operand, Program};
 use crate::expr::Function;
@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 /// Number of operand levels in which free signs are searched for a negated value.
 const DEPTH: usize = 6;
-/// Maximum number of free signs that are tried to remove one negation.
+/// Maximum number of free signs that are changed together to remove one negation.
 const TRIES: usize = 6;
 /// Maximum number of values that a changed sign may affect; a change with more effects is rejected.
 const REACH: usize = 400;
@@ -27,11 +27,11 @@ impl Program {
         if reversed.is_empty() && !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
             return self;
         }
-        let best = Signs::optimise_signs(&self, &[]);
+        let best = StoredSigns::optimise_signs(&self, &[]);
         if reversed.is_empty() {
             return best.rewrite_program();
         }
-        let other = Signs::optimise_signs(&self, &reversed);
+        let other = StoredSigns::optimise_signs(&self, &reversed);
         if other.negation_count() <= best.negation_count() + 1 {
             other.rewrite_program()
         } else {
@@ -41,7 +41,8 @@ impl Program {
 
     /// Returns values `c - q` that are used by sines and cosines alone.
     fn reversed_angles(&self) -> Vec<usize> {
-        let is_reversed = |op: &Op| matches!(op, Op::Sub(c, Operand::Symbol(_)) if is_constant(*c));
+        let is_reversed =
+            |op: &Op| matches!(op, Op::Sub(c, Operand::Symbol(_)) if is_constant_or_hoisted(*c));
         let mut uses = vec![0; self.instructions.len()];
         for op in &self.instructions {
             if let Op::Call(Function::Sin | Function::Cos, Operand::Value(k)) = *op {
@@ -55,30 +56,30 @@ impl Program {
 }
 
 /// Signs with which the values of a program are stored.
-struct Signs<'a> {
+struct StoredSigns<'a> {
     program: &'a Program,
     users: Vec<Vec<usize>>,
-    /// True for values that must be stored with plus.
+    /// True for values that must be stored with their own sign.
     sink: Vec<bool>,
-    /// Chosen sign of each value whose sign is free.
+    /// Chosen sign of each value whose sign is free; true for minus.
     choice: Vec<bool>,
-    /// True for free values whose chosen sign is fixed.
+    /// True for values with a free sign whose choice is final.
     fixed: Vec<bool>,
     /// Whether each value is stored with a minus sign.
     negative: Vec<bool>,
 }
 
-impl<'a> Signs<'a> {
+impl<'a> StoredSigns<'a> {
     /// Searches signs that need few negations, from all free signs plus, with some values fixed to minus.
-    fn optimise_signs(program: &'a Program, negative: &[usize]) -> Signs<'a> {
-        let mut signs = Signs::new(program, negative);
+    fn optimise_signs(program: &'a Program, negative: &[usize]) -> StoredSigns<'a> {
+        let mut signs = StoredSigns::new(program, negative);
         signs.search_signs();
         signs
     }
 
-    fn new(program: &'a Program, negative: &[usize]) -> Signs<'a> {
+    fn new(program: &'a Program, negative: &[usize]) -> StoredSigns<'a> {
         let n = program.instructions.len();
-        let mut signs = Signs {
+        let mut signs = StoredSigns {
             program,
             users: vec![Vec::new(); n],
             sink: vec![false; n],
@@ -91,7 +92,7 @@ impl<'a> Signs<'a> {
             signs.fixed[k] = true;
         }
         for (k, op) in program.instructions.iter().enumerate() {
-            let keeps = keeps_signs(op);
+            let keeps = accepts_either_sign(op);
             op.visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     signs.users[a].push(k);
@@ -108,7 +109,7 @@ impl<'a> Signs<'a> {
         signs
     }
 
-    /// Returns true if an operand is stored with minus.
+    /// Returns true if an operand is stored with a minus sign.
     fn is_negative(&self, o: Operand) -> bool {
         matches!(o, Operand::Value(a) if self.negative[a])
     }
@@ -116,7 +117,7 @@ impl<'a> Signs<'a> {
     /// Returns the sign of a value from the signs of its operands, or the chosen sign if it is free.
     fn sign_of_value(&self, k: usize) -> bool {
         match self.program.instructions[k] {
-            _ if self.is_free(k) => self.choice[k],
+            _ if self.has_free_sign(k) => self.choice[k],
             Op::Neg(a) => !self.is_negative(a),
             Op::Add(a, _) | Op::Sub(a, _) => self.is_negative(a),
             Op::Mul(a, b) | Op::Div(a, b) => self.is_negative(a) != self.is_negative(b),
@@ -127,21 +128,29 @@ impl<'a> Signs<'a> {
     }
 
     /// Returns true if the sign of a value can be chosen.
-    fn is_free(&self, k: usize) -> bool {
+    fn has_free_sign(&self, k: usize) -> bool {
         match self.program.instructions[k] {
-            Op::Add(a, b) => is_constant(a) || is_constant(b) || self.is_negative(a) != self.is_negative(b),
-            Op::Sub(a, b) => is_constant(a) || is_constant(b) || self.is_negative(a) == self.is_negative(b),
-            Op::Mul(a, b) | Op::Div(a, b) => is_constant(a) || is_constant(b),
+            Op::Add(a, b) => {
+                is_constant_or_hoisted(a)
+                    || is_constant_or_hoisted(b)
+                    || self.is_negative(a) != self.is_negative(b)
+            }
+            Op::Sub(a, b) => {
+                is_constant_or_hoisted(a)
+                    || is_constant_or_hoisted(b)
+                    || self.is_negative(a) == self.is_negative(b)
+            }
+            Op::Mul(a, b) | Op::Div(a, b) => is_constant_or_hoisted(a) || is_constant_or_hoisted(b),
             _ => false,
         }
     }
 
-    /// Returns the number of negations that the signs cost.
+    /// Returns the number of negations that the chosen signs cost.
     fn negation_count(&self) -> usize {
         self.sink.iter().zip(&self.negative).filter(|(sink, negative)| **sink && **negative).count()
     }
 
-    /// Changes free signs as long as that saves negations.
+    /// Changes free signs as long as that reduces the number of negations.
     fn search_signs(&mut self) {
         for least in [1, 0, 1, 0, 1] {
             let mut better = false;
@@ -151,7 +160,7 @@ impl<'a> Signs<'a> {
                 }
                 let mut paths = Vec::new();
                 self.paths_to_free(&mut vec![k], &mut paths);
-                better |= paths.iter().any(|path| self.try_change(path, least));
+                better |= paths.iter().any(|path| self.try_sign_change(path, least));
             }
             if !better {
                 return;
@@ -162,7 +171,7 @@ impl<'a> Signs<'a> {
     /// Finds paths from the last value of `path` through operands to free values that its sign depends on.
     fn paths_to_free(&self, path: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
         let Some(k) = path.last().copied().filter(|_| found.len() < TRIES) else { return };
-        if self.is_free(k) && !self.fixed[k] {
+        if self.has_free_sign(k) && !self.fixed[k] {
             found.push(path.clone());
         } else if path.len() < DEPTH {
             self.program.instructions[k].visit_operands(|o| {
@@ -177,7 +186,7 @@ impl<'a> Signs<'a> {
 
     /// Changes the signs along a path where they are free or become free, if that saves at least `least`
     /// negations.
-    fn try_change(&mut self, path: &[usize], least: isize) -> bool {
+    fn try_sign_change(&mut self, path: &[usize], least: isize) -> bool {
         let before: Vec<bool> = path.iter().map(|k| self.choice[*k]).collect();
         for &k in path {
             self.choice[k] = !self.negative[k];
@@ -218,9 +227,9 @@ impl<'a> Signs<'a> {
         gain
     }
 
-    /// Writes the program with its values stored with these signs.
+    /// Rewrites the program such that its values are stored with the chosen signs.
     fn rewrite_program(&self) -> Program {
-        let mut out = Rewrite {
+        let mut out = SignRewriter {
             signs: self,
             instructions: Vec::new(),
             tuples: self.program.tuples.clone(),
@@ -244,17 +253,17 @@ impl<'a> Signs<'a> {
 }
 
 /// Writer of the program in which values are stored with the chosen signs.
-struct Rewrite<'a> {
-    signs: &'a Signs<'a>,
+struct SignRewriter<'a> {
+    signs: &'a StoredSigns<'a>,
     instructions: Vec<Op>,
     tuples: Vec<Vec<f64>>,
     /// Operand in which each value is stored, with its sign.
     stored: Vec<Operand>,
-    /// Operand in which each value is stored with a plus sign, if there is one.
+    /// Operand for each value with its own sign, if one exists.
     positive: Vec<Option<Operand>>,
 }
 
-impl Rewrite<'_> {
+impl SignRewriter<'_> {
     fn append_instruction(&mut self, op: Op) -> Operand {
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
@@ -301,7 +310,7 @@ impl Rewrite<'_> {
                 let a = self.stored_operand(a);
                 self.append_instruction(Op::Sum(n, a))
             }
-            op => match op.two_terms() {
+            op => match op.addition_terms() {
                 Some(terms) => self.add_sum_of_terms(
                     terms.map(|t| t.with_outer_sign(signs.is_negative(t.operand) != negative)),
                 ),
@@ -319,7 +328,7 @@ impl Rewrite<'_> {
     fn add_sum_of_terms(&mut self, terms: [Term; 2]) -> Operand {
         let mut terms = terms.map(|t| Term { operand: self.stored_operand(t.operand), ..t });
         if terms.iter().all(|t| t.negative) {
-            let constant = usize::from(!is_constant(terms[0].operand));
+            let constant = usize::from(!is_constant_or_hoisted(terms[0].operand));
             terms[constant] = Term::positive_term(self.negate_constant(terms[constant].operand));
         }
         let [a, b] = terms;
@@ -328,7 +337,7 @@ impl Rewrite<'_> {
 
     fn factors_with_signs(&mut self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
         let (a, b) = (self.stored_operand(a), self.stored_operand(b));
-        match (negate, is_constant(a)) {
+        match (negate, is_constant_or_hoisted(a)) {
             (false, _) => (a, b),
             (true, true) => (self.negate_constant(a), b),
             (true, false) => (a, self.negate_constant(b)),
@@ -352,7 +361,7 @@ impl Rewrite<'_> {
 }
 
 /// Returns true for operations whose operands may be stored with either sign.
-fn keeps_signs(op: &Op) -> bool {
+fn accepts_either_sign(op: &Op) -> bool {
     match op {
         Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) | Op::Sum(..) => true,
         Op::Call(f, _) => f.is_odd() || f.is_even(),
@@ -366,7 +375,7 @@ mod tests {
     use crate::lower::lower;
 
     #[test]
-    fn negatives_are_computed_where_they_are_wanted() {
+    fn negated_outputs_cost_no_additional_instructions() {
         let g = Graph::new();
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
         let difference = a - b;
@@ -389,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn what_must_have_both_signs_is_negated_once() {
+    fn product_with_both_signs_costs_one_negation() {
         let g = Graph::new();
         let (a, b) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
         let program = lower(&[a * b, -(a * b)]);

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 pub struct Pass {
     /// Name of the pass over programs.
     pub name: &'static str,
-    /// Description of the pass in one clause.
+    /// Description of the pass over programs, in one clause.
     pub about: &'static str,
     run: fn(Program) -> Program,
 }
@@ -47,7 +47,7 @@ const FUSE: Pass = Pass {
     about: "a product whose only use is a sum becomes one instruction with it",
     run: Program::with_fused_products,
 };
-/// Order of the instructions.
+/// Pass that orders the instructions.
 pub const SCHEDULE: Pass = Pass {
     name: "schedule",
     about: "instructions are put in an order that keeps the processor busy",
@@ -99,7 +99,7 @@ pub fn begin_function(function: &str) {
     }
 }
 
-/// Reports a pass to the observer, if there is one.
+/// Reports a pass to the observer of passes, if there is one.
 pub(super) fn report_to_observer(pass: &str, program: &Program, time: Duration) {
     OBSERVER.with(|cell| {
         if let Ok(mut observer) = cell.try_borrow_mut()

@@ -5,18 +5,18 @@ use crate::expr::lanes::MAX_LANES;
 use crate::expr::{Extreme, Function, Lookup, Symbol};
 use std::collections::BTreeSet;
 
-/// Operand of an instruction.
+/// Operand of an instruction of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operand {
-    /// Constant.
+    /// Constant operand.
     Const(f64),
-    /// Input of the program.
+    /// Operand that is an input of the program.
     Symbol(Symbol),
-    /// Result of an earlier instruction.
+    /// Operand that is the result of the instruction with this index.
     Value(usize),
-    /// A constant of each lane: an index of the program's tuples.
+    /// Constants, one for each SIMD lane: an index of the program's tuples.
     Tuple(usize),
-    /// An input of each lane: an index of the program's gathers.
+    /// Inputs, one for each SIMD lane: an index of the program's gathers.
     Gather(usize),
 }
 
@@ -38,18 +38,18 @@ impl Operand {
     }
 }
 
-/// Operation of an instruction.
+/// Operation of an instruction of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Op {
-    /// Negation `-a`.
+    /// Negation `-a` of an operand.
     Neg(Operand),
-    /// Sum `a + b`.
+    /// Sum `a + b` of two operands.
     Add(Operand, Operand),
-    /// Difference `a - b`.
+    /// Difference `a - b` of two operands.
     Sub(Operand, Operand),
-    /// Product `a * b`.
+    /// Product `a * b` of two operands.
     Mul(Operand, Operand),
-    /// Quotient `a / b`.
+    /// Quotient `a / b` of two operands.
     Div(Operand, Operand),
     /// Fused product and sum `a * b + c`.
     MulAdd(Operand, Operand, Operand),
@@ -57,19 +57,19 @@ pub enum Op {
     MulSub(Operand, Operand, Operand),
     /// Fused product and difference `c - a * b`.
     NegMulAdd(Operand, Operand, Operand),
-    /// Elementary function `f(a)`.
+    /// Elementary function `f(a)` of an operand.
     Call(Function, Operand),
     /// Angle `atan2(a, b)` of the point with ordinate `a` and abscissa `b`.
     Atan2(Operand, Operand),
-    /// Power `a^b`.
+    /// Power `a^b` of two operands.
     Pow(Operand, Operand),
-    /// The smaller or the larger of `a` and `b`.
+    /// Minimum or maximum of the operands `a` and `b`.
     Extreme(Extreme, Operand, Operand),
     /// A table's value or derivative; variables that it does not have repeat the last.
     Table(Lookup, Operand, Operand, Operand),
-    /// Sum of the first `n` lanes of `a`.
+    /// Sum of the first `n` SIMD lanes of `a`.
     Sum(usize, Operand),
-    /// Value of one lane of `a`.
+    /// Value of one SIMD lane of `a`.
     Lane(usize, Operand),
     /// Vector of the first `n` lanes of one value, followed by the first `n` lanes of another.
     Join(usize, Operand, Operand),
@@ -112,9 +112,9 @@ pub struct Program {
     pub outputs: Vec<Operand>,
     /// Operation counts before fusing; an operation on all lanes of a value counts once.
     pub counts: Counts,
-    /// Constants of the lanes, for each operand with one constant per lane.
+    /// Constants of SIMD lanes, for each operand with one constant per lane.
     pub tuples: Vec<Vec<f64>>,
-    /// Symbols of the lanes, for each operand with one input per lane.
+    /// Symbols of SIMD lanes, for each operand with one input per lane.
     pub gathers: Vec<Vec<Symbol>>,
     /// Variant of the program with identical limbs as SIMD lanes, if it is cheaper.
     pub simd: Option<Box<Program>>,
@@ -124,11 +124,11 @@ pub struct Program {
 /// addition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Number of multiplications.
+    /// Number of multiplications of the program.
     pub mul: usize,
-    /// Number of additions, subtractions and negations.
+    /// Number of additions, subtractions and negations of the program.
     pub add: usize,
-    /// Number of divisions.
+    /// Number of divisions of the program.
     pub div: usize,
     /// Number of elementary functions; a sine and a cosine of one angle are two.
     pub calls: usize,
@@ -327,7 +327,7 @@ impl Program {
 }
 
 impl Op {
-    /// Returns the result of the operation in one lane from its operands in that lane.
+    /// Returns the result of the operation in one SIMD lane from its operands in that lane.
     fn evaluate_in_lane(self, get: impl Fn(usize) -> f64, table: &dyn Fn(Lookup, [f64; 3]) -> f64) -> f64 {
         match self {
             Op::Neg(_) => -get(0),

@@ -5,7 +5,7 @@
 //! Sums off the critical path keep their order: a partial sum that is computed early would occupy a register.
 
 use super::terms::{LONGEST, Sum};
-use super::times::{Times, latency};
+use super::times::{InstructionTimes, operation_latency};
 use super::{Operand, Program};
 use crate::machine::MULTIPLY;
 
@@ -20,7 +20,7 @@ impl Program {
             Operand::Tuple(_) | Operand::Gather(_) => true,
             _ => false,
         };
-        let mut times = Times::default();
+        let mut times = InstructionTimes::default();
         let mut ordered: Vec<Option<Sum>> = Vec::with_capacity(sums.len());
         for (k, sum) in sums.into_iter().enumerate() {
             let before = times.instruction_time(&self, k);
@@ -56,7 +56,7 @@ impl Program {
         for (at, op) in rewritten {
             self.instructions[at] = op;
         }
-        self.move_late(&late)
+        self.order_with_late_last(&late)
     }
 
     /// Returns for each instruction the sum of at least three terms that ends with it.
@@ -64,11 +64,11 @@ impl Program {
         let mut sums: Vec<Option<Sum>> = self.instructions.iter().map(|_| None).collect();
         let mut inside = vec![false; self.instructions.len()];
         for k in (0..self.instructions.len()).rev() {
-            let Some(ends) = self.instructions[k].two_terms().filter(|_| !inside[k]) else { continue };
+            let Some(ends) = self.instructions[k].addition_terms().filter(|_| !inside[k]) else { continue };
             let mut sum = Sum { additions: vec![k], terms: Vec::new() };
             let mut todo = ends.to_vec();
             while let Some(term) = todo.pop() {
-                let inner = self.lone_addition(term.operand);
+                let inner = self.single_use_addition(term.operand);
                 match inner.filter(|_| sum.terms.len() + todo.len() < LONGEST) {
                     Some(inner) => {
                         sum.additions.push(term.operand.instruction_index());
@@ -86,7 +86,7 @@ impl Program {
 
     /// Sorts the instructions so that operands precede operations; `late` instructions come right after their
     /// last operand.
-    fn move_late(self, late: &[bool]) -> Program {
+    fn order_with_late_last(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
         let mut users = vec![Vec::new(); n];
         let mut missing = vec![0; n];
@@ -116,7 +116,7 @@ impl Program {
     }
 }
 
-impl Times {
+impl InstructionTimes {
     /// Orders the terms of a sum by time, scalars before vectors of lanes; at least one of the first two
     /// terms is not a product.
     fn order_terms(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
@@ -147,7 +147,7 @@ impl Program {
                 continue;
             }
             let op = &self.instructions[k];
-            let pair = op.two_terms();
+            let pair = op.addition_terms();
             let terms = match (&sums[k], &pair) {
                 (Some(sum), _) => {
                     sum.additions.iter().for_each(|a| is_part[*a] = true);
@@ -155,7 +155,7 @@ impl Program {
                 }
                 (None, Some(pair)) => pair.as_slice(),
                 (None, None) => {
-                    let time = rest[k] + latency(op);
+                    let time = rest[k] + operation_latency(op);
                     op.visit_operands(|o| raise_remaining_time(&mut rest, o, time));
                     continue;
                 }
@@ -166,7 +166,7 @@ impl Program {
                 if place > 0 {
                     time += MULTIPLY;
                 }
-                match self.lone_product(term.operand) {
+                match self.single_use_product(term.operand) {
                     Some((a, b)) => {
                         is_part[term.operand.instruction_index()] = true;
                         raise_remaining_time(&mut rest, a, time);

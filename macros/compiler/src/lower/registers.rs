@@ -9,22 +9,22 @@ impl Program {
     /// Reorders the instructions so that few values are live at once. `arrays` are the lengths of the arrays
     /// to which consecutive results belong. The best of several orders is used.
     pub fn with_few_live_values(self, arrays: &[usize]) -> Program {
-        let mut needs = Needs::from_program(&self);
+        let mut needs = OperandNeeds::from_program(&self);
         let mut best: Vec<usize> = (0..self.instructions.len()).collect();
-        let mut fewest = needs.most_live(&best);
-        let mut consider = |order: Vec<usize>, needs: &Needs| {
-            let live = needs.most_live(&order);
+        let mut fewest = needs.maximum_live_values(&best);
+        let mut consider = |order: Vec<usize>, needs: &OperandNeeds| {
+            let live = needs.maximum_live_values(&order);
             if live < fewest {
                 (best, fewest) = (order, live);
             }
         };
         // Derivatives by several arguments share most values in corresponding entries.
         for together in 1..=arrays.len().clamp(1, 3) {
-            let mut results = self.results_by(arrays, together);
+            let mut results = self.results_by_array(arrays, together);
             for _ in 0..2 {
                 results.reverse();
                 needs.results.clone_from(&results);
-                consider(needs.depth_first(&self), &needs);
+                consider(needs.depth_first_order(&self), &needs);
                 if self.instructions.len() <= GREEDY {
                     consider(needs.schedule_backwards(), &needs);
                 }
@@ -35,7 +35,7 @@ impl Program {
 
     /// Returns the instructions of the results, with `together` consecutive arrays of equal length entry by
     /// entry.
-    fn results_by(&self, arrays: &[usize], together: usize) -> Vec<usize> {
+    fn results_by_array(&self, arrays: &[usize], together: usize) -> Vec<usize> {
         let mut keys = Vec::new();
         for (k, length) in arrays.iter().enumerate() {
             let equal = arrays[..k].iter().rev().take_while(|other| *other == length).count();
@@ -58,16 +58,16 @@ const GREEDY: usize = 4000;
 
 /// Values that each instruction needs, where arguments of the program are numbered after the values of its
 /// instructions.
-struct Needs {
+struct OperandNeeds {
     of: Vec<Vec<usize>>,
-    /// Number of values and arguments together.
+    /// Number of program values and arguments together.
     count: usize,
     /// Instructions whose values are results, in the order of the results.
     results: Vec<usize>,
 }
 
-impl Needs {
-    fn from_program(program: &Program) -> Needs {
+impl OperandNeeds {
+    fn from_program(program: &Program) -> OperandNeeds {
         let n = program.instructions.len();
         let mut arguments: BTreeMap<Symbol, usize> = BTreeMap::new();
         let of = program.instructions.iter().map(|op| {
@@ -89,11 +89,11 @@ impl Needs {
             Operand::Value(k) => Some(*k),
             _ => None,
         });
-        Needs { of, count: n + arguments.len(), results: results.collect() }
+        OperandNeeds { of, count: n + arguments.len(), results: results.collect() }
     }
 
     /// Returns the maximum number of values that are live at once in an order of the instructions.
-    fn most_live(&self, order: &[usize]) -> usize {
+    fn maximum_live_values(&self, order: &[usize]) -> usize {
         let mut last = vec![usize::MAX; self.count];
         for (at, k) in order.iter().enumerate() {
             self.of[*k].iter().for_each(|a| last[*a] = at);
@@ -117,9 +117,9 @@ impl Needs {
         most
     }
 
-    /// Returns an order that computes one result after the other; of the operands of an instruction, the
-    /// operand that needs most values comes first (Sethi and Ullman 1970).
-    fn depth_first(&self, program: &Program) -> Vec<usize> {
+    /// Returns an instruction order that computes one result after another; of the operands of an
+    /// instruction, the one that needs most values comes first (Sethi and Ullman 1970).
+    fn depth_first_order(&self, program: &Program) -> Vec<usize> {
         let n = self.of.len();
         let mut need = vec![1_usize; n];
         for k in 0..n {
@@ -150,8 +150,8 @@ impl Needs {
         order
     }
 
-    /// Returns an order that is chosen from the last instruction to the first: the next instruction adds the
-    /// fewest live values before it, and of equal ones its value became live last.
+    /// Returns an instruction order chosen from the last instruction to the first, such that each instruction
+    /// adds the fewest live values.
     fn schedule_backwards(&self) -> Vec<usize> {
         let n = self.of.len();
         let mut users = vec![0_usize; self.count];

@@ -3,7 +3,7 @@
 //! matrix, overlap only if their instructions are interleaved. The next instruction is the one with the
 //! longest remaining latency among those whose operands are available.
 
-use super::times::{issue_slots, latency};
+use super::times::{issue_slots, operation_latency};
 use super::{Operand, Program};
 use crate::machine::{CYCLE, MOST_PARALLELISM};
 use std::cmp::Reverse;
@@ -21,7 +21,7 @@ impl Program {
     /// Returns the estimated time of a call in half cycles: the number of instructions plus the cycles of the
     /// critical path, since consecutive calls overlap only in part.
     pub fn estimated_time(&self) -> usize {
-        let fused = self.as_fused();
+        let fused = self.fused_copy();
         let longest = fused.critical_latency(&fused.users_of_values()).into_iter().max().unwrap_or(0) / CYCLE;
         fused.instructions.len() + longest as usize
     }
@@ -45,7 +45,7 @@ impl Program {
         let mut rest = vec![0; users.len()];
         for k in (0..users.len()).rev() {
             let after = users[k].iter().map(|u| rest[*u]).max().unwrap_or(0);
-            rest[k] = after + latency(&self.instructions[k]);
+            rest[k] = after + operation_latency(&self.instructions[k]);
         }
         rest
     }
@@ -79,7 +79,7 @@ impl Program {
             };
             order.push(k);
             for &user in &users[k] {
-                ready[user] = ready[user].max(time + latency(&self.instructions[k]));
+                ready[user] = ready[user].max(time + operation_latency(&self.instructions[k]));
                 missing[user] -= 1;
                 if missing[user] == 0 {
                     waiting.push(Reverse((ready[user], user)));
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn scheduling_keeps_values_and_uses() {
+    fn scheduling_preserves_values_and_uses() {
         let g = Graph::new();
         let before = lower(&test_chains(&g)).run_passes(PART);
         let after = before.clone().schedule_instructions();
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_chain_comes_first() {
+    fn longest_dependency_chain_is_scheduled_first() {
         let g = Graph::new();
         let index_of_division = |program: &crate::lower::Program| {
             program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")

@@ -9,38 +9,38 @@ use std::collections::BTreeMap;
 
 mod pairs;
 
-use pairs::{Pair, Pairs};
+use pairs::{SharedPairs, TermPair};
 
 /// Maximum size of a program to which the pass applies, in instructions.
 const MOST_INSTRUCTIONS: usize = 3000;
 /// Maximum size of a program, in instructions, for which all expansions with the fewest operations are tried.
 const EXHAUSTIVE_INSTRUCTIONS: usize = 1000;
-/// Maximum number of repetitions of the pass after it has shortened the program.
+/// Maximum number of repetitions of the pass while it shortens the program.
 const ROUNDS: usize = 5;
 /// Maximum length of a sum into which inner sums are merged. The number of pairs grows as half the square of
 /// the length.
 const LONGEST: usize = 32;
 /// Maximum number of terms of a sum after expansion.
 const MOST_TERMS: usize = 8;
-/// Expansions that are tried: the maximum number of terms of an inner sum that is expanded into an outer one,
-/// and whether inner sums are expanded whose products could then no longer be fused.
+/// Expansions of inner sums that are tried: the maximum number of terms, and whether sums are expanded whose
+/// products could then no longer be fused.
 const SHORT: [(usize, bool); 5] = [(1, true), (2, true), (4, true), (2, false), (4, false)];
 
 /// Term of a sum without its coefficient: the number 1, a value that is not a sum, or a sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Key {
+enum TermKey {
     One,
     Atom(usize),
     Sum(usize),
 }
 
-impl Key {
-    /// Returns the number of the key: zero for the number 1, then the values, then the sums.
+impl TermKey {
+    /// Returns the number of a term's key: zero for the number 1, then the values, then the sums.
     fn key_number(self) -> u32 {
         match self {
-            Key::One => 0,
-            Key::Atom(a) => 1 + a as u32,
-            Key::Sum(s) => FIRST_SUM | s as u32,
+            TermKey::One => 0,
+            TermKey::Atom(a) => 1 + a as u32,
+            TermKey::Sum(s) => FIRST_SUM | s as u32,
         }
     }
 }
@@ -48,21 +48,21 @@ impl Key {
 /// Number of the first sum, larger than that of any value.
 const FIRST_SUM: u32 = 1 << 31;
 
-/// Terms of a sum with their coefficients, by key.
-type Terms = Vec<(Key, f64)>;
+/// Terms of a sum: keys of the operands with their coefficients.
+type Terms = Vec<(TermKey, f64)>;
 
-/// Sums of a program, expanded to terms.
+/// Sums of a program as lists of terms, for the search of common subsums.
 #[derive(Clone)]
-struct Sums {
+struct SumTable {
     /// Operands that are not sums themselves.
     atoms: Vec<Operand>,
     /// True for each atom that is a product with a single use.
     lone_products: Vec<bool>,
-    /// Terms of each sum.
+    /// Terms of each sum of the program.
     sums: Vec<Terms>,
-    /// Index of the sum that each instruction completes.
+    /// Index of the sum that ends with each instruction.
     ends: Vec<Option<usize>>,
-    /// Indices of the sums that other instructions or outputs use.
+    /// Indices of the sums whose values instructions or outputs use.
     wanted: Vec<usize>,
 }
 
@@ -74,7 +74,7 @@ impl Program {
             if length > MOST_INSTRUCTIONS {
                 break;
             }
-            let Some((shorter, program)) = self.sharing_sums(length) else { break };
+            let Some((shorter, program)) = self.program_with_shared_sums(length) else { break };
             (length, self) = (shorter, program);
         }
         self
@@ -82,8 +82,8 @@ impl Program {
 
     /// Returns a program with shared sums and its length after fusing: for a small program the best one,
     /// otherwise the first improvement. Returns `None` if none is shorter than `length`.
-    fn sharing_sums(&self, length: usize) -> Option<(usize, Program)> {
-        let all = Sums::from_program(self);
+    fn program_with_shared_sums(&self, length: usize) -> Option<(usize, Program)> {
+        let all = SumTable::from_program(self);
         let is_small = self.instructions.len() <= EXHAUSTIVE_INSTRUCTIONS;
         let mut cost = (length, self.counts.total_operations());
         let mut best: Option<(usize, Program)> = None;
@@ -91,7 +91,7 @@ impl Program {
         let mut tried: Vec<Vec<Terms>> = Vec::new();
         for (short, products) in SHORT {
             let mut sums = all.clone();
-            sums.write_out(short, products);
+            sums.expand_inner_sums(short, products);
             if tried.contains(&sums.sums) {
                 continue;
             }
@@ -103,7 +103,7 @@ impl Program {
             }
             fewest = operations;
             // Choose the signs of the new sums, and let sums begin with a product again.
-            let mut program = self.with_sums(&sums).with_cheap_signs().order_terms_for_fusion();
+            let mut program = self.program_of_sums(&sums).with_cheap_signs().order_terms_for_fusion();
             program.counts = program.count_operations();
             let operations = program.counts.total_operations();
             if operations > cost.1 {
@@ -122,11 +122,11 @@ impl Program {
     }
 
     /// Returns the program in which the sums are computed as listed.
-    fn with_sums(&self, sums: &Sums) -> Program {
-        let mut out = Writer {
+    fn program_of_sums(&self, sums: &SumTable) -> Program {
+        let mut out = SumWriter {
             sums,
             instructions: Vec::new(),
-            lanes: Lanes::of_inputs(self),
+            lanes: Lanes::lanes_of_inputs(self),
             values: Vec::new(),
             written: vec![None; sums.sums.len()],
         };
@@ -158,10 +158,10 @@ impl Program {
     }
 }
 
-impl Sums {
-    fn from_program(program: &Program) -> Sums {
+impl SumTable {
+    fn from_program(program: &Program) -> SumTable {
         let n = program.instructions.len();
-        let mut sums = Sums {
+        let mut sums = SumTable {
             atoms: Vec::new(),
             lone_products: Vec::new(),
             sums: Vec::new(),
@@ -170,13 +170,13 @@ impl Sums {
         };
         let mut known = AtomNumbers { values: vec![None; n], others: BTreeMap::new() };
         for (k, op) in program.instructions.iter().enumerate() {
-            let Some(signed) = op.two_terms() else { continue };
+            let Some(signed) = op.addition_terms() else { continue };
             let mut terms = Terms::new();
             for term in signed {
                 let sign = if term.negative { -1.0 } else { 1.0 };
                 let key = match term.operand {
                     Operand::Const(c) => {
-                        add(&mut terms, Key::One, sign * c);
+                        add(&mut terms, TermKey::One, sign * c);
                         continue;
                     }
                     // A sum with this single use is merged into this one.
@@ -186,7 +186,7 @@ impl Sums {
                             inner.iter().for_each(|(key, c)| add(&mut terms, *key, sign * c));
                             continue;
                         }
-                        Some(sum) => Key::Sum(sum),
+                        Some(sum) => TermKey::Sum(sum),
                         None => sums.key_of_atom(term.operand, &mut known),
                     },
                     o => sums.key_of_atom(o, &mut known),
@@ -196,14 +196,14 @@ impl Sums {
             sums.ends[k] = Some(sums.sums.len());
             sums.sums.push(terms);
         }
-        let is_lone_product = |o: &Operand| program.lone_product(*o).is_some();
+        let is_lone_product = |o: &Operand| program.single_use_product(*o).is_some();
         sums.lone_products = sums.atoms.iter().map(is_lone_product).collect();
         let sum_ending_at = |o: Operand| match o {
             Operand::Value(k) => sums.ends[k],
             _ => None,
         };
         let mut wanted: Vec<usize> = program.outputs.iter().filter_map(|o| sum_ending_at(*o)).collect();
-        for op in program.instructions.iter().filter(|op| op.two_terms().is_none()) {
+        for op in program.instructions.iter().filter(|op| op.addition_terms().is_none()) {
             op.visit_operands(|o| wanted.extend(sum_ending_at(o)));
         }
         sums.wanted = wanted;
@@ -221,8 +221,8 @@ impl Sums {
             }
             operations += self.sums[k].len().saturating_sub(1);
             for (key, c) in &self.sums[k] {
-                operations += usize::from(*key != Key::One && c.abs() != 1.0);
-                if let Key::Sum(inner) = key {
+                operations += usize::from(*key != TermKey::One && c.abs() != 1.0);
+                if let TermKey::Sum(inner) = key {
                     todo.push(*inner);
                 }
             }
@@ -231,7 +231,7 @@ impl Sums {
     }
 
     /// Returns the key of an operand that is not a sum.
-    fn key_of_atom(&mut self, o: Operand, known: &mut AtomNumbers) -> Key {
+    fn key_of_atom(&mut self, o: Operand, known: &mut AtomNumbers) -> TermKey {
         let place = match o {
             Operand::Value(k) => &mut known.values[k],
             Operand::Const(c) => known.others.entry((0, c.to_bits())).or_default(),
@@ -240,7 +240,7 @@ impl Sums {
             Operand::Gather(k) => known.others.entry((3, k as u64)).or_default(),
         };
         let atoms = &mut self.atoms;
-        Key::Atom(*place.get_or_insert_with(|| {
+        TermKey::Atom(*place.get_or_insert_with(|| {
             atoms.push(o);
             atoms.len() - 1
         }))
@@ -248,8 +248,8 @@ impl Sums {
 
     /// Expands inner sums of up to `short` terms into the sums that contain them; unless `products` is set,
     /// sums with products that fuse are not expanded.
-    fn write_out(&mut self, short: usize, products: bool) {
-        let is_fused_product = |key: &Key| matches!(key, Key::Atom(a) if self.lone_products[*a]);
+    fn expand_inner_sums(&mut self, short: usize, products: bool) {
+        let is_fused_product = |key: &TermKey| matches!(key, TermKey::Atom(a) if self.lone_products[*a]);
         let keeps: Vec<bool> = self
             .sums
             .iter()
@@ -259,13 +259,13 @@ impl Sums {
             let mut terms = Terms::new();
             for (key, c) in &self.sums[k] {
                 match *key {
-                    Key::Sum(inner) if self.sums[inner].len() <= short && !keeps[inner] => {
+                    TermKey::Sum(inner) if self.sums[inner].len() <= short && !keeps[inner] => {
                         self.sums[inner].iter().for_each(|(key, d)| add(&mut terms, *key, c * d));
                     }
                     key => add(&mut terms, key, *c),
                 }
             }
-            let is_value = |(key, c): &(Key, f64)| *key != Key::One && *c > 0.0;
+            let is_value = |(key, c): &(TermKey, f64)| *key != TermKey::One && *c > 0.0;
             if terms.len() <= MOST_TERMS && terms.iter().any(is_value) {
                 self.sums[k] = terms;
             }
@@ -274,9 +274,9 @@ impl Sums {
 
     /// Replaces the pairs of terms that most sums share by sums of their own.
     fn share_frequent_pairs(&mut self) {
-        let mut pairs = Pairs::from_sums(&self.sums, self.atoms.len());
+        let mut pairs = SharedPairs::from_sums(&self.sums, self.atoms.len());
         while let Some((pair, list)) = pairs.take_most_shared() {
-            let new = Key::Sum(self.sums.len());
+            let new = TermKey::Sum(self.sums.len());
             let mut with_new = Vec::new();
             for &k in &list {
                 let terms = &mut self.sums[k];
@@ -289,12 +289,12 @@ impl Sums {
                 for (i, a) in terms.iter().enumerate() {
                     for b in &terms[i + 1..] {
                         if is_member_of_pair(a.0.key_number()) || is_member_of_pair(b.0.key_number()) {
-                            pairs.remove_sum_from_pair(Pair::new(*a, *b), k);
+                            pairs.remove_sum_from_pair(TermPair::new(*a, *b), k);
                         }
                     }
                 }
                 terms.retain(|(key, _)| !is_member_of_pair(key.key_number()));
-                with_new.extend(terms.iter().map(|term| (Pair::new(*term, (new, c)), k)));
+                with_new.extend(terms.iter().map(|term| (TermPair::new(*term, (new, c)), k)));
                 terms.push((new, c));
             }
             pairs.add(with_new);
@@ -304,25 +304,25 @@ impl Sums {
     }
 
     /// Returns the key of the atom or sum with this number.
-    fn key_of_number(&self, number: u32) -> Key {
+    fn key_of_number(&self, number: u32) -> TermKey {
         match number {
-            0 => Key::One,
-            n if n < FIRST_SUM => Key::Atom(n as usize - 1),
-            n => Key::Sum((n - FIRST_SUM) as usize),
+            0 => TermKey::One,
+            n if n < FIRST_SUM => TermKey::Atom(n as usize - 1),
+            n => TermKey::Sum((n - FIRST_SUM) as usize),
         }
     }
 }
 
-/// Indices of the atoms that have occurred so far.
+/// Indices of the atoms that have occurred so far in sums.
 struct AtomNumbers {
     /// Index of the atom that each instruction computes.
     values: Vec<Option<usize>>,
-    /// Atom of each other operand, by kind and number.
+    /// Atom of each operand that is not an instruction, by kind and number.
     others: BTreeMap<(u8, u64), Option<usize>>,
 }
 
 /// Adds a term to a sum and removes a term that cancels.
-fn add(terms: &mut Terms, key: Key, c: f64) {
+fn add(terms: &mut Terms, key: TermKey, c: f64) {
     match terms.iter().position(|(other, _)| *other == key) {
         Some(k) => {
             terms[k].1 += c;
@@ -335,21 +335,21 @@ fn add(terms: &mut Terms, key: Key, c: f64) {
     }
 }
 
-/// Program that is being written with replaced sums.
-struct Writer<'a> {
-    sums: &'a Sums,
+/// Writer of the program in which sums are replaced by shared ones.
+struct SumWriter<'a> {
+    sums: &'a SumTable,
     instructions: Vec<Op>,
     lanes: Lanes,
-    /// Operand of each instruction of the original program.
+    /// New operand for each instruction of the original program.
     values: Vec<Operand>,
-    /// Operand of each sum that is already written.
+    /// New operand of each sum that is already written.
     written: Vec<Option<Operand>>,
 }
 
 /// Placeholder for a sum that was not written, which is an internal error: a program with it is rejected.
 const LOST: Operand = Operand::Const(f64::NAN);
 
-impl Writer<'_> {
+impl SumWriter<'_> {
     fn append_instruction(&mut self, op: Op) -> Operand {
         self.lanes.record_lanes(&op);
         self.instructions.push(op);
@@ -362,7 +362,7 @@ impl Writer<'_> {
         let mut todo = vec![k];
         while let Some(&top) = todo.last() {
             let inner = self.sums.sums[top].iter().filter_map(|(key, _)| match key {
-                Key::Sum(s) if self.written[*s].is_none() => Some(*s),
+                TermKey::Sum(s) if self.written[*s].is_none() => Some(*s),
                 _ => None,
             });
             let before = todo.len();
@@ -371,7 +371,7 @@ impl Writer<'_> {
             if todo.len() == before {
                 todo.pop();
                 if self.written[top].is_none() {
-                    self.written[top] = Some(self.written_out(top));
+                    self.written[top] = Some(self.write_sum(top));
                 }
             }
         }
@@ -379,13 +379,13 @@ impl Writer<'_> {
     }
 
     /// Writes the instructions of a sum whose inner sums are already written.
-    fn written_out(&mut self, k: usize) -> Operand {
+    fn write_sum(&mut self, k: usize) -> Operand {
         let mut terms: Vec<(Operand, f64)> = Vec::new();
         for (key, c) in &self.sums.sums[k] {
             terms.push(match *key {
-                Key::One => (Operand::Const(c.abs()), c.signum()),
-                Key::Atom(a) => (self.sums.atoms[a].translate_value(&self.values), *c),
-                Key::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
+                TermKey::One => (Operand::Const(c.abs()), c.signum()),
+                TermKey::Atom(a) => (self.sums.atoms[a].translate_value(&self.values), *c),
+                TermKey::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
             });
         }
         // Terms are added in the order in which they are computed, positive ones before negative ones.

@@ -56,7 +56,7 @@ impl Sum {
 
 impl Op {
     /// Returns the two terms of an addition or a subtraction.
-    pub(super) fn two_terms(&self) -> Option<[Term; 2]> {
+    pub(super) fn addition_terms(&self) -> Option<[Term; 2]> {
         match *self {
             Op::Add(a, b) => Some([Term::positive_term(a), Term::positive_term(b)]),
             Op::Sub(a, b) => Some([Term::positive_term(a), Term { operand: b, negative: true }]),
@@ -67,12 +67,12 @@ impl Op {
 
 impl Program {
     /// Returns the terms of an addition with a single use.
-    pub(super) fn lone_addition(&self, o: Operand) -> Option<[Term; 2]> {
-        self.single_use_operation(o)?.two_terms()
+    pub(super) fn single_use_addition(&self, o: Operand) -> Option<[Term; 2]> {
+        self.single_use_operation(o)?.addition_terms()
     }
 
     /// Returns the factors of a product with a single use.
-    pub(super) fn lone_product(&self, o: Operand) -> Option<(Operand, Operand)> {
+    pub(super) fn single_use_product(&self, o: Operand) -> Option<(Operand, Operand)> {
         match *self.single_use_operation(o)? {
             Op::Mul(a, b) => Some((a, b)),
             _ => None,

@@ -7,11 +7,11 @@ use crate::machine::{ADD, CALL, DIVIDE, HALVE, MOVE_LANE, MULTIPLY, NEGATE, SINE
 
 /// Times of the instructions processed so far, in fractions of a cycle.
 #[derive(Default)]
-pub(super) struct Times {
+pub(super) struct InstructionTimes {
     pub known: Vec<u32>,
 }
 
-impl Times {
+impl InstructionTimes {
     fn time_of_value(&self, o: Operand) -> u32 {
         match o {
             Operand::Value(k) => self.known.get(k).copied().unwrap_or(0),
@@ -22,18 +22,18 @@ impl Times {
     /// Returns the time at which the value of instruction `k` is available.
     pub fn instruction_time(&self, program: &Program, k: usize) -> u32 {
         let op = &program.instructions[k];
-        if let Some([a, b]) = op.two_terms() {
+        if let Some([a, b]) = op.addition_terms() {
             return self.time_of_chain(program, &[a, b]);
         }
         let mut start = 0;
         op.visit_operands(|o| start = start.max(self.time_of_value(o)));
-        start + if matches!(op, Op::Call(..)) { SINE } else { latency(op) }
+        start + if matches!(op, Op::Call(..)) { SINE } else { operation_latency(op) }
     }
 
     /// Returns the time at which a term can be added, and true if it is a product that fuses; its factors
     /// must be available then.
     pub fn time_of_term(&self, program: &Program, term: Term) -> (u32, bool) {
-        match program.lone_product(term.operand) {
+        match program.single_use_product(term.operand) {
             Some((a, b)) => (self.time_of_value(a).max(self.time_of_value(b)), true),
             None => (self.time_of_value(term.operand), false),
         }
@@ -54,7 +54,7 @@ impl Times {
 }
 
 /// Returns the latency of an operation. Sines and cosines are evaluated at the start and count zero.
-pub(super) fn latency(op: &Op) -> u32 {
+pub(super) fn operation_latency(op: &Op) -> u32 {
     match op {
         Op::Call(..) => 0,
         Op::Neg(_) => NEGATE,
@@ -67,7 +67,7 @@ pub(super) fn latency(op: &Op) -> u32 {
     }
 }
 
-/// Returns the number of issue slots of an operation.
+/// Returns the number of processor issue slots that an operation takes.
 pub(super) fn issue_slots(op: &Op) -> u32 {
     match op {
         Op::Call(..) => 0,

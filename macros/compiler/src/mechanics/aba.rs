@@ -46,7 +46,7 @@ fn solve_articulated<'g>(
         for (place, dof) in joint.dofs.iter().enumerate().rev() {
             let next = place.checked_sub(1).map(|next| &joint.dofs[next]).filter(|_| inverse.is_none());
             let handle = Eliminated::new(dof, &inertia, &wrench, r[dof.index], inverse);
-            inverse = next.and_then(|next| inertia.second_inverse(&dof.subspace, &next.subspace));
+            inverse = next.and_then(|next| inertia.second_pivot_inverse(&dof.subspace, &next.subspace));
             // The reduced inertia after the last elimination of a root is used by no later step.
             inertia.eliminate_dof(&handle);
             wrench = handle.transmit_wrench(&wrench);
@@ -116,7 +116,7 @@ fn spatial_entry<'g>(s: &Spatial<'g>, e: usize) -> Expr<'g> {
     if e < 3 { s.linear[e] } else { s.angular[e - 3] }
 }
 
-fn with_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> {
+fn with_spatial_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> {
     if e < 3 {
         s.linear.0[e] = value;
     } else {
@@ -139,7 +139,7 @@ impl<'g> Eliminated<'g> {
         let mut column = inertia.multiply_by_motion(&dof.subspace);
         let inverse = inverse.unwrap_or_else(|| r.num(1.0) / dof.subspace.dot(&column));
         if let Some(axis) = axis {
-            column = with_entry(column, axis.entry, r.zero());
+            column = with_spatial_entry(column, axis.entry, r.zero());
         }
         let effort = (r - dof.subspace.dot(wrench)) * inverse;
         Eliminated { axis, column, scaled: column.times_scalar(inverse), effort, r }
@@ -148,7 +148,7 @@ impl<'g> Eliminated<'g> {
     /// Returns the wrench that the joint transmits towards the parent.
     fn transmit_wrench(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
         let sum = wrench.plus(&self.column.times_scalar(self.effort));
-        self.axis.map_or(sum, |axis| with_entry(sum, axis.entry, axis.apply_sign(self.r)))
+        self.axis.map_or(sum, |axis| with_spatial_entry(sum, axis.entry, axis.apply_sign(self.r)))
     }
 
     /// Returns the acceleration of the degree of freedom, and the link's motion including it.
@@ -157,7 +157,7 @@ impl<'g> Eliminated<'g> {
         match self.axis {
             Some(axis) => {
                 let before = axis.apply_sign(spatial_entry(motion, axis.entry));
-                (a - before, with_entry(*motion, axis.entry, axis.apply_sign(a)))
+                (a - before, with_spatial_entry(*motion, axis.entry, axis.apply_sign(a)))
             }
             None => (a, motion.plus(&subspace.times_scalar(a))),
         }
@@ -191,7 +191,7 @@ impl<'g> Articulated<'g> {
 
     /// Returns `1 / D` of the second degree of freedom after elimination of the first, or `None` if the
     /// inertia does not couple the two, see [`second_inverse`].
-    fn second_inverse(&self, first: &Spatial<'g>, second: &Spatial<'g>) -> Option<Expr<'g>> {
+    fn second_pivot_inverse(&self, first: &Spatial<'g>, second: &Spatial<'g>) -> Option<Expr<'g>> {
         let column = self.multiply_by_motion(first);
         second_inverse(first.dot(&column), second.dot(&column), second.dot(&self.multiply_by_motion(second)))
     }

@@ -10,7 +10,7 @@
 
 use super::crba::Matrix;
 use crate::expr::Expr;
-use crate::kinematics::known_gradient;
+use crate::kinematics::differentiated_gradient;
 use crate::mechanism::Model;
 
 /// Returns the effective mass matrix: `mass` minus the coefficients of the forces that are linear in
@@ -18,7 +18,7 @@ use crate::mechanism::Model;
 pub fn effective_mass_matrix<'g>(model: &Model<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
     let mut m = mass.clone();
     for force in &model.acceleration_forces {
-        for (i, d) in known_gradient(model, force.rate) {
+        for (i, d) in differentiated_gradient(model, force.rate) {
             for (k, factor) in &force.factors {
                 m[i][*k] -= d * *factor;
             }
@@ -32,7 +32,7 @@ pub fn subtract_from_forces<'g>(model: &Model<'g>, a: &[Expr<'g>], tau: &mut [Ex
     for force in &model.acceleration_forces {
         let terms = force.factors.iter().map(|(k, factor)| *factor * a[*k]);
         let value = terms.fold(model.graph.zero(), |sum, term| sum + term);
-        for (i, d) in known_gradient(model, force.rate) {
+        for (i, d) in differentiated_gradient(model, force.rate) {
             tau[i] -= value * d;
         }
     }

@@ -19,15 +19,15 @@ const STATES: u64 = 5;
 const LEFT: f64 = 1e-9;
 /// Tolerance of a zero time derivative relative to the value of the quantity.
 const ROUNDING: f64 = 1e-11;
-/// Step of the finite differences in time, s.
+/// Step of the finite differences in time that test conservation, s.
 const STEP: f64 = 1e-3;
 /// A gradient counts as a linear combination of others if its relative remainder is below this tolerance.
 const DEPENDENT: f64 = 1e-6;
 
-/// A conserved quantity.
+/// Conserved quantity of a mechanism: its name and its value.
 #[derive(Clone)]
 pub struct Conserved<'g> {
-    /// Name of the quantity, as shown to the user.
+    /// Name of the conserved quantity, as shown to the user.
     pub name: String,
     /// Value of the quantity as an expression of the state.
     pub value: Expr<'g>,
@@ -49,8 +49,8 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
     for (k, (q, seed)) in places.iter().enumerate() {
         let state = State::random_state(model, &motion, q, *seed, k as u64);
         let Some(rates) = state.and_then(|state| {
-            gradients.push(state.gradients(&tape));
-            state.are_constant(&motion, &tape)
+            gradients.push(state.value_gradients(&tape));
+            state.values_are_constant(&motion, &tape)
         }) else {
             return Vec::new();
         };
@@ -114,7 +114,7 @@ struct Motion<'g> {
     nc: usize,
     /// Mass matrix, bias forces, Jacobian by rows, then velocities and biases of the constraints.
     equations: Tape<'g>,
-    /// Time derivatives of the configuration.
+    /// Time derivatives of the configuration, compiled for numeric evaluation.
     rates: Tape<'g>,
 }
 
@@ -130,7 +130,7 @@ impl<'g> Motion<'g> {
     }
 }
 
-/// State with numeric values.
+/// Numeric state at which conservation is tested: time, configuration and velocity.
 #[derive(Clone)]
 struct State {
     t: f64,
@@ -213,15 +213,20 @@ impl State {
     /// Returns the derivatives of the values along a direction `(t, q, v)` of time, configuration and
     /// velocity, by central differences of fourth order.
     fn directional_derivatives(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let values_at = |h: f64| self.displaced_state(h * STEP, t, q, v).tape_values(tape);
-        let all = [values_at(-2.0), values_at(-1.0), values_at(1.0), values_at(2.0)];
+        let values_after_step = |h: f64| self.displaced_state(h * STEP, t, q, v).tape_values(tape);
+        let all = [
+            values_after_step(-2.0),
+            values_after_step(-1.0),
+            values_after_step(1.0),
+            values_after_step(2.0),
+        ];
         let central_difference =
             |k: usize| (8.0 * (all[2][k] - all[1][k]) - (all[3][k] - all[0][k])) / (12.0 * STEP);
         (0..all[0].len()).map(central_difference).collect()
     }
 
     /// Returns for each value whether it is constant along the motion, or `None` if the motion is not finite.
-    fn are_constant(&self, motion: &Motion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
+    fn values_are_constant(&self, motion: &Motion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
         let (q, v) = self.state_derivatives(motion);
         let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
         let whole = self.directional_derivatives(tape, 1.0, &q, &v);
@@ -240,7 +245,7 @@ impl State {
 
     /// Returns for each value its gradient with respect to all entries of the configuration, then of the
     /// velocity.
-    fn gradients(&self, tape: &Tape<'_>) -> Vec<Vec<f64>> {
+    fn value_gradients(&self, tape: &Tape<'_>) -> Vec<Vec<f64>> {
         let (nq, nv) = (self.q.len(), self.v.len());
         let unit_vector =
             |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();

@@ -13,7 +13,7 @@
 use super::crba::Matrix;
 use super::derivatives::{ForceDerivatives, symbolic};
 use super::friction;
-use super::ldl::{self, solve_in};
+use super::ldl::{self, solve_in_order};
 use crate::expr::{Expr, Function};
 use crate::kinematics::{Joint, velocity_gradients};
 use crate::mechanism::{Model, Pivot, Quantity, Supplied};
@@ -35,7 +35,7 @@ pub fn jacobian_of<'g>(model: &Model<'g>, rates: &[Expr<'g>]) -> Matrix<'g> {
     velocity_gradients(rates).into_iter().map(row_from_gradient).collect()
 }
 
-/// Returns the residuals of the holonomic constraints.
+/// Returns the residuals of all holonomic constraints.
 pub fn residuals<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.constraints.iter().filter_map(|c| c.residual).collect()
 }
@@ -62,12 +62,12 @@ pub fn solve_constrained<'g>(
     let nv = mass.len();
     let k = constrained_system_matrix(mass, jacobian);
     let (order, _) = elimination_order(&k, nv, &[]);
-    solve_in(k, right_side(force, bias), &order, nv).with_reliability(nv)
+    solve_in_order(k, constrained_right_side(force, bias), &order, nv).with_reliability(nv)
 }
 
 /// Returns the right side of the equations of motion with constraints: forces, followed by the negative
 /// biases of the constraint accelerations.
-pub(super) fn right_side<'g>(mut force: Vec<Expr<'g>>, bias: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+pub(super) fn constrained_right_side<'g>(mut force: Vec<Expr<'g>>, bias: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
     force.extend(bias.into_iter().map(|b| -b));
     force
 }
@@ -115,12 +115,12 @@ pub fn constraint_forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr
     forces
 }
 
-/// Returns the multipliers as arguments of the generated function.
+/// Returns the constraint multipliers as symbols for arguments of generated functions.
 pub fn multiplier_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.constraints.len()).map(|k| Quantity::Given(Supplied::Multiplier, k).expr(model.graph)).collect()
 }
 
-/// Returns the approximate number of products of the elimination.
+/// Returns the approximate number of products in the elimination of constraints.
 pub fn elimination_product_count(model: &Model<'_>, mass: &Matrix<'_>) -> usize {
     elimination_order(
         &constrained_system_matrix(mass, &jacobian(model)),
@@ -181,7 +181,7 @@ pub fn solve_by_speeds<'g>(
     let lacking: Vec<Expr<'g>> = force.iter().zip(multiply_by_mass(&start)).map(|(f, m)| *f - m).collect();
     let r = columns.iter().map(|c| dot_product(c, &lacking)).collect();
     let order: Vec<usize> = (0..free.len()).rev().collect();
-    let s = solve_in(reduced, r, &order, 0).x;
+    let s = solve_in_order(reduced, r, &order, 0).x;
     let a: Vec<Expr<'g>> =
         (0..nv).map(|k| columns.iter().zip(&s).fold(start[k], |sum, (c, s)| sum + c[k] * *s)).collect();
     // J_dᵀ λ = (M a − f)_d, with the same pivots, rows and columns exchanged.
@@ -291,11 +291,12 @@ pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
     let rows = jacobian(model);
     let zero = model.graph.zero();
     let forces = constraint_forces(model, &multiplier_symbols(model));
-    let along_accelerations = |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
+    let rate_along_accelerations =
+        |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
     let accelerations: Vec<Expr<'g>> = rows
         .iter()
         .zip(constraint_biases(model))
-        .map(|(row, bias)| along_accelerations(row) + bias)
+        .map(|(row, bias)| rate_along_accelerations(row) + bias)
         .collect();
     FirstOrder {
         forces: symbolic::force_derivatives(model, &forces),

@@ -7,7 +7,7 @@ use crate::kinematics::{Dof, Joint, Spatial, map_spatial};
 use crate::mechanism::{Inertia, Model};
 use crate::vectorise::{LaneGroup, Paths, Visitor};
 
-/// Square matrix of expressions, by rows.
+/// Square matrix of expressions, stored by rows.
 pub type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 
 /// Returns the mass matrix `M(q)`, both triangles.
@@ -58,7 +58,7 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
     fn start(&mut self, dof: usize) -> Spatial<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
-        if self.shared.has_link(link) {
+        if self.shared.contains_link(link) {
             // A link in `SharedMotions` is placed on the ground, so no ancestor has entries with it.
             // `SharedMotions` adds its own entries.
             return own.subspace;

@@ -28,7 +28,7 @@ pub use trunk::{Inverse, Trunk, divided_inverse_terms};
 pub struct ForceDerivatives<'g> {
     /// Derivatives `∂τ/∂q` with respect to the configuration, along the tangent directions.
     pub by_q: Matrix<'g>,
-    /// Derivatives `∂τ/∂v` with respect to the velocities.
+    /// Derivatives `∂τ/∂v` of the generalized forces with respect to the velocities.
     pub by_v: Matrix<'g>,
 }
 
@@ -38,7 +38,7 @@ pub struct Linearized<'g> {
     pub forces: ForceDerivatives<'g>,
     /// Derivatives `∂τ/∂u` of the input forces; no columns if `τ` itself is the input.
     pub by_u: Matrix<'g>,
-    /// Inverse `M⁻¹` of the effective mass matrix.
+    /// Inverse `M⁻¹` of the effective mass matrix, symbolic.
     pub inverse: Matrix<'g>,
     /// Accelerations at which the derivatives are taken.
     pub accelerations: Vec<Expr<'g>>,
@@ -64,7 +64,7 @@ pub fn inverse_dynamics<'g>(
 ) -> ForceDerivatives<'g> {
     let v = velocity_symbols(model);
     if let DerivationMethod::Recursion(most) = method
-        && is_analytic(model)
+        && has_constant_subspaces(model)
     {
         let mut found = analytic::inverse_dynamics(model, joints, &v, a, most);
         symbolic::add_passive_forces(model, &mut found);
@@ -121,7 +121,7 @@ pub fn linearize_equations<'g>(
     found
 }
 
-/// Subtracts `other` from `m`, entry by entry.
+/// Subtracts the matrix `other` from the matrix `m`, entry by entry.
 pub fn subtract_matrix<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
     for (entry, other) in m.iter_mut().flatten().zip(other.iter().flatten()) {
         *entry -= *other;
@@ -129,7 +129,7 @@ pub fn subtract_matrix<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
 }
 
 /// Returns true if every motion subspace is constant in link axes, so that the recursion applies.
-pub fn is_analytic(model: &Model<'_>) -> bool {
+pub fn has_constant_subspaces(model: &Model<'_>) -> bool {
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| link.motion.has_constant_subspace())

@@ -3,10 +3,10 @@
 
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, Spatial, change_axes, known_gradient, symbols_in};
+use crate::kinematics::{Joint, Spatial, change_axes, differentiated_gradient, symbols_in};
 use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
 
-/// Returns the contribution of the inputs `u` to `τ`.
+/// Returns the generalized forces of the inputs, `τ(q, u)`.
 pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut tau = vec![g.zero(); model.nv()];
@@ -22,12 +22,12 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
                 }
             }
             Input::Force { link, point, along } => {
-                let force = resolve(joints, along, *link, Vec3::zero(g)) * u;
+                let force = direction_in_link(joints, along, *link, Vec3::zero(g)) * u;
                 let wrench = Spatial { linear: force, angular: point.cross(force) };
                 wrenches[link.0] = wrenches[link.0].plus(&wrench);
             }
             Input::Torque { link, about } => {
-                let moment = resolve(joints, about, *link, Vec3::zero(g)) * u;
+                let moment = direction_in_link(joints, about, *link, Vec3::zero(g)) * u;
                 wrenches[link.0].angular += moment;
             }
         }
@@ -39,7 +39,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
         let alone = substitute_symbols(load.force, &|s| is_input(s).then(|| g.zero()));
         let by_inputs = load.force - alone;
         if !by_inputs.is_zero() {
-            for (k, d) in known_gradient(model, load.rate) {
+            for (k, d) in differentiated_gradient(model, load.rate) {
                 tau[k] += by_inputs * d;
             }
         }
@@ -57,6 +57,11 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
 }
 
 /// Returns a direction in the axes of a link, transformed through the axes of the nearest common ancestor.
-fn resolve<'g>(joints: &[Joint<'g>], direction: &Direction<'g>, link: LinkId, zero: Vec3<'g>) -> Vec3<'g> {
+fn direction_in_link<'g>(
+    joints: &[Joint<'g>],
+    direction: &Direction<'g>,
+    link: LinkId,
+    zero: Vec3<'g>,
+) -> Vec3<'g> {
     direction.iter().fold(zero, |sum, (from, v)| sum + change_axes(joints, *v, *from, Some(link)))
 }

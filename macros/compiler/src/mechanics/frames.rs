@@ -11,7 +11,7 @@ use crate::mechanism::{Model, NamedFrame, Pose, Quantity, Supplied};
 /// Placement of a frame in the ground: rotation matrix and position.
 #[derive(Clone, Copy)]
 pub struct Placement<'g> {
-    /// Columns are the frame's axes in ground axes.
+    /// Rotation matrix whose columns are the frame's axes in ground axes.
     pub rotation: Mat3<'g>,
     /// Position of the frame's origin in ground axes.
     pub position: Vec3<'g>,
@@ -23,7 +23,7 @@ impl<'g> Placement<'g> {
         self.rotation.0.iter().flatten().chain(&self.position.0).copied().collect()
     }
 
-    /// Returns the placement of the ground.
+    /// Returns the placement of the ground frame: zero position and identity rotation.
     pub fn ground_placement(graph: &'g Graph) -> Placement<'g> {
         Placement { rotation: Mat3::identity(graph), position: Vec3::zero(graph) }
     }
@@ -39,20 +39,20 @@ impl<'g> Placement<'g> {
     }
 }
 
-/// Returns three entries of an argument as a vector.
-fn given_vector<'g>(model: &Model<'g>, block: Supplied, first: usize) -> Vec3<'g> {
+/// Returns three entries of a function argument as a vector.
+fn vector_argument<'g>(model: &Model<'g>, block: Supplied, first: usize) -> Vec3<'g> {
     Vec3(std::array::from_fn(|k| Quantity::Given(block, first + k).expr(model.graph)))
 }
 
 /// Returns the placement of the parent, which is the first part of its motion in the arguments.
-fn given_placement<'g>(model: &Model<'g>) -> Placement<'g> {
-    let [a, b, c, position] = [0, 3, 6, 9].map(|first| given_vector(model, Supplied::Parent, first));
+fn parent_placement_argument<'g>(model: &Model<'g>) -> Placement<'g> {
+    let [a, b, c, position] = [0, 3, 6, 9].map(|first| vector_argument(model, Supplied::Parent, first));
     Placement { rotation: Mat3([a.0, b.0, c.0]), position }
 }
 
 /// Returns six entries of the motion of the parent as a spatial vector.
-fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
-    let [linear, angular] = [first, first + 3].map(|first| given_vector(model, Supplied::Parent, first));
+fn spatial_argument<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
+    let [linear, angular] = [first, first + 3].map(|first| vector_argument(model, Supplied::Parent, first));
     Spatial { linear, angular }
 }
 
@@ -64,7 +64,7 @@ pub fn spatial_components<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
 /// Returns the placement of a link from its parent's (12 arguments, none for a root).
 pub fn link_placement<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Placement<'g> {
     let parent = if joint.parent.is_some() {
-        given_placement(model)
+        parent_placement_argument(model)
     } else {
         Placement::ground_placement(model.graph)
     };
@@ -73,8 +73,11 @@ pub fn link_placement<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Placement<'g>
 
 /// Returns the placement of a named frame from its link's (12 arguments, none if it is fixed to the ground).
 pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placement<'g> {
-    let link =
-        if frame.link.is_some() { given_placement(model) } else { Placement::ground_placement(model.graph) };
+    let link = if frame.link.is_some() {
+        parent_placement_argument(model)
+    } else {
+        Placement::ground_placement(model.graph)
+    };
     link.compose_with(&frame.pose)
 }
 
@@ -83,7 +86,7 @@ pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> S
     let own = joint.total_relative_twist(model, v);
     match joint.parent {
         None => own,
-        Some(_) => joint.twist_to_child(&given_spatial(model, 0)).plus(&own),
+        Some(_) => joint.twist_to_child(&spatial_argument(model, 0)).plus(&own),
     }
 }
 
@@ -95,7 +98,7 @@ pub fn link_acceleration<'g>(
     v: &[Expr<'g>],
     a: &[Expr<'g>],
 ) -> Spatial<'g> {
-    let (twist, parent) = (given_spatial(model, 0), given_spatial(model, 6));
+    let (twist, parent) = (spatial_argument(model, 0), spatial_argument(model, 6));
     joint.link_acceleration(model, joint.parent.map(|_| (&twist, &parent)), v, a)
 }
 
@@ -104,7 +107,7 @@ pub fn frame_twist<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g>
     if frame.link.is_none() {
         return Spatial::zero(model);
     }
-    let (placement, twist) = (given_placement(model), given_spatial(model, 12));
+    let (placement, twist) = (parent_placement_argument(model), spatial_argument(model, 12));
     let p = frame.pose.translation;
     Spatial {
         linear: placement.rotation * (twist.linear + twist.angular.cross(p)),
@@ -118,8 +121,8 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
     if frame.link.is_none() {
         return Spatial::zero(model);
     }
-    let placement = given_placement(model);
-    let (twist, acceleration) = (given_spatial(model, 12), given_spatial(model, 18));
+    let placement = parent_placement_argument(model);
+    let (twist, acceleration) = (spatial_argument(model, 12), spatial_argument(model, 18));
     let (p, w) = (frame.pose.translation, twist.angular);
     let point = acceleration.linear + acceleration.angular.cross(p) + w.cross(w.cross(p));
     Spatial { linear: placement.rotation * point, angular: placement.rotation * acceleration.angular }
@@ -128,8 +131,8 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
 /// Returns the columns of a frame's Jacobian for the degrees of freedom of one link: the twist of the frame
 /// per unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
 pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
-    let placement = given_placement(model);
-    let arm = given_vector(model, Supplied::Origin, 0) - placement.position;
+    let placement = parent_placement_argument(model);
+    let arm = vector_argument(model, Supplied::Origin, 0) - placement.position;
     joint
         .dofs
         .iter()

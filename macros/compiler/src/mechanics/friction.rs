@@ -18,7 +18,7 @@
 //! pivots keep their sign. If a pivot changes sign, friction jams (Painlevé's paradox: Génot and Brogliato,
 //! *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
 
-use super::constraints::{constrained_system_matrix, elimination_order, jacobian, right_side};
+use super::constraints::{constrained_right_side, constrained_system_matrix, elimination_order, jacobian};
 use super::crba::Matrix;
 use super::ldl::Solution;
 use crate::expr::{Expr, Function};
@@ -63,7 +63,7 @@ pub fn solve_with_friction<'g>(
         }
     }
     let (order, _) = elimination_order(&k, nv, &last);
-    eliminate_in_order(k, right_side(force, bias), &order, nv).with_reliability(nv)
+    eliminate_in_order(k, constrained_right_side(force, bias), &order, nv).with_reliability(nv)
 }
 
 /// Solves `m x = r` by elimination in a given order. Also returns the magnitudes that the elimination of the

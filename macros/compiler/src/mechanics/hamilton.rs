@@ -9,11 +9,11 @@ use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
-/// Functions of `q` and the momenta, which are arguments.
+/// Hamilton's equations as functions of `q` and the generalized momenta.
 pub struct Hamilton<'g> {
     /// Hamiltonian `H = p·v − T + U`.
     pub hamiltonian: Expr<'g>,
-    /// Velocities `v` as functions of the momenta.
+    /// Joint velocities `v` as functions of the momenta.
     pub velocity: Vec<Expr<'g>>,
     /// Momentum rates `ṗ` under the forces `τ`.
     pub momentum_rate: Vec<Expr<'g>>,
@@ -25,7 +25,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
     let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
-    let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
+    let driven = replace_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
     let relative = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
     let velocity = ldl::solve_symmetric(mass.clone(), relative, joints);
     let power = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, v)| sum + *p * *v);
@@ -37,13 +37,13 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     };
     let mut rate = momentum::momentum_rate(model, joints, &velocity);
     rate.iter_mut().enumerate().for_each(|(k, rate)| *rate += Quantity::Force(k).expr(g));
-    let hamiltonian = with_velocities(&[hamiltonian], &velocity)[0];
-    Hamilton { hamiltonian, momentum_rate: with_velocities(&rate, &velocity), velocity }
+    let hamiltonian = replace_velocities(&[hamiltonian], &velocity)[0];
+    Hamilton { hamiltonian, momentum_rate: replace_velocities(&rate, &velocity), velocity }
 }
 
 /// Returns expressions with the velocity symbols replaced by `v`. Elements' energies and forces contain the
 /// velocity symbols of the mechanism.
-fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     replace_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,

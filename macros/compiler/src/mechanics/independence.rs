@@ -16,7 +16,7 @@ pub type Combination = Vec<(usize, f64)>;
 /// Result of the test of one column for linear independence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
-    /// The column is independent of its predecessors.
+    /// Column that is linearly independent of its predecessors.
     Own,
     /// This combination of independent predecessors; empty if the column is zero.
     Combined(Combination),
@@ -117,7 +117,7 @@ mod tests {
     use super::{Part, orthogonalise_columns};
 
     #[test]
-    fn combinations_are_found() {
+    fn linear_combinations_are_detected() {
         let (a, b) = (vec![1.0, 2.0, -1.0, 0.5], vec![0.3, -1.0, 2.0, 4.0]);
         let zero = vec![0.0; 4];
         let c: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - 0.5 * b).collect();

@@ -6,7 +6,7 @@ use crate::expr::Expr;
 use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::Model;
 
-/// Adds the inertances of inerters to the mass matrix.
+/// Adds the contributions of inerters to the mass matrix.
 pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
@@ -36,7 +36,7 @@ pub fn add_to_forces<'g>(model: &Model<'g>, a: Option<&[Expr<'g>]>, tau: &mut [E
     }
 }
 
-/// Returns the kinetic energy of the inerters.
+/// Returns the kinetic energy of the inerters, `½ b (J v)²` for each.
 pub fn kinetic_energy<'g>(model: &Model<'g>) -> Expr<'g> {
     model.inertances.iter().fold(model.graph.zero(), |sum, e| sum + e.inertance * 0.5 * e.rate.square())
 }

@@ -33,7 +33,7 @@ pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nq()).map(|k| configuration_rate(model.configuration_space(), k)).collect()
 }
 
-/// Derives Lagrange's equations in closed form.
+/// Derives Lagrange's equations in closed form by differentiating the energies.
 pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     let g = model.graph;
     let v = velocity_symbols(model);

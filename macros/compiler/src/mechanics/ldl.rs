@@ -5,17 +5,17 @@ use super::crba::Matrix;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
-/// Returns the solution of `m x = r`.
+/// Returns the solution of `m x = r` for a symmetric matrix `m`.
 pub fn solve_symmetric<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let order = elimination_order(joints, r.len());
-    solve_in(m, r, &order, 0).x
+    solve_in_order(m, r, &order, 0).x
 }
 
 /// Solution of a linear system with measures of its reliability.
 pub struct Solution<'g> {
     /// Unknowns `x` of the linear system.
     pub x: Vec<Expr<'g>>,
-    /// Pivot of each index in the factorisation.
+    /// Pivot of each unknown in the factorisation.
     pub pivots: Vec<Expr<'g>>,
     /// Amount that the elimination of the first `first` indices has subtracted from each diagonal entry.
     pub taken: Vec<Expr<'g>>,
@@ -35,7 +35,12 @@ impl<'g> Solution<'g> {
 }
 
 /// Solves `m x = r` for a symmetric `m`, eliminated in a given order.
-pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
+pub fn solve_in_order<'g>(
+    mut m: Matrix<'g>,
+    mut r: Vec<Expr<'g>>,
+    order: &[usize],
+    first: usize,
+) -> Solution<'g> {
     let zero_vector = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
     let (mut inverse, mut x, mut pivots, mut taken) =
         (zero_vector(), zero_vector(), zero_vector(), zero_vector());

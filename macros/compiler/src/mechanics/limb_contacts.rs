@@ -9,7 +9,7 @@ pub struct LimbContacts<'a, 'g> {
     limbs: &'a Limbs<'g>,
     groups: Vec<LimbRows>,
     merge: Merge<'g>,
-    /// Number of all contact velocities.
+    /// Number of contact velocities of all contacts.
     count: usize,
 }
 
@@ -23,7 +23,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     }
 
     /// Returns, for each group of limbs, the indices of the contact velocities of each limb.
-    pub fn of_limbs(&self) -> impl Iterator<Item = Vec<Vec<usize>>> {
+    pub fn contacts_of_limbs(&self) -> impl Iterator<Item = Vec<Vec<usize>>> {
         self.groups.iter().map(|group| {
             (0..group.width).map(|lane| group.rows.iter().map(|row| row[lane]).collect()).collect()
         })
@@ -59,7 +59,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     }
 
     /// Returns the sum of square matrices over the velocities, one matrix for each limb, in the groups of
-    /// [`of_limbs`](Self::of_limbs).
+    /// [`contacts_of_limbs`](Self::contacts_of_limbs).
     pub fn sum_limb_matrices(&mut self, groups: &[Vec<Matrix<'g>>]) -> Option<Matrix<'g>> {
         let places: Vec<(usize, Option<usize>)> = self.limbs.velocity_indices_and_lanes().collect();
         let mut sum: Option<Matrix<'g>> = None;
@@ -74,10 +74,10 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
                         (Some(lane), _) | (None, Some(lane)) => entry.lane(lane),
                     }
                 };
-            let row = |row: &(usize, Option<usize>)| {
+            let row_of_responses = |row: &(usize, Option<usize>)| {
                 places.iter().map(|column| entry_of_lane_pair(*row, *column)).collect()
             };
-            let found: Matrix<'g> = places.iter().map(row).collect();
+            let found: Matrix<'g> = places.iter().map(row_of_responses).collect();
             match &mut sum {
                 None => sum = Some(found),
                 Some(sum) => {

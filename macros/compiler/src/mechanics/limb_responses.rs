@@ -7,37 +7,37 @@ use crate::vectorise::{LimbRows, Limbs, join_lanes};
 use std::collections::BTreeMap;
 
 /// Contact velocities of the limbs of one group of identical limbs.
-struct Family<'g> {
+struct ContactFamily<'g> {
     /// First velocity of the group's limbs, which identifies the group.
     group: usize,
-    /// Number of limbs in the group.
+    /// Number of identical limbs in the group.
     width: usize,
-    rows: Vec<Row<'g>>,
+    rows: Vec<ResponseRow<'g>>,
 }
 
-/// One contact velocity of each limb, in lanes.
-struct Row<'g> {
-    /// `L⁻ᵀ g` over the velocities of [`Limbs`], in lanes.
+/// One contact velocity of each identical limb, in SIMD lanes.
+struct ResponseRow<'g> {
+    /// Reduced row `L⁻ᵀ g` over the velocities of [`Limbs`], in SIMD lanes.
     reduced: Vec<Expr<'g>>,
     /// Entries of `M⁻¹ g` for the trunk and for the limb of the contact velocity.
     own: Vec<Expr<'g>>,
 }
 
-/// Location of a contact velocity: family, row and lane.
+/// Location of a contact velocity among the limbs: family, row and SIMD lane.
 #[derive(Clone, Copy)]
-struct Place {
+struct ContactLocation {
     family: usize,
     row: usize,
     lane: usize,
 }
 
 /// Factorisation `M = Lᵀ D L`, with limbs in lanes.
-struct Factor<'g> {
+struct LimbFactor<'g> {
     /// Velocities in elimination order: from the leaves to the root.
     order: Vec<usize>,
-    /// Off-diagonal entries of `L`, a row for each velocity.
+    /// Off-diagonal entries of the factor `L`, a row for each velocity.
     rows: Vec<Vec<(usize, Expr<'g>)>>,
-    /// Diagonal of `D⁻¹`, in the order of `v`.
+    /// Diagonal of `D⁻¹` in the factorisation, in the order of `v`.
     inverse: Vec<Expr<'g>>,
     /// Group of limbs of each velocity; `None` for the trunk.
     groups: Vec<Option<usize>>,
@@ -48,25 +48,25 @@ struct Factor<'g> {
 /// the same number of rows.
 pub fn limb_contact_responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
     let groups = limbs.limb_rows(rows)?;
-    let factor = Factor::new(limbs, limbs.group_of_each_velocity());
+    let factor = LimbFactor::new(limbs, limbs.group_of_each_velocity());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
     for LimbRows { group, width, rows: numbers } in groups {
         for (row, lanes) in numbers.iter().enumerate() {
             for (lane, i) in lanes.iter().enumerate() {
-                places.insert(*i, Place { family: families.len(), row, lane });
+                places.insert(*i, ContactLocation { family: families.len(), row, lane });
             }
         }
         let all = numbers.iter().map(|lanes| {
             let lane_rows: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
             factor.solve_contact_row(limbs.side_by_side(&lane_rows), group)
         });
-        families.push(Family { group, width, rows: all.collect() });
+        families.push(ContactFamily { group, width, rows: all.collect() });
     }
-    let places: Vec<Place> = places.into_values().collect();
+    let places: Vec<ContactLocation> = places.into_values().collect();
     let mut out = Vec::new();
     for place in &places {
         out.extend(
-            limbs.scattered_from(|index, lane| factor.velocity_response(&families, *place, index, lane)),
+            limbs.scatter_from_lanes(|index, lane| factor.velocity_response(&families, *place, index, lane)),
         );
     }
     for i in 0..places.len() {
@@ -78,13 +78,13 @@ pub fn limb_contact_responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> 
 }
 
 /// Rotates `n` lanes: lane `k` of the result is lane `k + by` modulo `n`.
-fn rotated_lanes(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
+fn rotate_lanes(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
     let lanes: Vec<Expr<'_>> = (0..n).map(|k| e.lane((k + by) % n)).collect();
     join_lanes(&lanes)
 }
 
-impl<'g> Factor<'g> {
-    fn new(limbs: &Limbs<'g>, groups: Vec<Option<usize>>) -> Factor<'g> {
+impl<'g> LimbFactor<'g> {
+    fn new(limbs: &Limbs<'g>, groups: Vec<Option<usize>>) -> LimbFactor<'g> {
         let mut m: Matrix<'g> = mass_matrix(&limbs.model, &limbs.joints);
         let order = elimination_order(&limbs.joints, m.len());
         let (mut rows, mut inverse) = (vec![Vec::new(); m.len()], Vec::new());
@@ -105,11 +105,11 @@ impl<'g> Factor<'g> {
                 rows[k].push((i, factor));
             }
         }
-        Factor { order, rows, inverse, groups }
+        LimbFactor { order, rows, inverse, groups }
     }
 
     /// Solves for one contact velocity of each limb of a group, whose Jacobian entries `g` are in SIMD lanes.
-    fn solve_contact_row(&self, g: Vec<Expr<'g>>, group: usize) -> Row<'g> {
+    fn solve_contact_row(&self, g: Vec<Expr<'g>>, group: usize) -> ResponseRow<'g> {
         let mut reduced = g;
         for &k in &self.order {
             for (i, factor) in &self.rows[k] {
@@ -121,18 +121,24 @@ impl<'g> Factor<'g> {
             let start = reduced[k] * self.inverse[k];
             own[k] = self.rows[k].iter().fold(start, |x, (i, factor)| x - *factor * own[*i]);
         }
-        Row { reduced, own }
+        ResponseRow { reduced, own }
     }
 
     /// Returns the change of a velocity, in its own lane, per unit impulse along a contact velocity.
-    fn velocity_response(&self, families: &[Family<'g>], at: Place, index: usize, lane: usize) -> Expr<'g> {
-        let Family { group, width, rows } = &families[at.family];
+    fn velocity_response(
+        &self,
+        families: &[ContactFamily<'g>],
+        at: ContactLocation,
+        index: usize,
+        lane: usize,
+    ) -> Expr<'g> {
+        let ContactFamily { group, width, rows } = &families[at.family];
         let own = &rows[at.row].own;
         match self.groups[index] {
             None => own[index].lane(at.lane),
             Some(of) if of == *group && lane == at.lane => own[index],
             Some(of) if of == *group => {
-                self.velocity_from_trunk(index, &|k| rotated_lanes(own[k], *width, width + at.lane - lane))
+                self.velocity_from_trunk(index, &|k| rotate_lanes(own[k], *width, width + at.lane - lane))
             }
             Some(_) => self.velocity_from_trunk(index, &|k| own[k].lane(at.lane)),
         }
@@ -148,7 +154,12 @@ impl<'g> Factor<'g> {
     }
 
     /// Returns the change of one contact velocity per unit impulse along another.
-    fn delassus_entry(&self, families: &[Family<'g>], a: Place, b: Place) -> Expr<'g> {
+    fn delassus_entry(
+        &self,
+        families: &[ContactFamily<'g>],
+        a: ContactLocation,
+        b: ContactLocation,
+    ) -> Expr<'g> {
         let (first, second) = (&families[a.family], &families[b.family]);
         let (x, y) = (&first.rows[a.row].reduced, &second.rows[b.row].reduced);
         let sum_over_velocities = |is_in: &dyn Fn(usize) -> bool, of: &dyn Fn(usize) -> [Expr<'g>; 2]| {
@@ -172,7 +183,7 @@ impl<'g> Factor<'g> {
                 [x[k], y[k]]
             })
             .lane(a.lane),
-            _ => sum_over_velocities(&is_in_trunk, &|k| [x[k], rotated_lanes(y[k], n, by)]).lane(a.lane),
+            _ => sum_over_velocities(&is_in_trunk, &|k| [x[k], rotate_lanes(y[k], n, by)]).lane(a.lane),
         }
     }
 }

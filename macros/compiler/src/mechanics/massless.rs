@@ -15,7 +15,7 @@ use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::mechanism::Model;
 
-/// Returns the constraints that determine coordinates without inertia.
+/// Returns the indices of the constraints that determine coordinates without inertia.
 pub fn massless_constraints(model: &Model<'_>) -> Vec<usize> {
     (0..model.constraints.len()).filter(|row| model.constraints[*row].determines).collect()
 }
@@ -36,7 +36,7 @@ fn weighted_jacobian_rows<'g>(
 }
 
 /// Returns the mass matrix with weighted constraints, `M + w Jᵀ J`.
-pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix<'g>) -> Matrix<'g> {
+pub fn augmented_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix<'g>) -> Matrix<'g> {
     if massless_constraints(model).is_empty() {
         return mass;
     }
@@ -50,7 +50,7 @@ pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix
 }
 
 /// Returns the force with weighted constraints, `f − w Jᵀ b`.
-pub fn loaded_force<'g>(
+pub fn augmented_force<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     force: &[Expr<'g>],

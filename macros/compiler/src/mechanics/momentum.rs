@@ -5,7 +5,7 @@ use super::crba::{composite_inertias, momentum};
 use super::energy::center_of_mass;
 use super::frames::{Placement, spatial_components};
 use super::inertances;
-use super::rnea::wrenches;
+use super::rnea::link_wrenches;
 use super::shared_motions::SharedMotions;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
@@ -22,7 +22,7 @@ fn composite_momenta<'g>(
     accumulate_wrenches(joints, own)
 }
 
-/// Sums wrenches from the leaves to the roots.
+/// Sums wrenches of the links from the leaves to the roots of the tree.
 fn accumulate_wrenches<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<Spatial<'g>> {
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
@@ -32,10 +32,11 @@ fn accumulate_wrenches<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>)
     wrenches
 }
 
-fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
+fn project_wrenches<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
     let mut out = vec![model.graph.zero(); model.nv()];
     let shared = SharedMotions::new(model, joints);
-    for (_, (joint, wrench)) in joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.has_link(*k))
+    for (_, (joint, wrench)) in
+        joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.contains_link(*k))
     {
         for dof in &joint.dofs {
             out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);
@@ -45,10 +46,10 @@ fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]
     out
 }
 
-/// Returns `p = M v`, without forming `M`.
+/// Returns the generalized momentum `p = M v`, without forming `M`.
 pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let momenta = composite_momenta(model, joints, &twists(model, joints, v));
-    let mut p = project(model, joints, &momenta);
+    let mut p = project_wrenches(model, joints, &momenta);
     inertances::add_to_momentum(model, &mut p);
     p
 }
@@ -69,12 +70,12 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
             }
         })
         .collect();
-    let mut rate = project(model, joints, &wrenches);
+    let mut rate = project_wrenches(model, joints, &wrenches);
     // Contribution of a subspace that is not constant: Ṡᵀ F.
     let shared = SharedMotions::by_rates(model, joints);
     shared.add_forces(&momenta, &mut rate);
     for (_, (joint, momentum)) in
-        joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.has_link(*k))
+        joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.contains_link(*k))
     {
         for (dof, change) in joint.dofs.iter().zip(joint.drift.iter().flat_map(|d| &d.subspace_rates)) {
             rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);
@@ -104,11 +105,11 @@ fn link_weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>>
 
 /// Returns the total momentum in ground axes: linear, and angular about the centre of mass.
 pub fn centroidal_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
-    about_center(model, joints, &composite_momenta(model, joints, &twists(model, joints, v)))
+    sum_about_center(model, joints, &composite_momenta(model, joints, &twists(model, joints, v)))
 }
 
 /// Returns the sum of the roots' accumulated wrenches or momenta, in ground axes about the centre of mass.
-fn about_center<'g>(model: &Model<'g>, joints: &[Joint<'g>], sums: &[Spatial<'g>]) -> Spatial<'g> {
+fn sum_about_center<'g>(model: &Model<'g>, joints: &[Joint<'g>], sums: &[Spatial<'g>]) -> Spatial<'g> {
     let mut sum = Spatial::zero(model);
     for (joint, wrench) in joints.iter().zip(sums).filter(|(joint, _)| joint.parent.is_none()) {
         sum = sum.plus(&joint.wrench_to_parent(wrench));
@@ -144,6 +145,6 @@ pub fn centroidal_momentum_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -
 /// Returns the rate of the total momentum at zero accelerations, without gravity.
 pub fn centroidal_bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
     let weightless = Model { gravity: Vec3::zero(model.graph), ..model.clone() };
-    let wrenches = wrenches(&weightless, joints, v, None);
-    about_center(model, joints, &accumulate_wrenches(joints, wrenches))
+    let wrenches = link_wrenches(&weightless, joints, v, None);
+    sum_about_center(model, joints, &accumulate_wrenches(joints, wrenches))
 }

@@ -2,7 +2,7 @@
 
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Function};
-use crate::kinematics::{coordinate_position, coordinate_velocity, energy_gradient, known_gradient};
+use crate::kinematics::{coordinate_position, coordinate_velocity, differentiated_gradient, energy_gradient};
 use crate::mechanism::{Model, Quantity};
 
 /// Returns the generalized forces of springs, dashpots, friction, potentials and loads, with the sign of `h`:
@@ -10,7 +10,7 @@ use crate::mechanism::{Model, Quantity};
 /// If another function computes the passive forces, returns its results as symbols.
 pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
     if let Some(passive) = model.passive.as_ref().filter(|_| with_velocity) {
-        return passive.given_forces();
+        return passive.forces_as_arguments();
     }
     let g = model.graph;
     let mut h = vec![g.zero(); model.nv()];
@@ -35,14 +35,14 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
             h[dry.on.v.0] += dry.friction * slip * g.num(dry.on.ratio);
         }
         for function in &model.dissipations {
-            for (k, d) in known_gradient(model, *function) {
+            for (k, d) in differentiated_gradient(model, *function) {
                 h[k] += d;
             }
         }
         for load in &model.loads {
             let no_input = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
             let force = substitute_symbols(load.force, &no_input);
-            for (k, d) in known_gradient(model, load.rate) {
+            for (k, d) in differentiated_gradient(model, load.rate) {
                 h[k] -= force * d;
             }
         }

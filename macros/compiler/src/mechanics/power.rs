@@ -28,13 +28,13 @@ pub fn dissipated_power<'g>(model: &Model<'g>) -> Expr<'g> {
     taken.fold(power, |sum, load| sum - load.force * load.rate)
 }
 
-/// Returns the power of the inputs: `v · τ(u)`.
+/// Returns the power of the inputs, `v · τ(u)`.
 pub fn control_power<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
     let tau = forces::generalized_forces(model, joints);
     tau.iter().zip(velocity_symbols(model)).fold(model.graph.zero(), |sum, (tau, v)| sum + *tau * v)
 }
 
-/// Returns the power of the other applied forces.
+/// Returns the power of applied forces other than inputs and dissipative forces.
 pub fn disturbance_power<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
     let without_inputs = |load: &Load<'g>| {

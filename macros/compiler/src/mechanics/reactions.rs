@@ -14,7 +14,7 @@ use crate::mechanism::{Model, Quantity, Released, SolvedSide};
 const SIX: usize = 6;
 
 /// Returns whether one of the expressions contains a reaction.
-pub fn names_one(e: &[Expr<'_>]) -> bool {
+pub fn contains_reactions(e: &[Expr<'_>]) -> bool {
     symbols_in(e).into_iter().any(|s| matches!(Quantity::from_symbol(s), Quantity::Reaction(_)))
 }
 
@@ -37,14 +37,14 @@ pub fn replace_reactions<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -
         }
         let (joint, component) = (k / SIX, k % SIX);
         let released_index = || released.joints.iter().position(|j| *j == joint);
-        of_multipliers(model, released, &multipliers, joint, component)
+        reaction_of_multipliers(model, released, &multipliers, joint, component)
             .or_else(|| Some(held[SIX * released_index()? + component]))
     };
     replace_all(e, &reaction_of_symbol)
 }
 
 /// Returns one component of the reaction of a joint that closes a loop; `None` for other joints.
-fn of_multipliers<'g>(
+fn reaction_of_multipliers<'g>(
     model: &Model<'g>,
     released: &Released<'g>,
     multipliers: &[Expr<'g>],
@@ -60,11 +60,11 @@ fn of_multipliers<'g>(
             }
         }
     }
-    sum.map(|e| replace_all(&[e], &|s| is_open(model, s).then(|| model.graph.zero()))[0])
+    sum.map(|e| replace_all(&[e], &|s| is_released_coordinate(model, s).then(|| model.graph.zero()))[0])
 }
 
 /// Returns whether a symbol is a coordinate of a released joint, or the velocity of such a coordinate.
-fn is_open(model: &Model<'_>, s: Symbol) -> bool {
+fn is_released_coordinate(model: &Model<'_>, s: Symbol) -> bool {
     match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => k >= model.nq(),
         Quantity::Velocity(k) => k >= model.nv(),
@@ -99,11 +99,12 @@ fn on_released_coordinates<'g>(
         let force = Quantity::ContactForce(i).expr(g);
         forces_needed.iter_mut().zip(row).for_each(|(needed, entry)| *needed -= entry * force);
     }
-    let set_open_symbols_to_zero = |e: &[Expr<'g>]| replace_all(e, &|s| is_open(model, s).then(|| g.zero()));
+    let set_open_symbols_to_zero =
+        |e: &[Expr<'g>]| replace_all(e, &|s| is_released_coordinate(model, s).then(|| g.zero()));
     let mut needed = set_open_symbols_to_zero(&forces_needed[model.nv()..]);
     let rows = constraints::jacobian(open).split_off(multipliers.len());
     let rows: Matrix<'g> = rows.iter().map(|row| set_open_symbols_to_zero(&row[model.nv()..])).collect();
-    let solved = closing_forces(released, &needed, &rows);
+    let solved = closed_form_multipliers(released, &needed, &rows);
     for (row, l) in rows.iter().zip(&solved) {
         needed.iter_mut().zip(row).for_each(|(force, entry)| *force -= *entry * *l);
     }
@@ -114,7 +115,11 @@ fn on_released_coordinates<'g>(
 /// Returns the multipliers of the loops that are solved in closed form, two for each loop. `needed` are the
 /// forces on the released coordinates, and `rows` are their changes per unit of each multiplier. The
 /// multipliers make the forces along the motions of the joints zero for which the loops are solved.
-fn closing_forces<'g>(released: &Released<'g>, needed: &[Expr<'g>], rows: &Matrix<'g>) -> Vec<Expr<'g>> {
+fn closed_form_multipliers<'g>(
+    released: &Released<'g>,
+    needed: &[Expr<'g>],
+    rows: &Matrix<'g>,
+) -> Vec<Expr<'g>> {
     let g = released.model.graph;
     let axis_component = |side: &SolvedSide<'g>, forces: &[Expr<'g>]| {
         let at = released.joints.iter().position(|j| *j == side.joint)?;

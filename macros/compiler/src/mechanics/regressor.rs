@@ -7,7 +7,7 @@ use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, LinkId, Model, Pose};
 
-/// Number of inertial parameters of a frame.
+/// Number of inertial parameters of a rigid body.
 pub const COUNT: usize = 10;
 
 /// Names of the inertial parameters: mass, first moment `m c`, inertia about the frame's origin, in
@@ -20,9 +20,9 @@ const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2
 /// Frame fixed in a link, whose inertial parameters are identified.
 #[derive(Clone)]
 pub struct Site<'g> {
-    /// Link in which the frame is fixed.
+    /// Link in which the parameter frame is fixed.
     pub link: LinkId,
-    /// Pose of the frame relative to the link's frame.
+    /// Pose of the parameter frame relative to the link's frame.
     pub pose: Pose<'g>,
 }
 
@@ -59,13 +59,13 @@ pub fn regressor_columns<'g>(
     let mut at: Option<(usize, Vec<(usize, Spatial<'g>)>)> = None;
     for &(index, parameter) in wanted {
         let site = &sites[index];
-        let state = states[site.link.0].seen_from(&site.pose);
+        let state = states[site.link.0].motion_in_frame(&site.pose);
         let mut unit = [g.zero(); COUNT];
         unit[parameter] = g.one();
         let wrench = newton_euler(&inertia_from_parameters(unit), &state);
         let seen = match at.take().filter(|(known, _)| *known == index) {
             Some((_, seen)) => seen,
-            None => subspaces[site.link.0].iter().map(|(k, s)| (*k, seen_from(&site.pose, s))).collect(),
+            None => subspaces[site.link.0].iter().map(|(k, s)| (*k, twist_in_frame(&site.pose, s))).collect(),
         };
         let mut column = vec![g.zero(); model.nv()];
         for (k, subspace) in &seen {
@@ -90,7 +90,7 @@ fn partial_twists<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize
 }
 
 /// Transforms a twist of a link to a frame that is fixed in the link.
-fn seen_from<'g>(pose: &Pose<'g>, twist: &Spatial<'g>) -> Spatial<'g> {
+fn twist_in_frame<'g>(pose: &Pose<'g>, twist: &Spatial<'g>) -> Spatial<'g> {
     Spatial {
         linear: pose.rotation.to_child(twist.linear + twist.angular.cross(pose.translation)),
         angular: pose.rotation.to_child(twist.angular),

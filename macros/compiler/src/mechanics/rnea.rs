@@ -16,7 +16,7 @@ pub fn inverse_dynamics<'g>(
     v: &[Expr<'g>],
     a: Option<&[Expr<'g>]>,
 ) -> Vec<Expr<'g>> {
-    let mut wrenches = wrenches(model, joints, v, a);
+    let mut wrenches = link_wrenches(model, joints, v, a);
     let mut tau = passive_forces(model, true);
     inertances::add_to_forces(model, a, &mut tau);
     if let Some(a) = a {
@@ -25,7 +25,7 @@ pub fn inverse_dynamics<'g>(
     let shared = SharedMotions::new(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
-        for dof in joint.dofs.iter().filter(|_| !shared.has_link(k)) {
+        for dof in joint.dofs.iter().filter(|_| !shared.contains_link(k)) {
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
@@ -38,7 +38,7 @@ pub fn inverse_dynamics<'g>(
 
 /// Returns the wrench that produces the acceleration of each link, including its weight. If `a` is `None`,
 /// the joint accelerations are zero.
-pub fn wrenches<'g>(
+pub fn link_wrenches<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
@@ -76,9 +76,13 @@ impl<'g> State<'g> {
     }
 
     /// Returns the motion of a frame that is fixed in the link.
-    pub(super) fn seen_from(&self, pose: &Pose<'g>) -> State<'g> {
-        let to_child = |v| pose.rotation.to_child(v);
-        State::new(to_child(self.w), to_child(self.dw), to_child(self.a + self.u * pose.translation))
+    pub(super) fn motion_in_frame(&self, pose: &Pose<'g>) -> State<'g> {
+        let vector_in_child = |v| pose.rotation.to_child(v);
+        State::new(
+            vector_in_child(self.w),
+            vector_in_child(self.dw),
+            vector_in_child(self.a + self.u * pose.translation),
+        )
     }
 }
 
@@ -122,7 +126,7 @@ pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<
     let mut moment = inertia.moment.cross(s.a);
     for k in 0..3 {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        moment.0[k] += diagonal_terms(i, s, k) + i.entry(l, m) * (s.squares[l] - s.squares[m])
+        moment.0[k] += diagonal_moment(i, s, k) + i.entry(l, m) * (s.squares[l] - s.squares[m])
             - i.entry(k, l) * u[m][k]
             + i.entry(k, m) * u[l][k];
     }
@@ -131,14 +135,14 @@ pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<
 
 /// Returns `I_kk ẇ_k + (I_mm − I_ll) w_l w_m`. In terms of the second moments `P` of mass this is
 /// `P_ll U_ml − P_mm U_lm`. The form with fewer terms is used.
-fn diagonal_terms<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
+fn diagonal_moment<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
     let [own, next, last] = [k, l, m].map(|k| i.diagonal[k]);
     if own.is_constant() && next.is_constant() && last.is_constant() {
         let size = [own, next, last].map(|x| x.apply_function(Function::Abs));
         let rounding = (size[0] + size[1] + size[2]) * (4.0 * f64::EPSILON);
         let second = [(own + last - next) * 0.5, (own + next - last) * 0.5];
-        let [p, q] = second.map(|x| if x.is_within(rounding) { x.zero() } else { x });
+        let [p, q] = second.map(|x| if x.is_within_bound(rounding) { x.zero() } else { x });
         let terms = usize::from(!own.is_zero()) + usize::from(next != last);
         if usize::from(!p.is_zero()) + usize::from(!q.is_zero()) < terms {
             return p * s.u.0[m][l] - q * s.u.0[l][m];

@@ -22,11 +22,11 @@ const ROUNDING: f64 = 1e-11;
 pub struct Routh<'g> {
     /// Indices of the velocities of the cyclic coordinates.
     pub cyclic: Vec<usize>,
-    /// Routhian `R`.
+    /// Routhian `R` as an expression.
     pub routhian: Expr<'g>,
     /// Velocities of the cyclic coordinates in terms of their momenta.
     pub velocity: Vec<Expr<'g>>,
-    /// Accelerations of the other coordinates, under the forces `τ`.
+    /// Accelerations of the coordinates that are not cyclic, under the forces `τ`.
     pub acceleration: Vec<Expr<'g>>,
 }
 
@@ -56,7 +56,7 @@ pub fn cyclic_coordinates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<us
     plain
 }
 
-/// The Routhian and the velocities of cyclic coordinates.
+/// Routhian and velocities of the cyclic coordinates at given momenta.
 pub struct Solved<'g> {
     /// Routhian `R = T(v, 0) − ½ (p − π)·w − U`.
     pub routhian: Expr<'g>,
@@ -74,12 +74,12 @@ pub fn solve_cyclic_velocities<'g>(
 ) -> Option<Solved<'g>> {
     let g = model.graph;
     let others = with_cyclic_velocities(model, cyclic, &vec![g.zero(); cyclic.len()]);
-    let given = with_velocities(&momentum::generalized_momentum(model, joints, &others), &others);
+    let given = replace_velocities(&momentum::generalized_momentum(model, joints, &others), &others);
     let p = cyclic.iter().enumerate().map(|(c, k)| Quantity::Momentum(c).expr(g) - given[*k]);
     let p: Vec<Expr<'g>> = p.collect();
     let velocity = solve(p.clone())?;
     let kinetic = energy::kinetic_energy(model, joints, &velocity_symbols(model));
-    let lagrangian = with_velocities(&[kinetic - energy::potential_energy(model, joints)], &others)[0];
+    let lagrangian = replace_velocities(&[kinetic - energy::potential_energy(model, joints)], &others)[0];
     let twice = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, w)| sum + *p * *w);
     Some(Solved { routhian: lagrangian - twice * 0.5, velocity })
 }
@@ -93,19 +93,20 @@ pub fn derive<'g>(
 ) -> Routh<'g> {
     let g = model.graph;
     let own = matrix_block(mass, &cyclic, &cyclic);
-    let mut solve = |r: Vec<Expr<'g>>| Some(solved_by(&own, r));
+    let mut solve = |r: Vec<Expr<'g>>| Some(solve_linear_system(&own, r));
     let found = solve_cyclic_velocities(model, joints, &cyclic, &mut solve);
     let Solved { routhian, velocity } =
         found.unwrap_or_else(|| Solved { routhian: g.zero(), velocity: Vec::new() });
     let all = with_cyclic_velocities(model, &cyclic, &velocity);
     // M_rr a + M_rc b = f_r and M_cr a + M_cc b = f_c, with b eliminated.
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
-    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
+    let bias =
+        replace_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
     let force: Vec<Expr<'g>> =
         bias.iter().enumerate().map(|(k, bias)| Quantity::Force(k).expr(g) - *bias).collect();
     let selected_forces = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
     let across = matrix_block(mass, &others, &cyclic);
-    let taken: Matrix<'g> = across.iter().map(|row| solved_by(&own, row.clone())).collect();
+    let taken: Matrix<'g> = across.iter().map(|row| solve_linear_system(&own, row.clone())).collect();
     let dot_product =
         |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
     let mut reduced = matrix_block(mass, &others, &others);
@@ -115,7 +116,7 @@ pub fn derive<'g>(
     let of_cyclic = selected_forces(&cyclic);
     let right =
         selected_forces(&others).into_iter().zip(&taken).map(|(f, taken)| f - dot_product(taken, &of_cyclic));
-    let acceleration = solved_by(&reduced, right.collect());
+    let acceleration = solve_linear_system(&reduced, right.collect());
     Routh { cyclic, routhian, velocity, acceleration }
 }
 
@@ -132,7 +133,7 @@ pub fn with_cyclic_velocities<'g>(
 }
 
 /// Returns the expressions with the velocity symbols replaced by `v`.
-pub fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+pub fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     replace_all(e, &|s| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(v[k]),
         _ => None,
@@ -144,7 +145,7 @@ pub fn matrix_block<'g>(m: &Matrix<'g>, rows: &[usize], columns: &[usize]) -> Ma
     rows.iter().map(|i| columns.iter().map(|j| m[*i][*j]).collect()).collect()
 }
 
-fn solved_by<'g>(m: &Matrix<'g>, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+fn solve_linear_system<'g>(m: &Matrix<'g>, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
     let order: Vec<usize> = (0..r.len()).rev().collect();
-    ldl::solve_in(m.clone(), r, &order, 0).x
+    ldl::solve_in_order(m.clone(), r, &order, 0).x
 }

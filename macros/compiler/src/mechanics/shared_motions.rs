@@ -50,11 +50,11 @@ impl<'g> SharedMotions<'g> {
         let mut known: BTreeMap<(usize, u64, Vec<Id>), usize> = BTreeMap::new();
         // Wrenches of links with a parent are transmitted to the parent, and identical limbs are summed in
         // that step. Such links are left out here.
-        let is_placed = |k: usize| {
+        let is_placed_link = |k: usize| {
             let (link, joint) = (&model.links[k], &joints[k]);
             matches!(link.motion, Motion::Placed) && joint.parent.is_none() && joint.limbs == 1
         };
-        for (k, joint) in joints.iter().enumerate().rev().filter(|(k, _)| is_placed(*k)) {
+        for (k, joint) in joints.iter().enumerate().rev().filter(|(k, _)| is_placed_link(*k)) {
             for (place, dof) in joint.dofs.iter().enumerate() {
                 let Some(along) = along(joint, place) else { continue };
                 let ids = along.linear.0.iter().chain(&along.angular.0).map(|e| e.id()).collect();
@@ -80,7 +80,7 @@ impl<'g> SharedMotions<'g> {
     }
 
     /// Returns true for a link whose partial velocities are stored in this collection.
-    pub fn has_link(&self, link: usize) -> bool {
+    pub fn contains_link(&self, link: usize) -> bool {
         self.concerned[link]
     }
 
@@ -117,7 +117,7 @@ impl<'g> SharedMotions<'g> {
     }
 }
 
-/// Returns the common elements of two descending lists.
+/// Returns the common elements of two lists in descending order.
 fn common_elements(a: &[usize], b: &[usize]) -> Vec<usize> {
     let mut b = b.iter().copied().peekable();
     let is_in_second_list = |k: &usize| {

@@ -20,11 +20,11 @@ use std::rc::Rc;
 /// Kind of a function's results, which determines their transformation to generalized speeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Values that are invariant under the choice of velocities.
+    /// Results that are invariant under the choice of velocities.
     Scalars,
-    /// Generalized forces or momenta, one for each velocity.
+    /// Results that are generalized forces or momenta, one for each velocity.
     Forces,
-    /// Rate of generalized momenta, followed by the momenta.
+    /// Results that are the rate of generalized momenta, followed by the momenta.
     MomentumRate,
     /// This number of values at zero accelerations, followed by the matrix of their derivatives with respect
     /// to the accelerations, column by column.
@@ -35,9 +35,9 @@ pub enum Role {
     /// Velocities or accelerations that result from forces given as arguments, then scalars, then for each of
     /// this number of multipliers the increments per unit of the multiplier.
     Answers(usize),
-    /// Mass matrix, column by column.
+    /// Result that is a mass matrix, column by column.
     Metric,
-    /// Inverse of the mass matrix, column by column.
+    /// Result that is the inverse of a mass matrix, column by column.
     InverseMetric,
     /// A matrix with this number of rows and a column for each velocity, column by column.
     Columns(usize),
@@ -47,17 +47,17 @@ pub enum Role {
 
 /// Transformation of a mechanism from joint velocities to generalized speeds.
 pub struct InSpeeds<'g> {
-    /// Model of the mechanism in joint velocities.
+    /// Model of the mechanism formulated in joint velocities.
     pub native: Model<'g>,
     /// The mechanism in which everything that contains velocities is expressed in generalized speeds:
     /// constraints, contacts and outputs.
     pub model: Model<'g>,
     speeds: Rc<Speeds<'g>>,
-    /// Joint velocities `Z u`, as expressions of the speeds.
+    /// Joint velocities `Z u` as expressions of the generalized speeds.
     pub rates: Vec<Expr<'g>>,
     /// Joint accelerations `Z u̇ + Ż u`, as expressions of the speeds and their rates.
     pub accelerations: Vec<Expr<'g>>,
-    /// Bias `Ż u` of the joint accelerations.
+    /// Bias `Ż u` of the joint accelerations in generalized speeds.
     change: Vec<Expr<'g>>,
     /// Generalized forces of the joints, `Yᵀ τ`, for the forces `τ` of the speeds.
     efforts: Vec<Expr<'g>>,
@@ -76,18 +76,18 @@ impl<'g> InSpeeds<'g> {
         let a = acceleration_symbols(model);
         let accelerations =
             matrix_times_vector(&speeds.rates, &a).iter().zip(&change).map(|(a, c)| *a + *c).collect();
-        let efforts = transposed_times(&speeds.of_rates, &generalized_force_symbols(model));
+        let efforts = multiply_transposed(&speeds.of_rates, &generalized_force_symbols(model));
         let model = Model { gradients: Gradients::default(), passive: None, ..model.clone() };
         let mut found = InSpeeds { native, model, speeds, rates, accelerations, change, efforts };
-        found.exchange_constraints();
-        found.exchange_contacts();
+        found.convert_constraints();
+        found.convert_contacts();
         for k in 0..found.model.outputs.len() {
             found.model.outputs[k].values = found.express_in_speeds(&found.native.outputs[k].values);
         }
         Some(found)
     }
 
-    fn exchange_constraints(&mut self) {
+    fn convert_constraints(&mut self) {
         let rows = constraints::jacobian(&self.native);
         let native = &self.native.constraints;
         let rates: Vec<Expr<'g>> = native.iter().map(|c| c.rate).collect();
@@ -100,7 +100,7 @@ impl<'g> InSpeeds<'g> {
         }
     }
 
-    fn exchange_contacts(&mut self) {
+    fn convert_contacts(&mut self) {
         for k in 0..self.model.contacts.len() {
             self.model.contacts[k].rates = self.express_in_speeds(&self.native.contacts[k].rates);
         }
@@ -119,11 +119,11 @@ impl<'g> InSpeeds<'g> {
 
     /// Transforms generalized forces or momenta of the joints to those of the speeds: multiplies by `Zᵀ`.
     pub fn transform_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        transposed_times(&self.speeds.rates, &self.express_in_speeds(e))
+        multiply_transposed(&self.speeds.rates, &self.express_in_speeds(e))
     }
 
     /// Transforms joint velocities, already expressed in speeds, to the speeds: `Y v`.
-    pub fn speeds_of(&self, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn speeds_of_velocities(&self, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
         matrix_times_vector(&self.speeds.of_rates, v)
     }
 
@@ -131,26 +131,26 @@ impl<'g> InSpeeds<'g> {
     pub fn rates_of_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let relative: Vec<Expr<'g>> =
             self.express_in_speeds(e).iter().zip(&self.change).map(|(a, change)| *a - *change).collect();
-        self.speeds_of(&relative)
+        self.speeds_of_velocities(&relative)
     }
 
     /// Expresses `e` in generalized speeds. The given forces in `e` are generalized forces of the joints; the
     /// given forces of the result are generalized forces of the speeds.
     pub fn with_given_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.with_arguments(e, |k| Quantity::Given(Supplied::Force, k))
+        self.replace_arguments(e, |k| Quantity::Given(Supplied::Force, k))
     }
 
     /// Expresses `e` in generalized speeds. The given momenta in `e` are momenta of the joints; the given
     /// momenta of the result are momenta of the speeds.
-    pub fn with_momenta(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.with_arguments(e, Quantity::Momentum)
+    pub fn replace_momenta(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.replace_arguments(e, Quantity::Momentum)
     }
 
-    fn with_arguments(&self, e: &[Expr<'g>], argument: fn(usize) -> Quantity) -> Vec<Expr<'g>> {
+    fn replace_arguments(&self, e: &[Expr<'g>], argument: fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let symbols: Vec<_> = (0..self.model.nv()).map(|k| argument(k).symbol()).collect();
         let own: Vec<Expr<'g>> = symbols.iter().map(|s| g.symbol(*s)).collect();
-        let native = transposed_times(&self.speeds.of_rates, &own);
+        let native = multiply_transposed(&self.speeds.of_rates, &own);
         replace_all(&self.express_in_speeds(e), &|s| {
             symbols.iter().position(|known| *known == s).and_then(|k| native.get(k)).copied()
         })
@@ -180,7 +180,7 @@ impl<'g> InSpeeds<'g> {
                 let (solution, added) = e.split_at(e.len().saturating_sub(n * answers));
                 let (first, rest) = solution.split_at(n.min(solution.len()));
                 let mut out = match role {
-                    Role::Answers(_) => self.speeds_of(&self.with_given_forces(first)),
+                    Role::Answers(_) => self.speeds_of_velocities(&self.with_given_forces(first)),
                     _ => self.rates_of_speeds(first),
                 };
                 out.extend(match role {
@@ -189,17 +189,17 @@ impl<'g> InSpeeds<'g> {
                 });
                 self.express_in_speeds(added)
                     .chunks(n.max(1))
-                    .for_each(|part| out.extend(self.speeds_of(part)));
+                    .for_each(|part| out.extend(self.speeds_of_velocities(part)));
                 out
             }
             Role::Metric => entries_by_column(&self.transform_mass_matrix(&square_from_columns(e, n))),
-            Role::InverseMetric => entries_by_column(&self.inverse_metric(&square_from_columns(e, n))),
+            Role::InverseMetric => entries_by_column(&self.inverse_mass_matrix(&square_from_columns(e, n))),
             Role::Columns(rows) => self.columns_by_speed(e, rows),
             Role::Responses(impulses) => {
                 let (added, rest) = e.split_at((n * impulses).min(e.len()));
                 let added = self.express_in_speeds(added);
                 let mut out: Vec<Expr<'g>> =
-                    added.chunks(n.max(1)).flat_map(|part| self.speeds_of(part)).collect();
+                    added.chunks(n.max(1)).flat_map(|part| self.speeds_of_velocities(part)).collect();
                 out.extend(self.express_in_speeds(rest));
                 out
             }
@@ -208,20 +208,23 @@ impl<'g> InSpeeds<'g> {
 
     /// Returns the mass matrix of the speeds, `Zᵀ M Z`.
     pub fn transform_mass_matrix(&self, mass: &Matrix<'g>) -> Matrix<'g> {
-        let rows: Matrix<'g> = mass.iter().map(|row| transposed_times(&self.speeds.rates, row)).collect();
+        let rows: Matrix<'g> = mass.iter().map(|row| multiply_transposed(&self.speeds.rates, row)).collect();
         let by_column = transposed_matrix(&rows);
-        transposed_matrix(&by_column.iter().map(|c| transposed_times(&self.speeds.rates, c)).collect())
+        transposed_matrix(&by_column.iter().map(|c| multiply_transposed(&self.speeds.rates, c)).collect())
     }
 
     /// Returns `Zᵀ X` for a matrix `X` whose rows correspond to displacements.
     pub fn project(&self, m: &Matrix<'g>) -> Matrix<'g> {
         transposed_matrix(
-            &transposed_matrix(m).iter().map(|column| transposed_times(&self.speeds.rates, column)).collect(),
+            &transposed_matrix(m)
+                .iter()
+                .map(|column| multiply_transposed(&self.speeds.rates, column))
+                .collect(),
         )
     }
 
     /// Returns the inverse mass matrix of the speeds, `Y M⁻¹ Yᵀ`.
-    pub fn inverse_metric(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
+    pub fn inverse_mass_matrix(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
         let rows: Matrix<'g> =
             inverse.iter().map(|row| matrix_times_vector(&self.speeds.of_rates, row)).collect();
         transposed_matrix(
@@ -237,14 +240,14 @@ impl<'g> InSpeeds<'g> {
         let by_row: Matrix<'g> = (0..rows)
             .map(|i| {
                 let row: Vec<Expr<'g>> = columns.iter().map(|c| c[i]).collect();
-                transposed_times(&self.speeds.rates, &row)
+                multiply_transposed(&self.speeds.rates, &row)
             })
             .collect();
         self::entries_by_column(&by_row)
     }
 
     /// Returns the time derivative `Ż` of the velocity transformation.
-    fn turning_rates(&self) -> Matrix<'g> {
+    fn transformation_rates(&self) -> Matrix<'g> {
         let space = self.model.configuration_space();
         let rates_of_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
         self.speeds.rates.iter().map(rates_of_row).collect()
@@ -253,13 +256,13 @@ impl<'g> InSpeeds<'g> {
     /// Returns `Zᵀ (C Z + M Ż)`, a Coriolis matrix in generalized speeds. `Ṁ_u − 2 C_u` is skew-symmetric if
     /// `Ṁ − 2 C` is.
     pub fn coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
-        let (z, rates) = (&self.speeds.rates, self.turning_rates());
+        let (z, rates) = (&self.speeds.rates, self.transformation_rates());
         let row_in_speeds = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
-            let own = transposed_times(z, &self.express_in_speeds(c));
-            own.into_iter().zip(transposed_times(&rates, m)).map(|(own, carried)| own + carried).collect()
+            let own = multiply_transposed(z, &self.express_in_speeds(c));
+            own.into_iter().zip(multiply_transposed(&rates, m)).map(|(own, carried)| own + carried).collect()
         };
         let sum: Matrix<'g> = coriolis.iter().zip(mass).map(row_in_speeds).collect();
-        transposed_matrix(&transposed_matrix(&sum).iter().map(|c| transposed_times(z, c)).collect())
+        transposed_matrix(&transposed_matrix(&sum).iter().map(|c| multiply_transposed(z, c)).collect())
     }
 
     /// Returns the rate of generalized momenta from the rate and the momenta in joint velocities:
@@ -271,8 +274,8 @@ impl<'g> InSpeeds<'g> {
     /// Returns the rate of generalized momenta from the rate and the momenta of the joints that are already
     /// expressed in speeds.
     pub fn momentum_rate_of_written(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let turned = transposed_times(&self.turning_rates(), momentum);
-        let own = transposed_times(&self.speeds.rates, rate);
+        let turned = multiply_transposed(&self.transformation_rates(), momentum);
+        let own = multiply_transposed(&self.speeds.rates, rate);
         own.into_iter().zip(turned).map(|(own, turned)| own + turned).collect()
     }
 
@@ -297,29 +300,29 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Returns `Z`, which gives the joint velocities as functions of the speeds.
-    pub fn of_speeds(&self) -> &Matrix<'g> {
+    pub fn velocity_transformation(&self) -> &Matrix<'g> {
         &self.speeds.rates
     }
 
     /// Returns the derivatives of the joint velocities with respect to the configuration at constant speeds:
     /// a column for the tangent direction of each speed.
     pub fn rate_changes(&self) -> Matrix<'g> {
-        symbolic::by_configuration(&self.model, &self.rates)
+        symbolic::configuration_derivatives(&self.model, &self.rates)
     }
 
     /// Returns the matrix `T` of the variational equation `ξ̇ = δu + T ξ` for the displacement `ξ` between
     /// two neighbouring motions. With `δ = Z ξ` and `δ̇ = δv + K δ` in joint velocities,
     /// `T = Y (K Z + ∂(Z u)/∂q − Ż)`.
     pub fn variational_matrix(&self) -> Matrix<'g> {
-        let (changes, rates) = (self.rate_changes(), self.turning_rates());
+        let (changes, rates) = (self.rate_changes(), self.transformation_rates());
         let native: Matrix<'g> = displacement_commutators(&self.native)
             .iter()
-            .map(|row| transposed_times(&self.speeds.rates, &self.express_in_speeds(row)))
+            .map(|row| multiply_transposed(&self.speeds.rates, &self.express_in_speeds(row)))
             .collect();
         let entry_of_sum = |i: usize, j: usize| native[i][j] + changes[i][j] - rates[i][j];
         let n = self.model.nv();
         let by_column: Matrix<'g> = (0..n).map(|j| (0..n).map(|i| entry_of_sum(i, j)).collect()).collect();
-        transposed_matrix(&by_column.iter().map(|column| self.speeds_of(column)).collect())
+        transposed_matrix(&by_column.iter().map(|column| self.speeds_of_velocities(column)).collect())
     }
 }
 
@@ -357,7 +360,7 @@ fn matrix_times_vector<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().map(|row| dot(row, v).unwrap_or_else(|| row[0].zero())).collect()
 }
 
-fn transposed_times<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn multiply_transposed<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     matrix_times_vector(&transposed_matrix(m), v)
 }
 

@@ -9,7 +9,7 @@ use crate::expr::{Expr, Vec3};
 pub struct Constraint<'g> {
     /// Name: that of the joint or constraint, and the component.
     pub name: String,
-    /// Position of the constraint's name in the source.
+    /// Source position of the constraint's name.
     pub place: Place,
     /// Expression of configuration and time whose time derivative is `rate`; `None` for a constraint on
     /// velocities only.
@@ -37,7 +37,7 @@ pub struct Constraint<'g> {
 /// whether this is compressive or tensile.
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionTerm<'g> {
-    /// Slip velocity, linear in the velocities.
+    /// Slip velocity of the contact, linear in the velocities.
     pub rate: Expr<'g>,
     /// Friction force along the slip velocity per unit of normal force, an expression of state and time.
     pub share: Expr<'g>,
@@ -46,7 +46,7 @@ pub struct FrictionTerm<'g> {
 /// Quantity that a scalar constraint measures, which determines the unit of its residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// Length between two points or surfaces.
+    /// The constraint residual is a length between two points or surfaces, m.
     Length,
     /// Sine of an angle, or difference of a cosine, which is zero at the required angle.
     Angle,
@@ -59,9 +59,9 @@ pub enum Measure {
 pub struct Transmission<'g> {
     /// Index of the joint that transmits the force or torque.
     pub joint: usize,
-    /// True for a torque, false for a force.
+    /// True if the reaction component is a torque, false for a force.
     pub torque: bool,
-    /// Direction of the component in ground axes.
+    /// Direction of the reaction component in ground axes.
     pub direction: Vec3<'g>,
 }
 
@@ -71,7 +71,7 @@ pub struct Transmission<'g> {
 pub struct SolvedSide<'g> {
     /// Index of the joint that closes the loop.
     pub joint: usize,
-    /// True for a Pin, false for a Sleeve.
+    /// True if the closing joint is a Pin, false for a Sleeve.
     pub turns: bool,
     /// Axis of the joint that closes the loop.
     pub axis: Vec3<'g>,
@@ -80,17 +80,17 @@ pub struct SolvedSide<'g> {
 /// Velocity that a constraint determines if generalized speeds are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pivot {
-    /// Index of the constraint that supplies the multiplier.
+    /// Index of the constraint whose multiplier is the reaction component.
     pub constraint: usize,
-    /// Index of the velocity that supplies the force.
+    /// Index of the velocity whose generalized force is the reaction component.
     pub velocity: InV,
 }
 
 /// Numbers of independent coordinates and velocities of a mechanism.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Freedom {
-    /// Number of independent coordinates.
+    /// Number of independent coordinates of the mechanism.
     pub coordinates: usize,
-    /// Number of independent velocities.
+    /// Number of independent velocities of the mechanism.
     pub velocities: usize,
 }

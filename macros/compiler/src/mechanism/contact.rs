@@ -1,4 +1,4 @@
-//! Unilateral contacts of a mechanism.
+//! Unilateral contacts of a mechanism, as data of the model.
 
 use crate::expr::Expr;
 

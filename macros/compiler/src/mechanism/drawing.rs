@@ -20,21 +20,21 @@ pub struct Piece<'g> {
 /// Kind of declared object that a piece shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A body, drawn from its mass properties.
+    /// A body, drawn as a solid with its mass properties.
     Body,
     /// Connection from one joint of a body to another.
     Link,
     /// A body, drawn from the visual geometry of a file.
     Visual,
-    /// A joint.
+    /// A joint, drawn by its axes.
     Joint,
-    /// A contact surface.
+    /// A contact surface of a body.
     Surface,
-    /// A spring or a dashpot.
+    /// A force element between points, such as a spring or a dashpot.
     Element,
-    /// An input.
+    /// An input force or torque.
     Input,
-    /// Gravity.
+    /// Gravity, drawn as an arrow.
     Gravity,
 }
 
@@ -42,7 +42,7 @@ pub enum Role {
 /// for its form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PieceKind {
-    /// Straight rod, given by axis and length.
+    /// Straight rod, given by its axis and length.
     Rod,
     /// Ring or circle, given by axis and radius.
     Ring,
@@ -76,7 +76,7 @@ pub enum PieceKind {
     Bowl,
     /// Point, given by its position only.
     Point,
-    /// Straight bar, given by its other end.
+    /// Straight bar, given by the position of its other end.
     Bar,
     /// Revolute joint, given by its axis.
     Hinge,
@@ -84,11 +84,11 @@ pub enum PieceKind {
     Slide,
     /// Ball or universal joint, given by its position only.
     Ball,
-    /// Helical spring, given by its other end.
+    /// Helical spring, given by the position of its other end.
     Coil,
     /// Torsion spring, given by its axis.
     Spiral,
-    /// Dashpot, given by its other end.
+    /// Dashpot, given by the position of its other end.
     Damper,
     /// Rotary dashpot, given by its axis.
     Brake,

@@ -8,7 +8,7 @@ use crate::expr::{Expr, Vec3};
 /// Linear spring on a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct Spring<'g> {
-    /// Coordinate on which the spring acts.
+    /// Coordinate on which the linear spring acts.
     pub on: Coordinate,
     /// Stiffness, N/m or N·m/rad.
     pub stiffness: Expr<'g>,
@@ -28,7 +28,7 @@ pub struct Dashpot<'g> {
 /// Coulomb friction on a coordinate, regularised as `friction × tanh(rate / friction_speed)`.
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombFriction<'g> {
-    /// Coordinate on which the friction acts.
+    /// Coordinate on which the dry friction acts.
     pub on: Coordinate,
     /// Force or torque of friction at full slip, N or N·m.
     pub friction: Expr<'g>,
@@ -37,27 +37,27 @@ pub struct CoulombFriction<'g> {
 /// Effect of an entry of `u` on the mechanism.
 #[derive(Clone, Debug)]
 pub enum Input<'g> {
-    /// No effect by itself; expressions contain the input.
+    /// Input without an effect of its own: expressions contain it.
     Named,
-    /// A force or torque on a coordinate.
+    /// Input that is a force or torque on a coordinate.
     Coordinate(Coordinate),
     /// Force on a weighted sum of coordinates, such as that of a motor behind a gear or on a tendon, with the
     /// unit of the force.
     Sum(Vec<Coordinate>, &'static str),
-    /// A force on a link.
+    /// Input that is a force on a link.
     Force {
-        /// Link on which the force acts.
+        /// Link on which the input force acts.
         link: LinkId,
-        /// Point of application, in link axes.
+        /// Point of application of the input force, in link axes.
         point: Vec3<'g>,
-        /// Direction of the force.
+        /// Direction of the input force.
         along: Direction<'g>,
     },
-    /// A torque on a link.
+    /// Input that is a torque on a link.
     Torque {
-        /// Link on which the torque acts.
+        /// Link on which the input torque acts.
         link: LinkId,
-        /// Direction of the torque.
+        /// Direction of the input torque.
         about: Direction<'g>,
     },
 }
@@ -69,9 +69,9 @@ pub type Direction<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
 /// `force × ∂rate/∂v` to the generalized forces.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<'g> {
-    /// Velocity, linear in the velocities of the mechanism.
+    /// Velocity along which the force acts, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
-    /// Force, an expression of state, time and inputs.
+    /// Force as an expression of state, time and inputs.
     pub force: Expr<'g>,
     /// True for a force that dissipates energy like a dashpot; false for an applied force.
     pub dissipative: bool,
@@ -81,19 +81,19 @@ pub struct Load<'g> {
 /// is `k` and its factor.
 #[derive(Clone, Debug)]
 pub struct AccelerationForce<'g> {
-    /// Velocity, linear in the velocities of the mechanism.
+    /// Velocity along which the force acts, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
     /// Indices of velocities, and factors of their time derivatives: expressions of state and time.
     pub factors: Vec<(usize, Expr<'g>)>,
-    /// Position of the force in the source.
+    /// Source position of the force element.
     pub place: Place,
 }
 
 /// An inertance on a velocity: kinetic energy `½ b rate²`.
 #[derive(Clone, Copy, Debug)]
 pub struct Inertance<'g> {
-    /// Velocity, linear in the velocities of the mechanism.
+    /// Relative velocity on which the inerter acts, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
-    /// Inertance `b`, kg or kg·m².
+    /// Inertance `b` of the inerter, kg or kg·m².
     pub inertance: Expr<'g>,
 }

@@ -10,25 +10,25 @@ pub const DRY_FRICTION: &str = "at rest it balances every smaller force: use a `
 /// An equilibrium configuration with all values that belong to it: expressions of the parameters.
 #[derive(Clone, Debug)]
 pub struct Equilibrium<'g> {
-    /// Name of the equilibrium.
+    /// Name of the declared equilibrium.
     pub name: String,
-    /// Position of the name in the source.
+    /// Source position of the equilibrium's name.
     pub place: Place,
-    /// Values of all entries of `q`.
+    /// Values of all entries of `q` at the equilibrium.
     pub configuration: Vec<Expr<'g>>,
-    /// Values of all entries of `u`.
+    /// Values of all entries of `u` at the equilibrium.
     pub inputs: Vec<Expr<'g>>,
-    /// Values of the first-order states.
+    /// Values of the first-order states at the equilibrium.
     pub states: Vec<RestingState<'g>>,
 }
 
 /// Value of a first-order state at an equilibrium.
 #[derive(Clone, Debug)]
 pub struct RestingState<'g> {
-    /// Index of the state among the parameters.
+    /// Index of the first-order state among the parameters.
     pub parameter: usize,
     /// Value of the state at the equilibrium.
     pub value: Expr<'g>,
-    /// Time derivative in any state of the mechanism.
+    /// Time derivative of the first-order state in any state of the mechanism.
     pub rate: Expr<'g>,
 }

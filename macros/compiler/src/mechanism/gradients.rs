@@ -12,13 +12,13 @@ pub type Gradient<'g> = Vec<(usize, Expr<'g>)>;
 
 /// Cached derivatives of the expressions of a model, shared by copies of the model.
 #[derive(Clone, Debug, Default)]
-pub struct Gradients(Rc<RefCell<Found>>);
+pub struct Gradients(Rc<RefCell<GradientCache>>);
 
 /// Indices of velocities and derivatives with respect to them, for each expression.
 type GradientTable = BTreeMap<Id, Vec<(usize, Id)>>;
 
 #[derive(Debug, Default)]
-struct Found {
+struct GradientCache {
     of_energies: GradientTable,
     by_velocities: GradientTable,
     /// Configuration space for which the forces of energies were computed.
@@ -27,7 +27,7 @@ struct Found {
 
 impl Gradients {
     /// Returns the cached gradient of an energy in a configuration space, or computes it with `find`.
-    pub fn of_energy<'g>(
+    pub fn gradient_of_energy<'g>(
         &self,
         charts: &[Chart],
         energy: Expr<'g>,
@@ -38,17 +38,21 @@ impl Gradients {
             found.of_energies.clear();
             found.charts = charts.to_vec();
         }
-        known_or(&mut found.of_energies, energy, find)
+        cached_or_computed(&mut found.of_energies, energy, find)
     }
 
     /// Returns the cached derivatives of an expression with respect to the velocities, or computes them with
     /// `find`.
     pub fn by_velocity<'g>(&self, e: Expr<'g>, find: impl FnOnce() -> Gradient<'g>) -> Gradient<'g> {
-        known_or(&mut self.0.borrow_mut().by_velocities, e, find)
+        cached_or_computed(&mut self.0.borrow_mut().by_velocities, e, find)
     }
 }
 
-fn known_or<'g>(known: &mut GradientTable, e: Expr<'g>, find: impl FnOnce() -> Gradient<'g>) -> Gradient<'g> {
+fn cached_or_computed<'g>(
+    known: &mut GradientTable,
+    e: Expr<'g>,
+    find: impl FnOnce() -> Gradient<'g>,
+) -> Gradient<'g> {
     if let Some(list) = known.get(&e.id()) {
         return list.iter().map(|(k, d)| (*k, e.graph().expr(*d))).collect();
     }

@@ -5,16 +5,16 @@ use crate::expr::{Expr, Graph};
 use std::fmt::{Display, Formatter, Result};
 use std::ops::{Add, Range};
 
-/// Index of an entry of `q`.
+/// Index of an entry of the configuration `q`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct InQ(pub usize);
 
-/// Index of an entry of `v`.
+/// Index of an entry of the velocity `v`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct InV(pub usize);
 
 impl InQ {
-    /// Returns the expression of the coordinate.
+    /// Returns the coordinate with this index as an expression.
     pub fn expr<'g>(self, graph: &'g Graph) -> Expr<'g> {
         Quantity::Configuration(self.0).expr(graph)
     }
@@ -26,7 +26,7 @@ impl InQ {
 }
 
 impl InV {
-    /// Returns the expression of the velocity.
+    /// Returns the velocity with this index as an expression.
     pub fn expr<'g>(self, graph: &'g Graph) -> Expr<'g> {
         Quantity::Velocity(self.0).expr(graph)
     }

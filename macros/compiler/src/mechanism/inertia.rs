@@ -5,16 +5,16 @@ use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 /// Mass properties of a link about its frame's origin, in its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia<'g> {
-    /// Mass, kg.
+    /// Mass of the rigid body, kg.
     pub mass: Expr<'g>,
-    /// First moment: mass times centre of mass, kg·m.
+    /// First moment of the rigid body: mass times centre of mass, kg·m.
     pub moment: Vec3<'g>,
-    /// Tensor of inertia about the origin, kg·m².
+    /// Inertia tensor of the rigid body about the origin of its frame, kg·m².
     pub tensor: Sym3<'g>,
 }
 
 impl<'g> Inertia<'g> {
-    /// Returns zero mass properties.
+    /// Returns the mass properties of a massless body.
     pub fn zero(graph: &'g Graph) -> Inertia<'g> {
         Inertia { mass: graph.zero(), moment: Vec3::zero(graph), tensor: Sym3::zero(graph) }
     }
@@ -34,7 +34,12 @@ impl<'g> Inertia<'g> {
     ///
     /// With `h` the first moment of `other` in these axes and `s = h + m p / 2`, the parallel-axis theorem
     /// adds `2 (p · s) 1 − (p sᵀ + s pᵀ)`.
-    pub fn plus_placed(&self, other: &Inertia<'g>, rotation: &Rotation<'g>, p: Vec3<'g>) -> Inertia<'g> {
+    pub fn add_placed_inertia(
+        &self,
+        other: &Inertia<'g>,
+        rotation: &Rotation<'g>,
+        p: Vec3<'g>,
+    ) -> Inertia<'g> {
         let h = rotation.to_parent(other.moment);
         let s = h + p * (other.mass * 0.5);
         let twice: [Expr<'g>; 3] = std::array::from_fn(|k| (p[k] * 2.0) * s[k]);

@@ -1,4 +1,4 @@
-//! Limits of the coordinates of a mechanism.
+//! Limits of the coordinates of a mechanism, as data of the model.
 
 use super::index::{InQ, InV};
 use crate::expr::Expr;
@@ -6,17 +6,17 @@ use crate::expr::Expr;
 /// Limits of a coordinate, its velocity and its generalized force; `None` for each missing bound.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit<'g> {
-    /// Index of the coordinate in `q`.
+    /// Index in `q` of the limited coordinate.
     pub q: InQ,
-    /// Index of the coordinate's velocity in `v`.
+    /// Index in `v` of the limited coordinate's velocity.
     pub v: InV,
-    /// Minimum value of the coordinate.
+    /// Minimum value of the limited coordinate.
     pub lower: Option<Expr<'g>>,
-    /// Maximum value of the coordinate.
+    /// Maximum value of the limited coordinate.
     pub upper: Option<Expr<'g>>,
-    /// Maximum velocity of the coordinate, in both directions.
+    /// Maximum magnitude of the coordinate's velocity.
     pub speed: Option<Expr<'g>>,
-    /// Maximum generalized force on the coordinate, in both directions.
+    /// Maximum magnitude of the generalized force on the coordinate.
     pub effort: Option<Expr<'g>>,
 }
 

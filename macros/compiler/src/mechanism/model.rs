@@ -22,13 +22,13 @@ use std::rc::Rc;
 /// Mechanism that has been resolved and checked.
 #[derive(Clone)]
 pub struct Model<'g> {
-    /// Graph that owns all expressions.
+    /// Graph that owns all expressions of the model.
     pub graph: &'g Graph,
-    /// Name of the struct.
+    /// Name of the mechanism's struct.
     pub name: String,
-    /// Position of the struct's name in the source.
+    /// Source position of the struct's name.
     pub place: Place,
-    /// Names of the parameters.
+    /// Names of the mechanism's parameters.
     pub parameters: Vec<String>,
     /// True if the user requested a mechanism without dynamics, which needs no inertia.
     pub kinematic: bool,
@@ -36,18 +36,18 @@ pub struct Model<'g> {
     pub gravity: Vec3<'g>,
     /// Velocity that scales the regularisation of dry friction.
     pub friction_speed: Expr<'g>,
-    /// Links, parents before children.
+    /// Links of the mechanism, parents before children.
     pub links: Vec<Link<'g>>,
     /// Mass properties of bodies that a pass found to be at rest. Such bodies are fixed to the ground but
     /// count as moving mass.
     pub still: Inertia<'g>,
-    /// True if an expression depends on time.
+    /// True if an expression of the model depends on time.
     pub time: bool,
     /// True if the effect of the inputs depends on the velocity.
     pub velocity_inputs: bool,
     /// Coordinate charts of the configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
-    /// Cache of the generalized forces of elements.
+    /// Cache of the generalized forces of elements with energies.
     pub gradients: Gradients,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
@@ -66,11 +66,11 @@ pub struct Model<'g> {
     pub contacts: Vec<Contact<'g>>,
     /// Conditions on values that depend on parameters, which the generated `validate` checks.
     pub requirements: Vec<Requirement<'g>>,
-    /// Named frames.
+    /// Named frames of the mechanism.
     pub frames: Vec<NamedFrame<'g>>,
-    /// Pieces of the drawing, if requested.
+    /// Pieces of the drawing, if the option `drawing` requests them.
     pub drawing: Vec<Piece<'g>>,
-    /// Heights of the terrains, as functions of two arguments.
+    /// Heights of the terrains as expressions of two arguments.
     pub heights: Vec<Expr<'g>>,
     /// Linear springs on coordinates.
     pub springs: Vec<Spring<'g>>,
@@ -100,7 +100,7 @@ pub struct Model<'g> {
     pub dependent: Option<Vec<Pivot>>,
     /// Joints for which loops are solved in closed form, two for each loop.
     pub solved: Vec<SolvedSide<'g>>,
-    /// Numbers of independent coordinates and velocities.
+    /// Numbers of independent coordinates and velocities of the mechanism.
     pub freedom: Freedom,
     /// Outputs of the mechanism.
     pub outputs: Vec<OutputValue<'g>>,
@@ -124,11 +124,11 @@ pub struct Released<'g> {
 /// An output expression, which becomes a generated function.
 #[derive(Clone, Debug)]
 pub struct OutputValue<'g> {
-    /// Name of the output.
+    /// Name of the output function.
     pub name: String,
     /// Components of the output: one, three or nine; nine for each action of a free-body diagram.
     pub values: Vec<Expr<'g>>,
-    /// Free-body diagram to which the values belong, if any.
+    /// Free-body diagram that the output values represent, if any.
     pub diagram: Option<Diagram>,
 }
 
@@ -136,40 +136,40 @@ pub struct OutputValue<'g> {
 /// torque.
 #[derive(Clone, Debug)]
 pub struct Diagram {
-    /// Name of the body whose free-body diagram it is.
+    /// Name of the body to which the free-body diagram belongs.
     pub body: String,
-    /// Name and origin of each action in the diagram.
+    /// Name and origin of each action on the body in the diagram.
     pub actions: Vec<(String, Origin)>,
     /// Indices of the joints to be released: joints, then positions of bodies and particles, in the order of
     /// the declaration.
     pub released: Vec<usize>,
 }
 
-/// Origin of an action of a free-body diagram.
+/// Origin of an action on a body in a free-body diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Uniform gravity.
+    /// Action of uniform gravity.
     Gravity,
-    /// A force element.
+    /// Action of a force element.
     Element,
-    /// An input.
+    /// Action of an input.
     Input,
-    /// A joint.
+    /// Action of a joint on the body.
     Joint,
-    /// A constraint.
+    /// Action of a constraint.
     Constraint,
-    /// A unilateral contact.
+    /// Action of a unilateral contact.
     Contact,
 }
 
 /// Quantities that a value depends on in addition to the configuration and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Uses {
-    /// True if the value depends on velocities.
+    /// True if the output depends on velocities.
     pub velocities: bool,
-    /// True if the value depends on accelerations.
+    /// True if the output depends on accelerations.
     pub accelerations: bool,
-    /// True if the value depends on inputs.
+    /// True if the output depends on inputs.
     pub inputs: bool,
 }
 
@@ -199,7 +199,7 @@ impl<'g> Model<'g> {
         self.inputs.len()
     }
 
-    /// Returns the bounds of all limits, in their order.
+    /// Returns the bounds of all coordinate limits, in their order.
     pub fn limit_values(&self) -> Vec<Expr<'g>> {
         self.limits.iter().flat_map(|limit| limit.bounds()).flatten().collect()
     }
@@ -214,7 +214,7 @@ impl<'g> Model<'g> {
         self.contacts.iter().flat_map(|contact| &contact.rates).copied().collect()
     }
 
-    /// Returns the values of all requirements, in their order.
+    /// Returns the values of all requirements on parameters, in their order.
     pub fn requirement_values(&self) -> Vec<Expr<'g>> {
         self.requirements.iter().flat_map(|requirement| &requirement.values).copied().collect()
     }

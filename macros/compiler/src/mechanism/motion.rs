@@ -7,9 +7,9 @@ use std::ops::Range;
 /// A joint coordinate: `ratio × q[index] + offset`, with velocity `ratio × v[index]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Index of the coordinate in `q`.
+    /// Index of the joint coordinate in `q`.
     pub q: InQ,
-    /// Index of the coordinate's velocity in `v`.
+    /// Index of the joint coordinate's velocity in `v`.
     pub v: InV,
     /// Ratio of the joint coordinate to the entry of `q`, and of the joint velocity to the entry of `v`.
     pub ratio: f64,
@@ -20,42 +20,42 @@ pub struct Coordinate {
 /// The motion of a link in its parent's joint frame.
 #[derive(Clone, Debug)]
 pub enum Motion<'g> {
-    /// Rotation about a fixed unit axis.
+    /// Rotation of a link about a fixed unit axis.
     Turn {
         /// Axis of the rotation, in joint axes.
         axis: Vec3<'g>,
-        /// Coordinate that is the angle.
+        /// Coordinate that is the angle of the rotation, rad.
         coordinate: Coordinate,
     },
-    /// Translation along a fixed unit axis.
+    /// Translation of a link along a fixed unit axis.
     Slide {
         /// Axis of the translation, in joint axes.
         axis: Vec3<'g>,
-        /// Coordinate that is the displacement.
+        /// Coordinate that is the displacement, m.
         coordinate: Coordinate,
     },
     /// Rotation about an axis with a proportional translation along it.
     Helix {
         /// Axis of the screw, in joint axes.
         axis: Vec3<'g>,
-        /// Advance of the screw per radian.
+        /// Advance of the screw per radian, m/rad.
         pitch: Expr<'g>,
-        /// Coordinate that is the angle.
+        /// Coordinate that is the angle of the screw, rad.
         coordinate: Coordinate,
     },
     /// Rotation by a unit quaternion in `q`, with three angular velocities in link axes in `v`.
     Ball {
-        /// Index of the first of four entries of `q`.
+        /// Index in `q` of the first of the four quaternion components.
         q: InQ,
-        /// Index of the first of three entries of `v`.
+        /// Index in `v` of the first of the three angular velocity components.
         v: InV,
     },
     /// Rigid motion in space: position and quaternion in `q`, linear and angular velocity in link axes in
     /// `v`.
     Free {
-        /// Index of the first of seven entries of `q`.
+        /// Index in `q` of the first of the seven components of position and quaternion.
         q: InQ,
-        /// Index of the first of six entries of `v`.
+        /// Index in `v` of the first of the six velocity components.
         v: InV,
     },
     /// Arbitrary: the link's placement is itself an expression of coordinates and time.
@@ -95,7 +95,7 @@ impl Motion<'_> {
     }
 
     /// Renumbers the entries of `v`: `place` maps the first index of the motion to its new value.
-    pub fn place_velocities(&mut self, place: impl Fn(InV) -> InV) {
+    pub fn renumber_velocities(&mut self, place: impl Fn(InV) -> InV) {
         match self {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }
@@ -133,11 +133,11 @@ impl Motion<'_> {
 /// Coordinate chart of a factor of the configuration space, with its first indices in `q` and `v`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chart {
-    /// Plain coordinate, whose rate is its velocity.
+    /// Chart of a plain coordinate, whose rate is its velocity.
     Plain(InQ, InV),
-    /// Quaternion of a ball joint.
+    /// Chart of a ball joint: a unit quaternion with three angular velocities.
     Ball(InQ, InV),
-    /// Position and quaternion of a free joint.
+    /// Chart of a free joint: position and unit quaternion with six velocities.
     Free(InQ, InV),
 }
 

@@ -7,7 +7,7 @@ use crate::expr::{Expr, Symbol};
 /// Outputs of the functions for the passive forces and for their derivatives.
 #[derive(Clone, Debug)]
 pub struct PassiveForces<'g> {
-    /// Passive force of each velocity.
+    /// Passive force along each velocity, as expressions.
     pub forces: Vec<Expr<'g>>,
     /// Derivatives that are not constant, in the order of the function's results.
     pub derivatives: Vec<Expr<'g>>,
@@ -37,7 +37,7 @@ impl<'g> PassiveForces<'g> {
     }
 
     /// Returns the forces as symbols for the other functions; constant forces as constants.
-    pub fn given_forces(&self) -> Vec<Expr<'g>> {
+    pub fn forces_as_arguments(&self) -> Vec<Expr<'g>> {
         let constant_or_passive_force = |(k, e): (usize, &Expr<'g>)| match e.constant_value() {
             Some(_) => *e,
             None => Quantity::PassiveForce(k).expr(e.graph()),

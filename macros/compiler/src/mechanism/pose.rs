@@ -1,11 +1,11 @@
-//! Placements of frames relative to other frames.
+//! Placements of frames relative to other frames, as expressions.
 
 use crate::expr::{Expr, Graph, Rotation, Vec3};
 
 /// The placement of a child frame in a parent frame.
 #[derive(Clone, Debug)]
 pub struct Pose<'g> {
-    /// Orientation of the child's axes in the parent's.
+    /// Orientation of the child's axes relative to the parent's axes.
     pub rotation: Rotation<'g>,
     /// Position of the child's origin, in parent axes.
     pub translation: Vec3<'g>,
@@ -36,7 +36,7 @@ impl<'g> Pose<'g> {
         self.translation + self.rotation.to_parent(p)
     }
 
-    /// Returns all expressions that the placement consists of.
+    /// Returns all expressions that rotation and translation consist of.
     pub fn all_expressions(&self) -> Vec<Expr<'g>> {
         self.rotation.rotation_matrix().0.iter().flatten().chain(&self.translation.0).copied().collect()
     }

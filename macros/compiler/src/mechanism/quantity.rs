@@ -5,23 +5,23 @@ use crate::expr::{Expr, Graph, Symbol};
 /// Quantity that a symbol denotes, with its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// A parameter of the struct.
+    /// Parameter of the struct, by its index.
     Parameter(usize),
-    /// An entry of `q`.
+    /// Entry of the configuration `q`.
     Configuration(usize),
-    /// An entry of `v`.
+    /// Entry of the velocity `v`.
     Velocity(usize),
-    /// An entry of `a`.
+    /// Entry of the acceleration `a`.
     Acceleration(usize),
-    /// An entry of `tau`.
+    /// Entry of the generalized force `tau`.
     Force(usize),
-    /// An entry of `u`.
+    /// Entry of the input `u`.
     Input(usize),
-    /// Time.
+    /// The time, s.
     Time,
     /// An entry of an argument of a generated function: an intermediate result that the caller supplies.
     Given(Supplied, usize),
-    /// A generalized momentum, in Hamilton's and Routh's equations.
+    /// Generalized momentum, in Hamilton's and Routh's equations.
     Momentum(usize),
     /// The deviation of a coordinate, or of a state after these, in linear equations.
     Deviation(usize),
@@ -34,7 +34,7 @@ pub enum Quantity {
     /// Operand that decides between the pieces of a law while its source is parsed, numbered by nesting
     /// depth.
     Deciding(usize),
-    /// A value that is precomputed from the parameters.
+    /// Value of a prepared mechanism that is precomputed from the parameters.
     Prepared(usize),
     /// A component of a joint reaction: six for each joint, a force and then a torque. From
     /// [`Quantity::MULTIPLIERS`] on, the multiplier of a constraint.
@@ -47,30 +47,30 @@ pub enum Quantity {
     ContactForce(usize),
 }
 
-/// Intermediate results that callers of generated functions supply.
+/// Intermediate results that callers of generated functions supply as arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Supplied {
-    /// Applied forces minus bias forces, one for each velocity.
+    /// Applied forces minus bias forces, one entry for each velocity.
     Force,
-    /// Bias terms of the constraint accelerations.
+    /// Bias terms of the constraint accelerations, `J̇ v + …`.
     Bias,
-    /// Signs of the normal forces of slipping surfaces.
+    /// Signs of the normal forces between slipping surfaces.
     Side,
-    /// Multipliers of the constraints.
+    /// Lagrange multipliers of the constraints.
     Multiplier,
     /// Factors of forces or results of which a function returns derivatives.
     Factor,
     /// Factors of the transposed constraint Jacobian, one for each velocity.
     Direction,
-    /// Factors of the constraint accelerations.
+    /// Factors that contract the constraint accelerations in second derivatives.
     AccelerationFactor,
-    /// Factors of the constraint velocities.
+    /// Factors that contract the constraint velocities in second derivatives.
     VelocityFactor,
     /// Standard inertial parameters of all bodies.
     Inertia,
     /// Motion of the link before a frame or a link: placement, twist and acceleration, as far as known.
     Parent,
-    /// Position of a frame's origin.
+    /// Position of a frame's origin in ground axes, m.
     Origin,
     /// Position at which the height of a terrain is evaluated.
     Position,
@@ -107,7 +107,7 @@ impl Supplied {
 impl Quantity {
     const SHIFT: u32 = 20;
 
-    /// Number of symbols of each kind of given values.
+    /// Number of symbols reserved for each kind of supplied values.
     const GIVEN: usize = 1 << 14;
 
     /// First symbols of the blocks that are ordered with given values.
@@ -116,10 +116,10 @@ impl Quantity {
     const PLACEHOLDERS: usize = 3 << 18;
     const DECIDING: usize = Quantity::PLACEHOLDERS + 64;
 
-    /// First index of multipliers among the reactions.
+    /// First symbol index of multipliers among the reaction symbols.
     pub const MULTIPLIERS: usize = 1 << 19;
 
-    /// Returns the symbol of the quantity.
+    /// Returns the symbol that denotes this quantity.
     pub fn symbol(self) -> Symbol {
         let (kind, index) = match self {
             Quantity::Parameter(k) => (0, k),
@@ -176,7 +176,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the quantity as an expression.
+    /// Returns this quantity as an expression.
     pub fn expr(self, graph: &Graph) -> Expr<'_> {
         graph.symbol(self.symbol())
     }
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn symbols_denote_their_quantities() {
+    fn symbols_convert_to_their_quantities() {
         let indexed: [fn(usize) -> Quantity; 14] = [
             Quantity::Parameter,
             Quantity::Configuration,

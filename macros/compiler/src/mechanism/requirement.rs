@@ -5,7 +5,7 @@ use crate::expr::Expr;
 /// A condition on values that depend on parameters. Constant values were checked when they were parsed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement<'g> {
-    /// Condition that the values must satisfy.
+    /// Condition that the values must satisfy for the parameters to be valid.
     pub rule: Rule,
     /// Description of the values: `` the mass of `cart` ``.
     pub figure: String,
@@ -18,21 +18,21 @@ pub struct Requirement<'g> {
 /// The conditions. Each of them includes that all values are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// Finite number.
+    /// The value must be a finite number.
     Finite,
     /// A mass: zero or positive, in the range in which products and reciprocals do not overflow.
     Mass,
     /// A coordinate of a position, in the range of lengths.
     Length,
-    /// Number that is zero or positive.
+    /// The value must be zero or positive.
     NotNegative,
-    /// Positive number.
+    /// The value must be positive.
     Positive,
-    /// An angle between zero and a right angle.
+    /// The value must be an angle between zero and a right angle.
     HalfAngle,
     /// Squared length of a unit vector, which must be one.
     Unit,
-    /// Fraction between zero and one.
+    /// The value must be a fraction between zero and one.
     Fraction,
     /// A lower bound, then an upper bound that is not smaller.
     Order,
@@ -41,7 +41,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// Returns the name of the rule in the runtime.
+    /// Returns the name of the validation rule in the runtime.
     pub fn rule_name(self) -> &'static str {
         match self {
             Rule::Finite => "Finite",

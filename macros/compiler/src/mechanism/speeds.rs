@@ -14,7 +14,7 @@ pub struct Speeds<'g> {
     pub of_rates: Vec<Vec<Expr<'g>>>,
     /// Matrix `Z` of the joint velocities in terms of the speeds, row by row.
     pub rates: Vec<Vec<Expr<'g>>>,
-    /// Indices of the joint velocities that speeds replace.
+    /// Indices of the joint velocities that declared speeds replace.
     pub replaced: Vec<InV>,
     /// Names of all joint velocities, with the places of the joints.
     pub velocities: Vec<(String, Place)>,

@@ -2,21 +2,21 @@
 
 use super::motions::{Freedom, frame_freedom};
 use super::number::{
-    Frame, IDENTITY, Mass, Vector, axis_rotation, column, cross, dot, matrix_times_vector, norm,
-    round_noise_to_zero, transpose, transposed_times, unit_axis,
+    Frame, IDENTITY, Mass, Vector, axis_rotation, column, cross, dot, matrix_times_vector,
+    multiply_transposed, norm, round_noise_to_zero, transpose, unit_axis,
 };
 use crate::mechanism::{Link, Motion};
 use std::f64::consts::FRAC_PI_2;
 
 /// Data that the choice of a link's frame depends on.
 pub struct Site {
-    /// Parent link, `None` for the ground.
+    /// Index of the parent link; `None` for the ground.
     pub parent: Option<usize>,
-    /// The joint's frame on the parent, if numeric.
+    /// Frame of the joint on the parent link, if its numbers are constant.
     pub place: Option<Frame>,
-    /// Degrees of freedom of the choice.
+    /// Freedom to choose the frame of the link.
     pub freedom: Freedom,
-    /// Mass properties of the link, if they are numeric.
+    /// Mass properties of the link, if they are constant numbers.
     pub mass: Option<Mass>,
     /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size.
     /// The rounding error of moments of inertia about the origin grows as the square of this
@@ -88,13 +88,13 @@ fn child_sites(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
     (k + 1..sites.len()).filter(move |c| sites[*c].parent == Some(k))
 }
 
-/// Candidate angles about, and shifts along, a link's axis.
+/// Candidate angles and shifts of a link's frame about and along the joint axis.
 struct Choices {
     /// Index of the coordinate axis about which the frame is rotated.
     a: usize,
     angles: Vec<f64>,
     shifts: Vec<f64>,
-    /// Maximum shift of the frame along the axis.
+    /// Maximum shift of the link frame along the axis, m.
     reach: f64,
 }
 
@@ -138,11 +138,11 @@ fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]
     if let Some(place) = &sites[k].place {
         // The point nearest to the parent's origin, and orientations with an axis normal to one of the
         // parent's.
-        let back = transposed_times(&place.rotation, place.translation);
+        let back = multiply_transposed(&place.rotation, place.translation);
         list.add_shift(-back[a], norm(back));
         let own = column(&place.rotation, a);
         for r in 0..3 {
-            list.add_heading(transposed_times(&place.rotation, cross(unit_axis(r), own)));
+            list.add_heading(multiply_transposed(&place.rotation, cross(unit_axis(r), own)));
         }
     }
     if let Some(mass) = &sites[k].mass {
@@ -197,7 +197,7 @@ fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<Fr
     let mut points = vec![[0.0; 3]];
     if let Some(place) = &sites[k].place {
         rotations.push(transpose(&place.rotation));
-        points.push(transposed_times(&place.rotation, place.translation).map(|c| -c));
+        points.push(multiply_transposed(&place.rotation, place.translation).map(|c| -c));
     }
     for place in child_sites(sites, k).filter_map(|c| sites[c].place.as_ref()) {
         rotations.push(place.rotation);
@@ -207,7 +207,7 @@ fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<Fr
     let count_nonzero_components =
         |v: Vector| v.iter().filter(|c| round_noise_to_zero(**c, 1.0) != 0.0).count();
     rotations.retain(|rotation| {
-        count_nonzero_components(transposed_times(rotation, slide)) <= count_nonzero_components(slide)
+        count_nonzero_components(multiply_transposed(rotation, slide)) <= count_nonzero_components(slide)
     });
     rotations.truncate(MAX_CANDIDATES);
     points.truncate(MAX_CANDIDATES);

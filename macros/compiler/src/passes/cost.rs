@@ -4,16 +4,16 @@
 use super::candidates::Site;
 use super::motions::Freedom;
 use super::number::{
-    Frame, Matrix, Vector, clean_rotation, column, cross, dot, matrix_times_vector, norm,
-    round_noise_to_zero, transposed_times, unit_axis,
+    Frame, Matrix, Vector, clean_rotation, column, cross, dot, matrix_times_vector, multiply_transposed,
+    norm, round_noise_to_zero, unit_axis,
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// Cost of a rotation about a coordinate axis.
+/// Cost of a rotation about a coordinate axis, in units of the cost model.
 const TURN: f64 = 150.0;
 /// Cost of a component of a translation, relative to other costs of a frame.
 pub const LENGTH: f64 = 80.0;
-/// Cost of an addition to an angle.
+/// Cost of adding a constant to an angle, in units of the cost model.
 const OFFSET: f64 = 3.0;
 /// Cost of a component of the first moment normal to the axis.
 const MOMENT: f64 = 20.0;
@@ -44,15 +44,15 @@ fn placement_cost(site: &Site, place: &Frame, frame: &Frame) -> f64 {
     let mut lengths = place.translation;
     if let Freedom::Slide { along } = site.freedom {
         // The displacement has all components of the sliding axis.
-        let turned = transposed_times(&frame.rotation, along);
+        let turned = multiply_transposed(&frame.rotation, along);
         let way = matrix_times_vector(&place.rotation, turned);
         lengths = std::array::from_fn(|k| lengths[k].abs() + way[k].abs());
     }
-    let cost = TURN * rotation_count(&place.rotation) + LENGTH * nonzero_count(lengths);
+    let cost = TURN * rotation_count(&place.rotation) + LENGTH * nonzero_component_count(lengths);
     if site.parent.is_none() { GROUND * cost } else { cost }
 }
 
-fn nonzero_count(v: Vector) -> f64 {
+fn nonzero_component_count(v: Vector) -> f64 {
     v.iter().filter(|c| **c != 0.0).count() as f64
 }
 
@@ -99,7 +99,7 @@ fn sparse_alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
 /// Returns the cost of the mass properties resolved in a frame.
 pub fn mass_cost(site: &Site, frame: &Frame) -> f64 {
     let Some(mass) = &site.mass else { return 0.0 };
-    let seen = mass.seen_from(frame);
+    let seen = mass.mass_in_frame(frame);
     let along = match site.freedom {
         Freedom::Turn { k, .. } => k,
         _ => 3,

@@ -8,30 +8,30 @@
 
 use super::candidates::{Site, candidate_frames};
 use super::cost;
-use super::motions::{Freedom, seen_from};
+use super::motions::{Freedom, motion_in_frame};
 use super::number::{Frame, Mass, norm};
 use crate::mechanism::{Direction, Inertia, Input, Link, Model, Pose};
 
-/// Frame that was chosen for one link.
+/// New frame that was chosen for one link.
 #[derive(Clone, Copy)]
-struct Step {
+struct ChosenFrame {
     /// New frame of the link relative to the old one.
     frame: Frame,
     /// The joint's frame relative to the parent's new frame.
     placement: Frame,
-    /// Offset of the joint's coordinate about the coordinate axis.
+    /// Offset of the joint coordinate that a rotation of the frame about its axis adds.
     offset: f64,
 }
 
 /// Chooses and applies the frames of links with these sizes.
-pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool) {
+pub fn choose_link_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool) {
     let sites = sites_of_links(model, sizes, free_parameters);
     let Some(frames) = choose_frames(&sites) else { return };
-    let steps: Vec<Option<Step>> = (0..sites.len())
+    let steps: Vec<Option<ChosenFrame>> = (0..sites.len())
         .map(|k| {
             let parent = sites[k].parent.map_or(Frame::IDENTITY, |p| frames[p]);
             let (_, placement, offset) = cost::cheapest_joint_placement(&sites[k], &parent, &frames[k])?;
-            Some(Step { frame: frames[k], placement, offset })
+            Some(ChosenFrame { frame: frames[k], placement, offset })
         })
         .collect();
     apply_frame_choice(model, &sites, &steps);
@@ -104,7 +104,7 @@ fn best_candidate(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64])
     best
 }
 
-fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
+fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<ChosenFrame>]) {
     let g = model.graph;
     for (link, (site, step)) in model.links.iter_mut().zip(sites.iter().zip(steps)) {
         let Some(step) = step else { continue };
@@ -113,13 +113,13 @@ fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option
             continue;
         }
         link.inertia = match &site.mass {
-            Some(mass) => mass.seen_from(&step.frame).inertia_expressions(g),
+            Some(mass) => mass.mass_in_frame(&step.frame).inertia_expressions(g),
             None => {
                 let back = step.frame.frame_to_pose(g).inverse();
-                Inertia::zero(g).plus_placed(&link.inertia, &back.rotation, back.translation)
+                Inertia::zero(g).add_placed_inertia(&link.inertia, &back.rotation, back.translation)
             }
         };
-        seen_from(&mut link.motion, &step.frame.frame_to_pose(g), step.offset);
+        motion_in_frame(&mut link.motion, &step.frame.frame_to_pose(g), step.offset);
     }
     let back =
         steps.iter().map(|s| s.as_ref().map_or(Pose::identity(g), |s| s.frame.frame_to_pose(g).inverse()));

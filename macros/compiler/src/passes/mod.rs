@@ -13,12 +13,12 @@ mod parallel;
 mod regroup;
 mod slide;
 
-pub use frames::{link_sizes, place_frames};
+pub use frames::{choose_link_frames, link_sizes};
 pub use motions::Gauge;
 pub use parallel::in_common_axes;
 pub use regroup::{Regroup, regroup_inertias};
 
-/// Passes over the model that are to run.
+/// Selection of the passes over the model that run.
 #[derive(Clone, Copy, Debug)]
 pub struct Passes {
     /// Whether the pass runs that chooses link frames with sparse placements.
@@ -73,7 +73,7 @@ pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>>
     }
     if passes.frames {
         slide::slide_frames(&mut start);
-        place_frames(&mut start, &link_sizes(model), passes.free_parameters);
+        choose_link_frames(&mut start, &link_sizes(model), passes.free_parameters);
     }
     let joints = joints_of_model(&start);
     if !passes.regroup {

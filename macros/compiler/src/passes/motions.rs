@@ -8,18 +8,18 @@ use crate::mechanism::{Coordinate, Inertia, Link, Motion, Pose};
 /// Freedom with which a link's frame can be chosen without a change of the motion.
 #[derive(Clone, Copy, Debug)]
 pub enum Freedom {
-    /// The frame cannot be changed.
+    /// The frame of the link cannot be changed.
     None,
     /// The frame may be shifted along, and rotated about, coordinate axis `k`.
     Turn {
-        /// Index of the joint's coordinate axis.
+        /// Index of the coordinate axis that is the joint axis.
         k: usize,
-        /// True if the joint's coordinate can take an offset.
+        /// True if an offset may be added to the joint's coordinate.
         offset: bool,
     },
-    /// The frame may be chosen freely.
+    /// The frame of a sliding link may be chosen freely.
     Slide {
-        /// Direction of the sliding axis.
+        /// Direction of the prismatic axis.
         along: Vector,
     },
 }
@@ -36,7 +36,7 @@ pub fn frame_freedom(motion: &Motion<'_>) -> Option<Freedom> {
 
 /// Rewrites the motion of a link for its new frame, given relative to the old one and rotated about the
 /// joint's axis by `offset`.
-pub fn seen_from<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
+pub fn motion_in_frame<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
     match motion {
         Motion::Turn { axis, coordinate } => shift_coordinate(coordinate, *axis, offset),
         Motion::Slide { axis, .. } => *axis = frame.rotation.to_child(*axis),
@@ -59,9 +59,9 @@ fn shift_coordinate(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
 /// are `k + 1` and `k + 2`, cyclically.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gauge {
-    /// The moment about axis `k + 1` vanishes.
+    /// Regrouping makes the moment of inertia about axis `k + 1` zero.
     First,
-    /// The moment about axis `k + 2` vanishes.
+    /// Regrouping makes the moment of inertia about axis `k + 2` zero.
     Second,
     /// The moments about both add up to that about `k`, as for a body in the plane normal to `k`.
     #[default]

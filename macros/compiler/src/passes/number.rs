@@ -3,9 +3,9 @@
 use crate::expr::{Graph, Mat3, Rotation, Sym3, Vec3};
 use crate::mechanism::{Inertia, Pose};
 
-/// Vector of three numbers.
+/// Vector of three constant numbers.
 pub type Vector = [f64; 3];
-/// Matrix of 3×3 numbers, stored by rows.
+/// Matrix of 3×3 constant numbers, stored by rows.
 pub type Matrix = [[f64; 3]; 3];
 
 /// Relative rounding error of a few operations, below which differences are ignored.
@@ -41,7 +41,7 @@ pub fn scaled_sum(s: f64, a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| s * a[k] + b[k])
 }
 
-/// Returns the unit vector scaled_sum coordinate axis `k`.
+/// Returns the unit vector along coordinate axis `k`.
 pub fn unit_axis(k: usize) -> Vector {
     std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })
 }
@@ -56,8 +56,8 @@ pub fn matrix_times_vector(m: &Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
 
-/// Returns the product of the transpose with a vector.
-pub fn transposed_times(m: &Matrix, v: Vector) -> Vector {
+/// Returns the product `mᵀ v` of a transposed matrix with a vector.
+pub fn multiply_transposed(m: &Matrix, v: Vector) -> Vector {
     std::array::from_fn(|j| dot(column(m, j), v))
 }
 
@@ -89,12 +89,12 @@ pub fn clean_rotation(m: &Matrix) -> Matrix {
     m.map(|row| row.map(clean_entry))
 }
 
-/// Numeric frame relative to another frame.
+/// Frame with numeric pose relative to another frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    /// Axes of the frame, as columns.
+    /// Rotation matrix whose columns are the axes of the frame.
     pub rotation: Matrix,
-    /// Origin of the frame.
+    /// Position of the frame's origin, m.
     pub translation: Vector,
 }
 
@@ -113,13 +113,13 @@ impl Frame {
         Some(Frame { rotation, translation: clean_vector(pose.translation.constant_components()?) })
     }
 
-    /// Converts the frame to a pose.
+    /// Converts the numeric frame to a pose of expressions.
     pub fn frame_to_pose<'g>(&self, g: &'g Graph) -> Pose<'g> {
         let matrix = Mat3::from_fn(|i, j| g.num(self.rotation[i][j]));
         Pose { rotation: Rotation::from_matrix(matrix), translation: Vec3::from_numbers(g, self.translation) }
     }
 
-    /// Returns the transformation `other⁻¹ self next`.
+    /// Returns the frame transformation `other⁻¹ self next`.
     pub fn transform_between(&self, other: &Frame, next: &Frame) -> Frame {
         let rotation =
             matrix_product(&transpose(&other.rotation), &matrix_product(&self.rotation, &next.rotation));
@@ -128,7 +128,7 @@ impl Frame {
         let from = std::array::from_fn(|k| {
             round_noise_to_zero(self.translation[k] + ahead[k] - other.translation[k], scale)
         });
-        let translation = transposed_times(&other.rotation, from).map(|c| round_noise_to_zero(c, scale));
+        let translation = multiply_transposed(&other.rotation, from).map(|c| round_noise_to_zero(c, scale));
         Frame { rotation: clean_rotation(&rotation), translation }
     }
 }
@@ -139,14 +139,14 @@ fn clean_vector(v: Vector) -> Vector {
     v.map(|c| round_noise_to_zero(c, scale))
 }
 
-/// Mass properties of a link as numbers.
+/// Mass properties of a link as constant numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Mass {
-    /// Mass of the link.
+    /// Mass of the link, kg.
     pub mass: f64,
-    /// First moment about the origin.
+    /// First moment of the link about the frame's origin, kg·m.
     pub moment: Vector,
-    /// Inertia about the origin.
+    /// Inertia tensor of the link about the frame's origin, kg·m².
     pub tensor: Matrix,
 }
 
@@ -166,7 +166,7 @@ impl Mass {
         if self.mass > 0.0 { (polar.max(0.0) / self.mass).sqrt() } else { 0.0 }
     }
 
-    /// Converts the mass properties to expressions.
+    /// Converts the numeric mass properties to expressions.
     pub fn inertia_expressions<'g>(&self, g: &'g Graph) -> Inertia<'g> {
         Inertia {
             mass: g.num(self.mass),
@@ -177,7 +177,7 @@ impl Mass {
 
     /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first
     /// moment `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
-    pub fn seen_from(&self, place: &Frame) -> Mass {
+    pub fn mass_in_frame(&self, place: &Frame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);
         let tensor: Matrix = std::array::from_fn(|i| {
@@ -187,11 +187,11 @@ impl Mass {
             })
         });
         let tensor = matrix_product(&transpose(r), &matrix_product(&tensor, r));
-        let moment = transposed_times(r, scaled_sum(-self.mass, p, h));
+        let moment = multiply_transposed(r, scaled_sum(-self.mass, p, h));
         Mass { mass: self.mass, moment, tensor }.clean_small_moments()
     }
 
-    /// Returns the sum with a point mass at `p`.
+    /// Returns the mass properties together with a point mass at `p`.
     pub fn plus_point(&self, mass: f64, p: Vector) -> Mass {
         let square = dot(p, p);
         let entry_of_point_inertia =

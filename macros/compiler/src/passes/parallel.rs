@@ -25,10 +25,10 @@ const PARALLEL: f64 = 2.5e-13;
 
 /// Joint about or along a coordinate axis, in a chain of parallel joints.
 #[derive(Clone, Copy)]
-struct Member {
+struct ChainMember {
     /// Index of the coordinate axis that is common to the chain.
     axis: usize,
-    /// Index of the first link of the chain.
+    /// Index of the first link of the chain with parallel joint axes.
     first: usize,
     /// Cosine of the angle to the parent's axis, plus or minus one; `None` if the parent does not belong to
     /// the chain.
@@ -50,7 +50,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         if let Some(above) = &above {
             joint.translation = above.to_parent(joint.translation);
         }
-        let Some(Member { axis, along, .. }) = member else {
+        let Some(ChainMember { axis, along, .. }) = member else {
             joint.rotation = compose_rotations(above, &joint.rotation);
             angles.push(None);
             turned.push(None);
@@ -60,7 +60,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         // A constant rotation about the same axis commutes with the joint's rotation.
         let above = if along.is_some() { None } else { above };
         joint.rotation = compose_rotations(above, &link.placement.rotation);
-        let own = own_angle(link, axis);
+        let own = angle_about_axis(link, axis);
         let angle = own.map_or(carried, |own| Some(carried.map_or(own, |carried| carried + own)));
         let turn = angle.map(|angle| Rotation::about_axis(axis, angle));
         if let Some(turn) = &turn {
@@ -75,8 +75,8 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
 
 /// Returns for each link its membership in a chain of parallel joints, at least two of which are revolute;
 /// `None` for other links.
-fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<Member>> {
-    let mut members: Vec<Option<Member>> = Vec::with_capacity(model.links.len());
+fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<ChainMember>> {
+    let mut members: Vec<Option<ChainMember>> = Vec::with_capacity(model.links.len());
     let mut turns = vec![0; model.links.len()];
     for (k, link) in model.links.iter().enumerate() {
         let member = axis_of_motion(link).map(|axis| {
@@ -90,7 +90,7 @@ fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<Member>> {
                 let is_parallel = across.iter().all(|i| direction[*i].abs() <= PARALLEL);
                 (is_parallel && cosine.abs() == 1.0).then_some((cosine, above.first))
             });
-            Member { axis, first: along.map_or(k, |(_, first)| first), along: along.map(|(c, _)| c) }
+            ChainMember { axis, first: along.map_or(k, |(_, first)| first), along: along.map(|(c, _)| c) }
         });
         if let (Some(member), Motion::Turn { .. }) = (member, &link.motion) {
             turns[member.first] += 1;
@@ -107,7 +107,7 @@ fn axis_of_motion(link: &Link<'_>) -> Option<usize> {
 }
 
 /// Returns the angle by which a link rotates about a coordinate axis.
-fn own_angle<'g>(link: &Link<'g>, axis: usize) -> Option<Expr<'g>> {
+fn angle_about_axis<'g>(link: &Link<'g>, axis: usize) -> Option<Expr<'g>> {
     let Motion::Turn { axis: direction, coordinate } = &link.motion else { return None };
     let angle = position_in(direction[axis].graph(), coordinate);
     let backwards = direction[axis].constant_value().is_some_and(|c| c < 0.0);

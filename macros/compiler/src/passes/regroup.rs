@@ -19,11 +19,11 @@ pub struct Regroup {
     pub gauge: Gauge,
     /// Also moves mass to a child's origin, where that removes a component of the link's first moment.
     pub to_children: bool,
-    /// Also moves symbolic mass properties, although that costs operations.
+    /// Also moves symbolic mass properties to the parents, although that costs operations.
     pub symbolic: bool,
 }
 
-/// Moves all mass properties that can be moved.
+/// Moves all mass properties that can be moved from links to their parents.
 pub fn regroup_inertias(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: Regroup) {
     for k in (0..model.links.len()).rev() {
         if to_children {
@@ -31,7 +31,9 @@ pub fn regroup_inertias(model: &mut Model<'_>, Regroup { gauge, to_children, sym
         }
         let link = &model.links[k];
         let target = link.parent.map_or(&model.still, |p| &model.links[p.0].inertia);
-        if !(symbolic || is_numeric(&link.inertia) && is_numeric(target) && has_numeric_place(link)) {
+        if !(symbolic
+            || is_numeric_inertia(&link.inertia) && is_numeric_inertia(target) && has_numeric_place(link))
+        {
             continue;
         }
         let Some(part) = movable_inertia(link, gauge) else { continue };
@@ -42,7 +44,7 @@ pub fn regroup_inertias(model: &mut Model<'_>, Regroup { gauge, to_children, sym
             Some(p) => &mut model.links[p.0].inertia,
             None => &mut model.still,
         };
-        *target = target.plus_placed(&part, &placement.rotation, placement.translation);
+        *target = target.add_placed_inertia(&part, &placement.rotation, placement.translation);
     }
 }
 
@@ -112,7 +114,7 @@ fn force_has_effect(model: &Model<'_>, mut k: usize) -> bool {
     }
 }
 
-fn is_numeric(inertia: &Inertia<'_>) -> bool {
+fn is_numeric_inertia(inertia: &Inertia<'_>) -> bool {
     inertia.mass.constant_value().is_some()
         && inertia.moment.constant_components().is_some()
         && inertia.tensor.full_matrix().constant_entries().is_some()

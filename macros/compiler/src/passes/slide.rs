@@ -13,12 +13,12 @@ pub fn slide_frames(model: &mut Model<'_>) {
     let g = model.graph;
     let mut all = vec![Pose::identity(g); model.links.len()];
     for k in 0..model.links.len() {
-        let Some(shift) = best_shift(model, k) else { continue };
+        let Some(shift) = cheapest_shift(model, k) else { continue };
         let step = Pose { translation: shift, ..Pose::identity(g) };
         let back = step.inverse();
         let link = &mut model.links[k];
         link.placement = link.placement.compose_with(&step);
-        link.inertia = Inertia::zero(g).plus_placed(&link.inertia, &back.rotation, back.translation);
+        link.inertia = Inertia::zero(g).add_placed_inertia(&link.inertia, &back.rotation, back.translation);
         for child in model.links.iter_mut().filter(|c| c.parent.is_some_and(|p| p.0 == k)) {
             child.placement = back.compose_with(&child.placement);
         }
@@ -28,25 +28,29 @@ pub fn slide_frames(model: &mut Model<'_>) {
 }
 
 /// Returns the shift of link `k` that saves most operations, if a shift saves any.
-fn best_shift<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
+fn cheapest_shift<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     let link = &model.links[k];
     let Motion::Turn { axis, .. } = &link.motion else { return None };
     let a = coordinate_axis(*axis)?;
     let children: Vec<&Link<'g>> =
         model.links.iter().filter(|c| c.parent.is_some_and(|p| p.0 == k)).collect();
-    let is_placed = |c: &&Link<'g>| !matches!(c.motion, Motion::Placed);
-    let is_number = |c: &&Link<'g>| c.placement.translation.constant_components().is_some();
+    let is_moving_link = |c: &&Link<'g>| !matches!(c.motion, Motion::Placed);
+    let has_constant_translation = |c: &&Link<'g>| c.placement.translation.constant_components().is_some();
     let own = link.placement.translation;
     // Numeric frames are chosen by `place_frames`.
-    if !children.iter().all(is_placed) || is_number(&link) && children.iter().all(is_number) {
+    if !children.iter().all(is_moving_link)
+        || has_constant_translation(&link) && children.iter().all(has_constant_translation)
+    {
         return None;
     }
     let along = link.placement.rotation.to_parent(Vec3::coordinate_axis(model.graph, a));
     let cost_of_slide = |s: Expr<'g>| {
         let shift = Vec3::coordinate_axis(model.graph, a) * s;
-        let lengths = children.iter().map(|c| nonzero_count(c.placement.translation - shift)).sum::<usize>();
+        let lengths =
+            children.iter().map(|c| nonzero_component_count(c.placement.translation - shift)).sum::<usize>();
         // The position of a joint on the ground costs nothing.
-        let lengths = lengths + if link.parent.is_some() { nonzero_count(own + along * s) } else { 0 };
+        let lengths =
+            lengths + if link.parent.is_some() { nonzero_component_count(own + along * s) } else { 0 };
         let h = link.inertia.moment;
         let products = [(a + 1) % 3, (a + 2) % 3]
             .map(|i| usize::from(!(link.inertia.tensor.entry(a, i) - h[i] * s).is_zero()));
@@ -63,6 +67,6 @@ fn best_shift<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     (!best.0.is_zero()).then(|| Vec3::coordinate_axis(model.graph, a) * best.0)
 }
 
-fn nonzero_count(v: Vec3<'_>) -> usize {
+fn nonzero_component_count(v: Vec3<'_>) -> usize {
     v.0.iter().filter(|c| !c.is_zero()).count()
 }

@@ -18,7 +18,7 @@ const MAX_VELOCITIES: usize = 128;
 /// Maximum number of unused parameters that are reported separately.
 const MAX_SEPARATE_REPORTS: usize = 3;
 
-/// Help for mechanisms with too many velocities.
+/// Help text for mechanisms with too many velocities.
 const DIVIDE_HELP: &str = "the generated code has no loops, and that of the mass matrix grows with the \
                            square of the degrees of freedom: divide the mechanism into several, weld parts \
                            that hardly move (`Weld`, `lock = [\"joint\"]` of a file), or compute a long \

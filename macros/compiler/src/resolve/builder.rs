@@ -1,4 +1,4 @@
-//! Mechanism under construction, with queries about its elements.
+//! Builder of the checked model, with queries about elements resolved so far.
 
 use super::joint::full_name;
 use super::range::ValueRange;
@@ -12,7 +12,7 @@ use crate::mechanism::{
 use crate::syntax::{Description, Endpoint, Expr, ExprKind, GROUND, Name};
 use std::collections::BTreeMap;
 
-/// Coordinates of a joint, after numbering.
+/// Indices of the coordinates and velocities of a joint.
 pub struct JointCoordinates {
     /// Index of the joint's first coordinate in `q`.
     pub q: InQ,
@@ -24,7 +24,7 @@ pub struct JointCoordinates {
 
 /// A loop that is solved in closed form, with the joints that are solved for.
 pub struct ClosedFormLoop {
-    /// Index of the joint that closes the loop.
+    /// Index of the joint that closes the loop solved in closed form.
     pub closing: usize,
     /// Indices of the joints whose children are the parent and the child of the closing joint.
     pub sides: [usize; 2],
@@ -35,21 +35,21 @@ pub type BodyIndex = usize;
 
 /// Builder of the model, which resolves all elements of a description.
 pub struct Builder<'a, 'g> {
-    /// Scope for the resolution of names.
+    /// Scope in which names of expressions are resolved.
     pub scope: Scope<'a, 'g>,
-    /// Model that has been built so far.
+    /// Model of the mechanism that has been built so far.
     pub model: Model<'g>,
-    /// Description written by the user.
+    /// Description of the mechanism as the user wrote it.
     pub description: &'a Description,
     /// Bodies, and particles without a position of their own, which can be children of joints.
     pub jointed: Vec<&'a Name>,
-    /// Link and pose on it by body, once resolved.
+    /// Link and pose of each body, once its placement is resolved.
     pub places: Vec<Option<(Option<LinkId>, Pose<'g>)>>,
     /// Names of all elements that have a position or axes.
     pub placeable: Vec<String>,
-    /// Mass, centre of mass and central inertia by body.
+    /// Mass, centre of mass and central inertia of each body.
     pub masses: Vec<Option<MassProperties<'g>>>,
-    /// Coordinates of each joint.
+    /// Coordinates and velocities of each joint.
     pub coordinates: Vec<JointCoordinates>,
     /// Loops that are solved in closed form.
     pub solved_loops: Vec<ClosedFormLoop>,
@@ -77,7 +77,7 @@ pub struct Builder<'a, 'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Returns the loop that solves for a joint.
+    /// Returns the loop whose closed-form solution determines a joint's coordinate.
     pub fn solving_loop(&self, j: usize) -> Option<&ClosedFormLoop> {
         self.solved_loops.iter().find(|e| e.sides.contains(&j))
     }
@@ -154,7 +154,7 @@ impl<'g> Builder<'_, 'g> {
         (Some(id), Pose::identity(self.scope.graph))
     }
 
-    /// Adds a link and its kinematics.
+    /// Adds a link and its kinematics to the model.
     pub fn add_link(&mut self, link: Link<'g>) -> LinkId {
         let kinematics = joint_of_link(self.model.configuration_space(), &link, &mut self.partials);
         self.scope.kinematics.joints.push(kinematics);

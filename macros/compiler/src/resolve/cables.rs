@@ -1,4 +1,4 @@
-//! Cables that wrap around spheres and cylinders.
+//! Lengths of cables that wrap around spheres and cylinders.
 
 use super::call::{Call, flatten_slashes};
 use super::scope::{Allowed, Context, Placed, Scope, Value};

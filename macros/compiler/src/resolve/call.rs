@@ -11,7 +11,7 @@ pub struct Call<'a> {
     pub id: FunctionId,
     /// Source span of the function's name.
     pub place: &'a Place,
-    /// Arguments of the call as written.
+    /// Arguments of the call, as written by the user.
     pub arguments: &'a [syntax::Expr],
 }
 
@@ -21,7 +21,7 @@ impl<'a> Call<'a> {
         self.id.name()
     }
 
-    /// Reports that the arguments of the call are wrong.
+    /// Reports that the arguments of the function call are wrong.
     pub fn reject_arguments<T>(&self, cx: &mut Diagnostics) -> Option<T> {
         let row = self.id.row();
         cx.report_error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes))
@@ -41,7 +41,7 @@ impl<'a> Call<'a> {
     }
 }
 
-/// Returns the operands of `a / b / c`.
+/// Returns the operands of a slash expression `a / b / c`, as in `v(tip / base / ground)`.
 pub fn flatten_slashes(e: &syntax::Expr) -> Vec<&syntax::Expr> {
     let mut parts = Vec::new();
     let mut current = e;

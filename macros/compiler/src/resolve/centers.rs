@@ -13,9 +13,9 @@ use crate::syntax;
 /// Motion of a body relative to a frame, in the axes of the body's link.
 struct Relative<'g> {
     link: Option<LinkId>,
-    /// Velocity of the origin of the body.
+    /// Velocity of the origin of the body, m/s.
     v: Vec3<'g>,
-    /// Angular velocity of the body.
+    /// Angular velocity of the body, rad/s.
     w: Vec3<'g>,
     /// Acceleration of the body's origin and angular acceleration, if requested.
     rates: Option<[Vec3<'g>; 2]>,

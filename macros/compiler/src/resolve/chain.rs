@@ -24,7 +24,7 @@ impl<'g> Builder<'_, 'g> {
         let _ = self.frame_of_endpoint(&joint.child, cx);
     }
 
-    /// Places the child body of a joint.
+    /// Places the child body of a joint relative to its parent.
     pub fn place_joint(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
         let joint = &self.description.joints[j];
         let motions = self.scope.motions_of_joint(joint, cx);

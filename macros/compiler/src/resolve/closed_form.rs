@@ -21,7 +21,7 @@ struct Side<'g> {
     base: Vec3<'g>,
     /// Closing point of the loop, relative to the joint's origin.
     point: Vec3<'g>,
-    /// Sliding direction of the joint; `None` for a Pin.
+    /// Sliding direction of the loop-closing joint; `None` for a Pin.
     slide: Option<Vec3<'g>>,
 }
 

@@ -1,4 +1,4 @@
-//! Joints that close loops, as scalar constraint rows.
+//! Constraint rows of joints that close loops.
 
 use super::builder::Builder;
 use super::elementary::Elementary;

@@ -122,7 +122,7 @@ impl<'g> Builder<'_, 'g> {
         Some(ConstraintRows { rows, redundant, contact_point: None })
     }
 
-    /// Resolves a constraint, only to report its errors.
+    /// Resolves a constraint to report its errors, and discards the result.
     fn check_constraint(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let holonomic = constraint.kind == ConstraintKind::Holonomic;
         match constraint.kind {

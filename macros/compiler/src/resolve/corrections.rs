@@ -111,7 +111,7 @@ pub fn is_rotation(step: &syntax::Expr) -> bool {
     }
 }
 
-/// Reports an expression that is not a rotation.
+/// Reports that an expression is not a rotation.
 pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
     let error = cx.report_error(step.place.clone(), "expected a rotation");
     if let ExprKind::Call(word, _) = &step.kind {
@@ -123,7 +123,7 @@ pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
     );
 }
 
-/// Reports an array that is not a matrix.
+/// Reports that an array of expressions is not a matrix.
 pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     let ExprKind::Array(items) = &e.kind else {
         cx.report_error(e.place.clone(), "expected a 3×3 matrix").add_help(MATRIX_SYNTAX);

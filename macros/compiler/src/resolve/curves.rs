@@ -159,7 +159,7 @@ impl<'g> Scope<'_, 'g> {
         Some(([first, second, next(second)], link))
     }
 
-    /// Returns the coordinate with this name.
+    /// Returns the coordinate with this name as the parameter of a curve.
     fn named_coordinate(&self, text: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let name = e.to_source();
         let kinematics = &self.kinematics;

@@ -69,7 +69,7 @@ impl<'g> Builder<'_, 'g> {
         self.model.frames.iter().position(|frame| frame.name == name)
     }
 
-    /// Returns the pose of the end of a joint.
+    /// Returns the link and the pose of the end of a joint.
     fn joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
         let mut silent = Diagnostics::discarded_diagnostics();
         let on_body = self.frame_of_endpoint(end, &mut silent)?;
@@ -281,7 +281,7 @@ impl<'g> Builder<'_, 'g> {
         Some((kind, axes.map_or(Some(None), |axes| unit_axis(axes).map(Some))?))
     }
 
-    /// Adds the pieces of springs, dashpots and inputs.
+    /// Adds the drawing of springs, dashpots and inputs.
     fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
         for action in &self.description.actions {
             let row = action.kind.row();

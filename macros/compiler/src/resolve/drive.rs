@@ -22,7 +22,7 @@ pub fn input_drives(d: &Description) -> impl Iterator<Item = &Drive> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds all force elements and inputs of a file.
+    /// Adds all force elements and inputs of a robot file to the model.
     pub fn add_drives(&mut self, _: Moving, cx: &mut Diagnostics) {
         for drive in &self.description.drives {
             self.add_drive(drive, cx);
@@ -180,7 +180,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Returns the stretch of a sum of coordinates.
+    /// Returns the stretch of a weighted sum of coordinates.
     fn sum_stretch(&self, terms: &[Coordinate]) -> Stretch<'g> {
         let zero = self.scope.graph.zero();
         let mut sum = Stretch { value: zero, rate: zero, square: zero, signed: false };

@@ -8,19 +8,19 @@ use crate::mechanism::{AccelerationForce, CoulombFriction, Dashpot, Inertance, I
 pub struct Forces<'g> {
     /// Springs of constant stiffness that act on one coordinate each.
     pub springs: Vec<Spring<'g>>,
-    /// Linear dashpots on coordinates.
+    /// Linear dashpots that act on coordinates.
     pub dashpots: Vec<Dashpot<'g>>,
-    /// Coulomb friction forces on coordinates.
+    /// Coulomb friction forces that act on coordinates.
     pub frictions: Vec<CoulombFriction<'g>>,
     /// Other forces, each with the velocity on which it acts.
     pub loads: Vec<Load<'g>>,
-    /// Potential energies.
+    /// Potential energies of the elements, J.
     pub potentials: Vec<Expr<'g>>,
-    /// Dissipation functions.
+    /// Rayleigh dissipation functions of the elements, W.
     pub dissipations: Vec<Expr<'g>>,
     /// Inertances, each with the velocity whose rate they resist.
     pub inertances: Vec<Inertance<'g>>,
-    /// Forces that are linear in accelerations.
+    /// Force laws that are linear in accelerations.
     pub acceleration_forces: Vec<AccelerationForce<'g>>,
     /// Effect of the entry of `u` that belongs to the element.
     pub input: Option<Input<'g>>,
@@ -37,7 +37,7 @@ impl<'g> Forces<'g> {
         Forces { loads: vec![Load { rate, force: -force, dissipative: true }], ..Forces::default() }
     }
 
-    /// Whether there is no force and no input.
+    /// Whether there are no forces and no inputs.
     pub fn is_empty(&self) -> bool {
         let linear = self.springs.len() + self.dashpots.len() + self.frictions.len();
         let functions = self.potentials.len() + self.dissipations.len();

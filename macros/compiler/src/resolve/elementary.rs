@@ -6,15 +6,15 @@ use crate::mechanism::{Coordinate, InQ, InV, Motion};
 
 /// Elementary motion of a joint.
 pub enum Elementary<'g> {
-    /// Rotation about an axis.
+    /// Rotation of a joint about an axis.
     Turn(Vec3<'g>),
-    /// Translation along an axis.
+    /// Translation of a joint along an axis.
     Slide(Vec3<'g>),
     /// Rotation about an axis with the given advance per radian.
     Helix(Vec3<'g>, Expr<'g>),
-    /// Rotation in space.
+    /// Rotation of a joint about all axes (spherical).
     Ball,
-    /// Rigid motion in space.
+    /// Rigid motion in space with six degrees of freedom.
     Free,
 }
 

@@ -9,7 +9,7 @@ use crate::resolve::scope::{Allowed, Context};
 use crate::syntax::{self, Action, Expr, ForceKind, RATE_OF_STATE};
 use std::collections::BTreeSet;
 
-/// A variable with a value at rest, by index.
+/// Variable whose value at the equilibrium is declared, by its index.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Variable {
     Coordinate(usize),

@@ -243,7 +243,7 @@ fn require_finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) 
     is_valid.then_some(value)
 }
 
-/// Returns the sum of two vectors, combined by axes.
+/// Returns the sum of two vectors whose components are grouped by frame of reference.
 pub fn sum_by_axes<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
     for (axes, v) in b {
         match a.iter_mut().find(|(known, _)| *known == axes) {

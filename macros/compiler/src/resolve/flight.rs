@@ -12,9 +12,9 @@ use crate::syntax::{self, ExprKind, GROUND, Name};
 
 /// State of the standard atmosphere at a height.
 pub struct Air<'g> {
-    /// Temperature, K.
+    /// Temperature of the air, K.
     pub temperature: Expr<'g>,
-    /// Pressure, Pa.
+    /// Pressure of the air, Pa.
     pub pressure: Expr<'g>,
 }
 
@@ -24,7 +24,7 @@ impl<'g> Air<'g> {
         self.pressure / (self.temperature * air::GAS)
     }
 
-    /// Returns the speed of sound, m/s.
+    /// Returns the speed of sound in the air, m/s.
     pub fn speed_of_sound(&self) -> Expr<'g> {
         (self.temperature * (air::HEATS * air::GAS)).sqrt()
     }
@@ -82,7 +82,7 @@ impl<'g> Scope<'_, 'g> {
             .map(|parts| Value::Scalar(angle(parts)))
     }
 
-    /// Returns the bank angle of a body.
+    /// Returns the bank angle of a body, rad, from a call of `bank(body)`.
     pub fn resolve_bank_angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [body] = call.take_arguments(cx)?;
         let [_, right, below] =
@@ -151,7 +151,7 @@ fn ground_expression(place: &crate::diag::Place) -> syntax::Expr {
     syntax::Expr { kind: ExprKind::Name(GROUND.to_string()), place: place.clone() }
 }
 
-/// Returns the expression of an axis of a body.
+/// Returns the expression `body.x`, `body.y` or `body.z` of an axis.
 fn body_axis_expression(body: &syntax::Expr, k: usize) -> syntax::Expr {
     let text = AXES.get(k).unwrap_or(&AXES[0]).to_string();
     let member = Name { text, place: body.place.clone() };

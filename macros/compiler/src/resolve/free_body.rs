@@ -40,11 +40,11 @@ struct FreedBody<'g> {
     center: Placed<'g>,
     /// Released joints: index among the released joints, and whether the body is the child.
     joints: Vec<(usize, bool)>,
-    /// Link and pose of the axes of the result.
+    /// Link and pose of the axes in which the diagram is resolved.
     axes: (Option<LinkId>, Pose<'g>),
 }
 
-/// An action: name, origin, point of action, and wrench.
+/// Action in a free-body diagram: name, origin, point of action, and wrench.
 type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
 
 impl<'g> Builder<'_, 'g> {
@@ -429,7 +429,7 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// Returns the wrench about another point of the body.
+    /// Returns the same wrench about another point of the body.
     fn wrench_about(&self, body: &FreedBody<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
         let Some(place) = place else { return w };
         let arm = self.arm_from_center(body, place);

@@ -7,7 +7,7 @@ use crate::kinematics::{Rows, mobility, redundancy};
 use crate::syntax::{ExprKind, Formulation};
 
 impl<'g> Builder<'_, 'g> {
-    /// Removes redundant rows and counts the degrees of freedom.
+    /// Removes redundant constraint rows and counts the degrees of freedom.
     pub fn check_mobility(&mut self, cx: &mut Diagnostics) {
         let mut rows = Rows::new(&self.model);
         let constant = redundancy::constant_rows(&self.model, &rows);

@@ -131,7 +131,7 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Returns the values of arguments that are scalars.
+    /// Returns the values of function arguments that must be scalars.
     pub fn resolve_scalars<const N: usize>(
         &self,
         call: &Call<'_>,
@@ -207,7 +207,7 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Returns the value of a table at its arguments.
+    /// Returns the value of an interpolation table at the arguments of a call.
     fn resolve_table_lookup(
         &self,
         k: usize,

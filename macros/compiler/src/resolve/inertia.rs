@@ -14,10 +14,10 @@ const ZERO_MOMENT: f64 = 1e-18;
 /// of ten nanometres).
 const MIN_GYRATION_SQUARED: f64 = 1e-16;
 
-/// Relative tolerance of the checks: published values are rounded.
+/// Relative tolerance of the checks of inertias, since published values are rounded.
 const TOLERANCE: f64 = 1e-6;
 
-/// Operation on the inertia to its left.
+/// Operation of an inertia expression on the inertia to its left.
 enum Operation<'a> {
     Add(&'a syntax::Expr),
     Rotate(&'a [syntax::Expr]),

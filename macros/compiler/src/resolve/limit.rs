@@ -9,7 +9,7 @@ use crate::mechanism::{Coordinate, Limit};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds all limits to the model.
+    /// Adds all declared coordinate limits to the model.
     pub fn add_limits(&mut self, cx: &mut Diagnostics) {
         let mut known = Vec::new();
         for limit in &self.description.limits {
@@ -140,7 +140,7 @@ fn range_width(limit: &Limit<'_>) -> Option<f64> {
     Some(limit.upper?.constant_value()? - limit.lower?.constant_value()?)
 }
 
-/// Reports bounds that no motion satisfies. Returns false then.
+/// Reports bounds of a limit that no motion satisfies. Returns false in that case.
 fn check_bounds(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
     let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.constant_value()));
     if let (Some(low), Some(high), Some(e)) = (from, to, limit.arguments.get(Key::To))

@@ -12,7 +12,7 @@ use crate::mechanism::LinkId;
 use crate::syntax::{self, BinaryOp, GROUND};
 
 impl<'g> Kinematics<'g> {
-    /// Returns a matrix in the axes of another link.
+    /// Returns a resolved matrix in the axes of another link.
     pub fn matrix_in(&self, m: ResolvedMatrix<'g>, link: Option<LinkId>) -> ResolvedMatrix<'g> {
         if m.link == link { m } else { m.in_axes(link, |v| change_axes(&self.joints, v, m.link, link)) }
     }
@@ -151,7 +151,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(entry_of_relative_rotation) }))
     }
 
-    /// Returns the axes of a placed body or frame.
+    /// Returns the axes of the body or frame that an expression names.
     fn axes_of(&self, e: &syntax::Expr) -> Option<[Terms<'g>; 3]> {
         let coordinate_axis = |k: usize| Vec3::coordinate_axis(self.graph, k);
         match e.as_name()? {
@@ -185,7 +185,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Matrix(ResolvedMatrix { link, entries }))
     }
 
-    /// Returns sums, differences and products with a matrix.
+    /// Returns the value of a sum, difference or product that contains a matrix.
     pub fn matrix_binary(
         &self,
         op: BinaryOp,

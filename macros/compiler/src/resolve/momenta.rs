@@ -10,7 +10,7 @@ use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
 use crate::syntax::{self, ExprKind, words};
 
-/// Quantity that is summed over bodies.
+/// Quantity that a function of the language sums over bodies.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
     /// Sum of the momenta.
@@ -131,7 +131,7 @@ impl<'g> Scope<'_, 'g> {
         Some(Value::Scalar(sum))
     }
 
-    /// Returns `a·J b` of a body about a point.
+    /// Returns the moment of inertia `a·J b` of a body about a point.
     pub fn inertia_about(
         &self,
         (placed, (mass, com, central)): &(Placed<'g>, MassProperties<'g>),

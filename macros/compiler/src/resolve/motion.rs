@@ -1,4 +1,4 @@
-//! Velocities and accelerations of the links, computed after placement.
+//! Velocities and accelerations of the links, computed after all bodies are placed.
 
 use super::builder::Builder;
 use crate::kinematics::{accelerations, twists};

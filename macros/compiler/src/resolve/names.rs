@@ -34,7 +34,7 @@ impl<'g> Scope<'_, 'g> {
         !cx.is_read() || self.records.borrow_mut().reported_names.insert(name.to_string())
     }
 
-    /// Returns the value of a name in an expression.
+    /// Returns the value of a name that occurs in an expression.
     pub fn resolve_name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         if let Some(value) = self.kinematics.drive_quantities.get(name) {
             return Some(Value::Scalar(*value));

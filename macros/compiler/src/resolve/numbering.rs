@@ -74,7 +74,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds the coordinates of released joints after all others.
+    /// Adds the coordinates of joints that are released for reactions, after all others.
     pub fn number_released_coordinates(&mut self, joints: &[usize]) {
         for j in joints {
             let Some(name) = holders::name_of(self.description, *j) else { continue };

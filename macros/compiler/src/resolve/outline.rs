@@ -16,13 +16,13 @@ use std::collections::BTreeSet;
 
 /// Interface of a mechanism with an error, as far as the description determines it.
 pub struct Outline {
-    /// Name of every entry of `q`.
+    /// Name of every entry of the configuration `q`.
     pub configuration: Vec<String>,
-    /// Name of every entry of `v`.
+    /// Name of every entry of the velocity `v`.
     pub velocities: Vec<String>,
-    /// Name of every entry of `u`.
+    /// Name of every entry of the input `u`.
     pub inputs: Vec<String>,
-    /// Names of the frames.
+    /// Names of the mechanism's frames.
     pub frames: Vec<String>,
     /// Names of the bodies that are not welded to others.
     pub bodies: Vec<String>,
@@ -36,15 +36,15 @@ pub struct Outline {
     pub slipping: bool,
     /// Names of free-body diagrams, with their bodies; their actions are unknown.
     pub diagrams: Vec<(String, Diagram)>,
-    /// All other outputs, in order.
+    /// All outputs other than free-body diagrams, in order.
     pub outputs: Vec<OutlinedOutput>,
 }
 
 /// Interface of an output of a mechanism with an error.
 pub struct OutlinedOutput {
-    /// Name of the output.
+    /// Name of the outlined output.
     pub name: String,
-    /// Number of components.
+    /// Number of components of the output.
     pub size: usize,
     /// Quantities on which the output depends.
     pub uses: Uses,
@@ -205,7 +205,7 @@ fn is_contact_name(d: &Description, e: &Expr) -> bool {
         .any(|contact| !contact.is_compliant() && e.as_name() == Some(contact.name.text.as_str()))
 }
 
-/// Whether an expression contains a function of the velocities.
+/// Whether an expression contains a function of the language that depends on velocities.
 fn contains_motion(d: &Description, e: &Expr) -> bool {
     let is_motion = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, _) => {

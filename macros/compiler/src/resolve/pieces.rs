@@ -17,7 +17,7 @@ use crate::syntax::{self, ExprKind};
 
 /// Maximum difference of two pieces at their border, relative to their magnitude.
 const ROUNDING: f64 = 1e-9;
-/// Magnitudes of the samples with which continuity is tested.
+/// Magnitudes of the random samples at which continuity of piecewise laws is tested.
 const SIZES: [f64; 12] = [1.0, 1.0, 1.0, 1.0, 1e-2, 1e2, 1e-1, 1e1, 1e-4, 1e4, 1e-3, 1e3];
 
 /// A law in two pieces, as expressions of a symbol that replaces the compared expression.

@@ -16,7 +16,7 @@ use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 /// Element that is to be placed, by its index in its list.
 #[derive(Clone, Copy)]
 enum Item {
-    /// Joint, by its index in the [`Order`].
+    /// Placement of a joint's child, by the joint's index in the [`Order`].
     Joint(usize),
     Frame(usize),
     Point(usize),

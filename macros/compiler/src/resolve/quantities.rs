@@ -16,13 +16,13 @@ impl<'g> Scope<'_, 'g> {
         self.resolve_vector(e, cx).map(in_links)
     }
 
-    /// Resolves several vectors and expresses them in common axes.
+    /// Resolves several vectors and expresses them in the axes of a common frame.
     pub fn common_axes(&self, e: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<(Axes, Vec<Vec3<'g>>)> {
         let all: Vec<_> = e.iter().map(|e| Some((*e, self.resolve_vector(e, cx)?))).collect();
         self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
     }
 
-    /// Converts several resolved vectors to common axes.
+    /// Expresses several resolved vectors in the axes of a common frame.
     pub fn in_common_axes(
         &self,
         read: Vec<(&syntax::Expr, Vec<(Axes, Vec3<'g>)>)>,

@@ -4,14 +4,14 @@ use crate::diag::{Diagnostics, Place};
 use crate::expr::Expr;
 use crate::syntax::ScalarType;
 
-/// Range of values whose products and reciprocals are finite.
+/// Range of parameter values whose products and reciprocals are finite.
 #[derive(Clone, Copy, Debug)]
 pub struct ValueRange {
-    /// Maximum mass and moment; their squares are finite.
+    /// Maximum mass and moment of inertia, whose squares are finite.
     pub max: f64,
     /// Maximum length; with a mass of one, its moment of inertia is in the range of the scalar type.
     pub length: f64,
-    /// Minimum nonzero mass and moment; its reciprocal is finite.
+    /// Minimum nonzero mass and moment of inertia, whose reciprocal is finite.
     pub min_nonzero: f64,
     /// Name of the scalar type, for messages.
     pub name: &'static str,

@@ -8,7 +8,7 @@ use crate::mechanism::LinkId;
 pub struct ResolvedMatrix<'g> {
     /// Link in whose axes the entries are; `None` for the ground.
     pub link: Option<LinkId>,
-    /// Entries of the matrix.
+    /// Entries of the matrix in the axes of its frame.
     pub entries: Mat3<'g>,
 }
 

@@ -11,11 +11,11 @@ use crate::mechanism::{Constraint, LinkId, Measure};
 /// Rows of a declared constraint, which the builder adds to those of the other constraints.
 #[derive(Default)]
 pub struct ConstraintRows<'g> {
-    /// Rows of the constraint; their groups count from zero.
+    /// Scalar rows of the constraint; their groups count from zero.
     pub rows: Vec<Constraint<'g>>,
     /// Names of components of the constraint that vanish identically.
     pub redundant: Vec<String>,
-    /// Contact point of touching surfaces, from the ground's origin.
+    /// Contact point of the surfaces, relative to the ground's origin.
     pub contact_point: Option<Terms<'g>>,
 }
 
@@ -42,7 +42,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds the rows of a declared constraint.
+    /// Adds the rows of a declared constraint to the model.
     pub fn add_rows(&mut self, name: &str, rows: ConstraintRows<'g>) {
         let first = self.group + 1;
         self.group = first;

@@ -11,19 +11,19 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Scope in which the names of an expression are resolved.
 pub struct Scope<'a, 'g> {
-    /// Graph that owns the expressions.
+    /// Graph that owns the expressions of the model.
     pub graph: &'g Graph,
-    /// Parameters of the struct.
+    /// Names of the struct's parameters.
     pub parameters: &'a [Name],
-    /// Tables, which are parameters that are functions.
+    /// Interpolation tables, which are parameters that are functions.
     pub tables: &'a [syntax::Table],
-    /// Names of bodies and particles.
+    /// Names of the mechanism's bodies and particles.
     pub bodies: Vec<String>,
-    /// Names of frames.
+    /// Names of the mechanism's frames.
     pub frames: Vec<String>,
-    /// Names of joints.
+    /// Names of the mechanism's joints.
     pub joints: Vec<String>,
-    /// Names of force elements.
+    /// Names of the mechanism's force elements.
     pub actions: Vec<String>,
     /// Names of declared inputs, in order. In `u` they follow those of driven joints and drives.
     pub inputs: &'a [Name],
@@ -39,18 +39,18 @@ pub struct Scope<'a, 'g> {
     pub context: RefCell<Context<'g>>,
     /// Elements placed so far, with their motion.
     pub kinematics: Kinematics<'g>,
-    /// Whether numbers are `f32`.
+    /// Whether the scalar type of the mechanism is `f32`.
     pub is_f32: bool,
     /// Facts that have been found while expressions were resolved.
     pub records: RefCell<Records<'g>>,
 }
 
-/// Facts that were found while expressions were resolved.
+/// Records of what was found while expressions were resolved, such as used parameters.
 #[derive(Debug, Default)]
 pub struct Records<'g> {
-    /// Whether each parameter was used.
+    /// Whether each parameter was used in an expression.
     pub used: Vec<bool>,
-    /// Whether each table was used.
+    /// Whether each table was used in an expression.
     pub used_tables: Vec<bool>,
     /// Unknown names that have been reported. Each is reported once, because a declaration is most likely
     /// missing.
@@ -79,18 +79,18 @@ pub enum Axes {
     Own,
     /// Axes of a named body (or `ground`) whose link is not yet resolved.
     Of(String),
-    /// Axes of a link, or of the ground.
+    /// Axes of a link, or of the ground for `None`.
     Link(Option<LinkId>),
 }
 
 /// Value of an expression: a scalar, a vector as a sum over axes, or a matrix.
 #[derive(Clone, Debug)]
 pub enum Value<'g> {
-    /// Scalar.
+    /// Scalar value of an expression.
     Scalar(Expr<'g>),
-    /// Physical vector.
+    /// Physical vector, by its components in the axes of one or more frames.
     Vector(Vec<(Axes, Vec3<'g>)>),
-    /// Physical matrix.
+    /// Physical matrix, with the frame of its axes.
     Matrix(ResolvedMatrix<'g>),
 }
 
@@ -117,13 +117,13 @@ impl Value<'_> {
 /// Quantities on which an expression may depend; each kind includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Allowed {
-    /// Parameters only.
+    /// The expression may depend on parameters only.
     Constant,
-    /// Coordinates and time, in addition to parameters.
+    /// The expression may depend on coordinates and time, in addition to parameters.
     Placement,
-    /// Velocities and inputs, in addition to coordinates and time.
+    /// The expression may depend on velocities and inputs as well.
     Motion,
-    /// Accelerations, in addition to velocities and inputs.
+    /// The expression may depend on accelerations as well.
     Acceleration,
     /// Reactions of joints and contact forces, in addition to accelerations.
     Reaction,
@@ -136,7 +136,7 @@ pub struct Context<'g> {
     pub allowed: Allowed,
     /// Link and pose whose axes `x`, `y` and `z` denote; `None` for the attribute's own axes.
     pub axes: Option<(Option<LinkId>, Pose<'g>)>,
-    /// Local names, such as `stretch`.
+    /// Local names of the expression, such as `stretch`, with their values.
     pub locals: Vec<(&'static str, Expr<'g>)>,
     /// Compared expressions of the piecewise laws that are being resolved, as written, with the symbols that
     /// replace them.
@@ -146,7 +146,7 @@ pub struct Context<'g> {
 }
 
 impl<'g> Context<'g> {
-    /// Returns a context without local names.
+    /// Returns a context for expressions without local names.
     pub fn new(allowed: Allowed, axes: Option<(Option<LinkId>, Pose<'g>)>) -> Context<'g> {
         Context { allowed, axes, locals: Vec::new(), compared: Vec::new(), defining: Vec::new() }
     }
@@ -161,11 +161,11 @@ impl<'g> Context<'g> {
 /// Kind of a placed element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlacedKind {
-    /// Body: axes and origin.
+    /// The placed element is a body: it has axes and an origin.
     Body,
     /// Particle or point: an origin, with the axes of the element that carries it.
     Point,
-    /// Frame: axes.
+    /// The placed element is a frame: it has axes and no origin.
     Frame,
 }
 
@@ -174,9 +174,9 @@ pub enum PlacedKind {
 pub struct Placed<'g> {
     /// Link in which the element is fixed; `None` for the ground.
     pub link: Option<LinkId>,
-    /// Pose in the link.
+    /// Pose of the element relative to its link.
     pub pose: Pose<'g>,
-    /// Kind of the element.
+    /// Kind of the placed element.
     pub kind: PlacedKind,
 }
 
@@ -186,9 +186,9 @@ pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 /// Elements placed so far, with their motion.
 #[derive(Debug, Default)]
 pub struct Kinematics<'g> {
-    /// Placements of the elements, by name.
+    /// Placements of the elements, by name of the element.
     pub places: BTreeMap<String, Placed<'g>>,
-    /// Plain coordinates by full name; true for an angle.
+    /// Plain coordinates by their full names; the flag is true for an angle.
     pub coordinates: Vec<(String, Coordinate, bool)>,
     /// Kinematics of the links that joints move.
     pub joints: Vec<Joint<'g>>,
@@ -213,11 +213,11 @@ pub struct Kinematics<'g> {
 /// Forces and moments of the second surface of a contact on the first, each in the axes of a link.
 #[derive(Debug, Default)]
 pub struct ContactLoads<'g> {
-    /// Forces of the element at all points of action.
+    /// Forces of the element at all of its points of action.
     pub forces: Vec<(Option<LinkId>, Vec3<'g>)>,
-    /// Moments of friction against spin and rolling.
+    /// Friction moments of the element against spin and rolling.
     pub moments: Vec<(Option<LinkId>, Vec3<'g>)>,
-    /// Power of all forces and moments.
+    /// Power of all forces and moments of the element.
     pub power: Option<Expr<'g>>,
 }
 
@@ -283,7 +283,7 @@ impl<'g> Kinematics<'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// Evaluates a function in another context.
+    /// Calls a function while another context applies to expressions.
     pub fn in_context<T>(&self, context: Context<'g>, f: impl FnOnce(&Self) -> T) -> T {
         let before = self.context.replace(context);
         let result = f(self);
@@ -298,7 +298,7 @@ impl<'g> Scope<'_, 'g> {
         displaced.map(|(_, placed)| placed).or_else(|| self.kinematics.places.get(name)).cloned()
     }
 
-    /// Returns the quantities on which expressions may depend here.
+    /// Returns the quantities on which expressions may depend in the current context.
     pub fn allowed_quantities(&self) -> Allowed {
         self.context.borrow().allowed
     }

@@ -12,7 +12,7 @@ use crate::mechanism::{InV, Pose, Quantity, Speeds};
 use crate::syntax::{self, ExprKind, Name};
 use std::rc::Rc;
 
-/// A declared speed, with its coefficients of all velocities.
+/// Declared generalized speed, with its coefficients of all velocities.
 struct DeclaredSpeed<'a, 'g> {
     name: &'a Name,
     value: &'a syntax::Expr,
@@ -208,7 +208,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 }
 
-/// Returns the states with their indices among the parameters.
+/// Returns the first-order states with their indices among the parameters.
 fn state_indices<'b>(builder: &'b Builder<'_, '_>) -> impl Iterator<Item = (&'b str, usize)> {
     builder.description.states.iter().map(|(name, parameter)| (name.text.as_str(), *parameter))
 }

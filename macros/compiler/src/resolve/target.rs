@@ -14,7 +14,7 @@ pub enum Target<'g> {
     Coordinate(Coordinate, Option<bool>),
     /// Point of a body, a particle, or a named point.
     Point(Placed<'g>),
-    /// Length or angle given by an expression.
+    /// Target that is a length or angle given by an expression.
     Expression(Stretch<'g>),
 }
 
@@ -115,7 +115,7 @@ impl<'g> Builder<'_, 'g> {
         self.scope.resolve_placement(on, cx).map(Target::Point)
     }
 
-    /// Resolves a target written as `joint.coordinate`.
+    /// Resolves a target of a force element written as `joint.coordinate`.
     fn coordinate_of_joint(
         &self,
         on: &Expr,
@@ -156,7 +156,7 @@ impl<'g> Builder<'_, 'g> {
         None
     }
 
-    /// Returns the declared coordinate with this name.
+    /// Returns the declared coordinate with this name, which belongs to no joint.
     fn free_coordinate(&self, name: &str) -> Option<Coordinate> {
         let free = self.description.coordinates.iter().any(|c| c.name.text == name);
         let kinematics = &self.scope.kinematics;

@@ -13,13 +13,13 @@ use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradi
 use crate::mechanism::{Coordinate, Pose, Quantity};
 use crate::syntax::{self, ExprKind};
 
-/// A length or angle on which an element acts.
+/// Length or angle on which a force element acts, with its rate.
 pub struct Stretch<'g> {
-    /// Value of the stretch, m or rad.
+    /// Value of the length or angle, m or rad.
     pub value: Expr<'g>,
-    /// Rate of the stretch, linear in the velocities.
+    /// Rate of the length or angle, linear in the velocities.
     pub rate: Expr<'g>,
-    /// Square of the stretch.
+    /// Square of the length.
     pub square: Expr<'g>,
     /// Whether the value is the signed coordinate along a fixed line; the length is then its magnitude.
     pub signed: bool,
@@ -36,7 +36,7 @@ pub struct ActedOn<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Returns the stretch of a coordinate.
+    /// Returns the stretch that is a coordinate, with its velocity as rate.
     pub fn coordinate_stretch(&self, c: &Coordinate) -> Stretch<'g> {
         let g = self.scope.graph;
         let value = position_in(g, c);

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 pub struct Order {
     /// Index of the joint and of its child body, for each tree joint.
     pub joints: Vec<(usize, BodyIndex)>,
-    /// Joints whose child has already been placed.
+    /// Indices of the joints that close loops, since their child is already placed.
     pub closing: Vec<usize>,
 }
 
@@ -56,7 +56,7 @@ fn is_descendant(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -
     })
 }
 
-/// Returns the name at the beginning of `body.at(vector)`.
+/// Returns the body's name at the beginning of `body.at(vector)`.
 pub fn base_name(e: &Expr) -> Option<&str> {
     match &e.kind {
         ExprKind::Name(name) => Some(name),

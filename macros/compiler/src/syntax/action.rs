@@ -29,7 +29,7 @@ pub fn read_action(
 }
 
 /// Reports ends with the syntax of a joint, or without keys. Returns true if there are any.
-fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnostics) -> bool {
+fn report_unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnostics) -> bool {
     let (on, spans) = (kind.row().on, kind.row().between);
     let between_help = |a: &Expr, b: &Expr| match spans {
         true => format!("write `between = ({}, {})`", a.to_source(), b.to_source()),
@@ -56,7 +56,7 @@ fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnosti
         _ => "write `between = (first, second)`".to_string(),
     };
     cx.report_error(first.place.extend_to(&last.place), "expected `name = value`").add_help(help);
-    arguments.take_plain();
+    arguments.take_positional_arguments();
     true
 }
 
@@ -68,14 +68,14 @@ fn read_target(
     cx: &mut Diagnostics,
 ) -> Option<Target> {
     let row = kind.row();
-    if unnamed_target(kind, arguments, cx) {
+    if report_unnamed_target(kind, arguments, cx) {
         return None;
     }
     let Some(place) = arguments.place_of("between") else {
         if !row.on {
-            return arguments.need_expr("between", "(first, second)", "acts", keys, cx).and(None);
+            return arguments.require_expression("between", "(first, second)", "acts", keys, cx).and(None);
         }
-        let on = arguments.need_expr("on", "joint", "acts", keys, cx)?;
+        let on = arguments.require_expression("on", "joint", "acts", keys, cx)?;
         let (ExprKind::Tuple(ends) | ExprKind::Array(ends)) = &on.kind else {
             return Some(Target::On(on));
         };
@@ -105,7 +105,7 @@ fn read_target(
             Some(Target::Between(ends.pop()?, second))
         }
         other => {
-            let second = arguments.take_second(&other);
+            let second = arguments.take_second_argument(&other);
             let help = match &other.kind {
                 _ if second.is_some() => {
                     let second = second.map_or_else(String::new, |second| second.to_source());

@@ -13,7 +13,7 @@ mod corrections;
 mod ends;
 mod parse;
 
-use corrections::{decimal_comma_error, quoted_names, report_unnamed};
+use corrections::{decimal_comma_error, quoted_names, report_unnamed_argument};
 use parse::parse_arguments;
 
 /// Arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
@@ -31,12 +31,12 @@ pub struct Arguments {
     grammar: Grammar,
 }
 
-/// Grammar of an attribute's arguments.
+/// Grammar of the arguments of an attribute.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Grammar {
-    /// Joint: two bodies with an arrow between them.
+    /// Arguments of a joint: two bodies with an arrow between them.
     Joint,
-    /// Equilibrium: any number of equations.
+    /// Arguments of an equilibrium: any number of equations.
     Equilibrium,
     /// Arguments of any other attribute.
     Other,
@@ -51,17 +51,17 @@ enum ArgumentValue {
 
 impl Arguments {
     /// Parses the arguments of an attribute.
-    pub fn of_attribute(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
+    pub fn parse_attribute_arguments(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        let is_attribute = |word: &str| attribute.path().is_ident(word);
-        let grammar = match (is_attribute("joint"), is_attribute("equilibrium")) {
+        let has_attribute_name = |word: &str| attribute.path().is_ident(word);
+        let grammar = match (has_attribute_name("joint"), has_attribute_name("equilibrium")) {
             (true, _) => Grammar::Joint,
             (_, true) => Grammar::Equilibrium,
             _ => Grammar::Other,
         };
         match &attribute.meta {
-            Meta::List(list) => Arguments::parse_with(list.tokens.clone(), span, grammar, cx),
-            Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, grammar, cx),
+            Meta::List(list) => Arguments::parse_with_grammar(list.tokens.clone(), span, grammar, cx),
+            Meta::Path(_) => Arguments::parse_with_grammar(TokenStream::new(), span, grammar, cx),
             Meta::NameValue(_) => {
                 let word = attribute.path().get_ident().map_or_else(String::new, Ident::to_string);
                 cx.report_error(span, "expected arguments in parentheses")
@@ -73,10 +73,10 @@ impl Arguments {
 
     /// Parses the tokens between the parentheses of an attribute.
     pub fn parse(tokens: TokenStream, span: Span, cx: &mut Diagnostics) -> Option<Arguments> {
-        Arguments::parse_with(tokens, span, Grammar::Other, cx)
+        Arguments::parse_with_grammar(tokens, span, Grammar::Other, cx)
     }
 
-    fn parse_with(
+    fn parse_with_grammar(
         tokens: TokenStream,
         span: Span,
         grammar: Grammar,
@@ -125,43 +125,43 @@ impl Arguments {
         self.named.iter().find(|(name, _)| name.text == key).map(|(name, _)| name.place.clone())
     }
 
-    /// Removes a key with its value from the arguments.
+    /// Removes a key with its value from the arguments of an attribute.
     pub fn remove_key(&mut self, key: &str) {
         self.named.retain(|(name, _)| name.text != key);
     }
 
-    /// Removes all keys with their values from the arguments.
+    /// Removes all keys with their values from the arguments of an attribute.
     pub fn remove_all(&mut self) {
         self.named.clear();
     }
 
     /// Returns the span of a key that has been taken.
-    pub fn taken_place(&self, key: &str) -> Option<Place> {
+    pub fn place_of_taken_key(&self, key: &str) -> Option<Place> {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
-    /// Returns the expressions without a key.
+    /// Returns the positional arguments of an attribute: expressions without a key.
     pub fn positional_arguments(&self) -> &[Expr] {
         &self.plain
     }
 
-    /// Returns whether no argument remains.
+    /// Returns whether no argument of the attribute remains.
     pub fn is_empty(&self) -> bool {
         self.named.is_empty() && self.plain.is_empty() && self.equations.is_empty() && self.relation.is_none()
     }
 
-    /// Removes and returns the expressions without a key.
-    pub fn take_plain(&mut self) -> Vec<Expr> {
+    /// Removes and returns the positional arguments: expressions without a key.
+    pub fn take_positional_arguments(&mut self) -> Vec<Expr> {
         std::mem::take(&mut self.plain)
     }
 
     /// Removes and returns the only expression without a key if both it and `first` are positions. It is most
     /// likely the second element of a pair without parentheses.
-    pub fn take_second(&mut self, first: &Expr) -> Option<Expr> {
-        let is_place =
+    pub fn take_second_argument(&mut self, first: &Expr) -> Option<Expr> {
+        let is_place_expression =
             |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
         match self.plain.as_slice() {
-            [second] if is_place(first) && is_place(second) => self.plain.pop(),
+            [second] if is_place_expression(first) && is_place_expression(second) => self.plain.pop(),
             _ => None,
         }
     }
@@ -212,7 +212,7 @@ impl Arguments {
     }
 
     /// Returns the expression of a required key; `example` is a possible value.
-    pub fn need_expr(
+    pub fn require_expression(
         &mut self,
         key: &str,
         example: &str,
@@ -289,7 +289,7 @@ impl Arguments {
         }
     }
 
-    /// Removes a key and returns its string.
+    /// Removes a key from the arguments and returns its string value.
     pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
         match self.take_named_argument(key)? {
             (_, ArgumentValue::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
@@ -301,7 +301,7 @@ impl Arguments {
         }
     }
 
-    /// Returns the strings of a key, in brackets.
+    /// Returns the strings in brackets that are the value of a key.
     pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
         let name_of_literal = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
         match self.take_named_argument(key) {
@@ -319,7 +319,7 @@ impl Arguments {
         }
     }
 
-    /// Returns the parameters that replace values of a file.
+    /// Returns the parameters that replace values of a robot file.
     pub fn take_file_parameters(&mut self, key: &str) -> Vec<FileParameters> {
         match self.take_named_argument(key) {
             Some((_, ArgumentValue::FileParameters(figures))) => figures,
@@ -367,7 +367,7 @@ impl Arguments {
         values
     }
 
-    /// Sets the element to which the arguments belong.
+    /// Sets the name of the element to which the arguments belong.
     pub fn with_owner(mut self, name: &Name) -> Arguments {
         self.owner.clone_from(&name.text);
         self
@@ -402,7 +402,7 @@ impl Arguments {
             }
         }
         if let Some(e) = self.plain.drain(..).next() {
-            report_unnamed(&e, known, example, cx);
+            report_unnamed_argument(&e, known, example, cx);
         }
         if let Some((left, right)) = self.equations.pop() {
             let error = cx.report_error(left.place.extend_to(&right.place), "expected `name = value`");

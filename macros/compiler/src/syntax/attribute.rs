@@ -9,7 +9,7 @@ use super::parameter::type_name;
 use super::readable::Reading;
 use super::request::Requests;
 use super::separate::insert_missing_commas;
-use super::state::give_type;
+use super::state::set_state_types;
 use super::table::table_variables;
 use super::{Description, ScalarType, crate_path, declaration, guard};
 use crate::diag::{Diagnostics, Place};
@@ -20,13 +20,13 @@ use syn::{Fields, GenericParam, Ident, Item, ItemStruct};
 /// Parses `#[mechanism(arguments)] item`. Returns `None` if the item is not a valid struct; all errors are in
 /// `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
-    if !guard::check_arguments(&arguments, cx) || !guard::check_item(&item, cx) {
+    if !guard::check_argument_size(&arguments, cx) || !guard::check_item_size(&item, cx) {
         return None;
     }
     let fields = declaration::fields_source_text(&item);
     let mut item = parse_struct(item, cx)?;
     let before = cx.len();
-    let mut lists = Lists::expand(&mut item.fields, cx);
+    let mut lists = Lists::expand_lists(&mut item.fields, cx);
     let arguments = lists.rewrite_list_index(arguments, None, cx);
     let mut reading = Reading::default();
     if cx.len() > before {
@@ -93,10 +93,10 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
             );
         }
     }
-    give_type(&description, &mut shell);
+    set_state_types(&description, &mut shell);
     // Linear systems include the derivatives by states, which are parameters.
     requests.sensitivities |= requests.derivatives && !description.states.is_empty();
-    check_duplicates(&description, cx).iter().for_each(|name| reading.mark_name(name));
+    check_duplicates(&description, cx).iter().for_each(|name| reading.mark_fields_named(name));
     Some(Mechanism { description, shell, file, requests, reading })
 }
 

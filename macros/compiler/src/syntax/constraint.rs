@@ -57,7 +57,7 @@ pub fn read_limit(
     cx: &mut Diagnostics,
 ) {
     let (row, names) = (OtherKind::Limit.row(), &OtherKind::Limit.argument_names());
-    let on = arguments.need_expr("on", "joint", "limit", names, cx);
+    let on = arguments.require_expression("on", "joint", "limit", names, cx);
     let (given, _) = Keys::new(OtherKind::Limit, names).read_arguments(arguments, cx);
     let is_empty = arguments.is_empty();
     arguments.report_remaining_arguments("a Limit", names, cx);

@@ -6,7 +6,7 @@ use super::{Collision, Contact, Description, Expr, ExprKind, Name};
 use crate::diag::Diagnostics;
 use crate::language::{Callable, Method, OtherKind};
 
-/// Syntax of a contact of a file's links.
+/// Help text with the syntax of a contact between links of a file.
 pub const CONTACT_HELP: &str =
     "declare a field for it: `#[contact(collision(), ground.plane(z), friction = 0.8)] floor: Contact`";
 
@@ -23,7 +23,7 @@ pub fn read_contact(
     let (row, names) = (OtherKind::Contact.row(), &OtherKind::Contact.argument_names());
     let (given, _) = Keys::new(OtherKind::Contact, names).read_arguments(arguments, cx);
     check_relations(row.relations, &given, &name, cx);
-    let mut surfaces = arguments.take_plain().into_iter();
+    let mut surfaces = arguments.take_positional_arguments().into_iter();
     let is_empty = arguments.is_empty();
     arguments.report_remaining_arguments("a Contact", names, cx);
     let example = row.example;
@@ -67,8 +67,8 @@ pub fn collision_link(surface: &Expr) -> Option<Option<&Expr>> {
 /// `None` for other surfaces.
 pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>> {
     let link = collision_link(surface)?.and_then(Expr::as_name);
-    let of_link = |part: &Collision| link.is_none_or(|name| part.on.body.text == name);
-    let parts = (0..all.len()).filter(|k| of_link(&all[*k]));
+    let is_shape_of_link = |part: &Collision| link.is_none_or(|name| part.on.body.text == name);
+    let parts = (0..all.len()).filter(|k| is_shape_of_link(&all[*k]));
     let index = match &surface.kind {
         ExprKind::Method(_, _, arguments) => arguments.first().and_then(Expr::literal_number),
         _ => None,
@@ -81,7 +81,7 @@ pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>
 
 impl Contact {
     /// Whether the contact uses collision geometry of a file.
-    pub fn names_collisions(&self) -> bool {
+    pub fn uses_file_collisions(&self) -> bool {
         [&self.first, &self.second].into_iter().any(|surface| collision_link(surface).is_some())
     }
 }

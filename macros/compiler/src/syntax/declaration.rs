@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_start_where_the_last_does() {
+    fn declarations_are_indented_from_their_last_line() {
         assert_eq!(
             remove_indentation("{\n        a: f64,\n\n            b\n    }"),
             "{\n    a: f64,\n\n        b\n}"
@@ -86,11 +86,10 @@ mod tests {
     }
 
     #[test]
-    fn a_note_is_the_first_paragraph() {
+    fn field_note_is_the_first_doc_paragraph() {
         let item: ItemStruct = syn::parse_quote! {
             struct S {
-                /// The length,
-                /// of the rod.
+                /// Length of the rod in the test struct.
                 ///
                 /// More.
                 length: f64,

@@ -10,10 +10,10 @@ use syn::{Attribute, Item, ItemStruct, Stmt};
 pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<TokenStream> {
     let definitions_of = |ident: &str| {
         let definition = format!("struct {ident}");
-        let is_whole =
+        let is_end_of_word =
             |end: usize| text[end..].chars().next().is_none_or(|next| !next.is_alphanumeric() && next != '_');
         let found = text.match_indices(&definition).map(|(at, word)| (at, at + word.len()));
-        found.filter(|(_, end)| is_whole(*end)).map(|(at, _)| at).collect::<Vec<_>>()
+        found.filter(|(_, end)| is_end_of_word(*end)).map(|(at, _)| at).collect::<Vec<_>>()
     };
     // Cheap test first: nearly every file has only one such struct.
     let ItemStruct { vis, ident, .. } = match text.matches("struct ").count() {
@@ -57,7 +57,7 @@ fn is_conditional(attribute: &Attribute) -> bool {
 mod tests {
     use super::*;
 
-    fn is_second(text: &str, line: usize) -> bool {
+    fn is_second_definition(text: &str, line: usize) -> bool {
         second_definition(
             &quote!(
                 pub struct Cart {
@@ -71,17 +71,21 @@ mod tests {
     }
 
     #[test]
-    fn the_second_of_one_scope_is_found() {
+    fn duplicate_names_in_one_scope_are_found() {
         let one = "#[mechanism]\nstruct Cart { mass: f64 }\n";
         let twice = format!("{one}{one}");
-        assert!(!is_second(one, 1) && !is_second(&twice, 1) && is_second(&twice, 3));
+        assert!(
+            !is_second_definition(one, 1)
+                && !is_second_definition(&twice, 1)
+                && is_second_definition(&twice, 3)
+        );
         for scope in [format!("mod carts {{\n{twice}}}"), format!("fn main() {{\n{twice}}}")] {
-            assert!(!is_second(&scope, 2) && is_second(&scope, 4), "{scope}");
+            assert!(!is_second_definition(&scope, 2) && is_second_definition(&scope, 4), "{scope}");
         }
     }
 
     #[test]
-    fn others_are_not() {
+    fn equal_names_in_different_scopes_are_accepted() {
         let one = "#[mechanism]\nstruct Cart { mass: f64 }\n";
         for other in [
             format!("{one}mod more {{\n{one}}}"),
@@ -89,7 +93,7 @@ mod tests {
             format!("{one}struct Carts;\nstruct Carts;\n"),
             format!("// struct Cart\n{one}"),
         ] {
-            assert!((1..8).all(|line| !is_second(&other, line)), "{other}");
+            assert!((1..8).all(|line| !is_second_definition(&other, line)), "{other}");
         }
     }
 }

@@ -18,7 +18,7 @@ use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
 use syn::{Attribute, Ident, LitStr, Meta, Token};
 
-/// Names of all attributes of the language.
+/// Names of all attributes of the language for fields.
 pub const ATTRIBUTES: [&str; 17] = [
     "body",
     "particle",
@@ -39,7 +39,7 @@ pub const ATTRIBUTES: [&str; 17] = [
     "unit",
 ];
 
-/// Name of the attribute of outputs.
+/// Name of the attribute that marks outputs.
 const OUTPUT: &str = "output";
 
 /// Numeric types of Rust that parameters cannot have.
@@ -47,7 +47,7 @@ const RUST_NUMBERS: [&str; 12] =
     ["i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
 
 /// Reports a field whose type is neither a parameter's nor an element's.
-pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut Diagnostics) {
+pub fn report_unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut Diagnostics) {
     if RUST_NUMBERS.contains(&kind) {
         cx.report_error(place, format!("the parameter `{}` cannot have the type `{kind}`", field.text))
             .add_help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
@@ -102,7 +102,7 @@ pub fn read_element(
 ) {
     let kind_name = kind.to_string();
     let Some(element) = ElementKind::of_name(&kind_name) else {
-        unknown_type(name, &kind_name, kind.span(), cx);
+        report_unknown_type(name, &kind_name, kind.span(), cx);
         return;
     };
     let expected = element.element_attributes();
@@ -110,7 +110,7 @@ pub fn read_element(
     let word = given.map(attribute_name).or(expected.first().map(ToString::to_string));
     let arguments = match &word {
         Some(word) => attribute_arguments(name, (&kind_name, element), word, attributes, cx),
-        None => no_arguments(name, &kind_name, attributes, cx),
+        None => empty_arguments(name, &kind_name, attributes, cx),
     };
     let Some(arguments) = arguments else { return };
     let mut arguments = arguments.with_owner(name);
@@ -127,23 +127,23 @@ pub fn read_element(
             description.actions.extend(action);
         }
         ElementKind::Other(other) => {
-            read_other(name, other, word.as_deref(), &mut arguments, description, cx);
+            read_other_element(name, other, word.as_deref(), &mut arguments, description, cx);
         }
     }
 }
 
-/// Reads the rate of a state of first order.
+/// Reads the rate of a first-order state from its attributes.
 pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
     let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
     let mut arguments = arguments.with_owner(name);
     let keys = &OtherKind::State.argument_names();
-    let rate = arguments.need_expr("rate", "(command - level) / lag", "state", keys, cx);
+    let rate = arguments.require_expression("rate", "(command - level) / lag", "state", keys, cx);
     arguments.report_remaining_arguments("a State", keys, cx);
     rate
 }
 
-/// Returns whether an attribute has one of these names.
+/// Returns whether the name of an attribute is in a list.
 pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
     attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
 }
@@ -170,7 +170,7 @@ pub fn is_conditional(attribute: &Attribute) -> bool {
     }
 }
 
-/// Reads the unit in `#[unit(…)]`, as an expression.
+/// Reads the unit in the attribute `#[unit(…)]` as an expression.
 pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
     let tokens = match &attribute.meta {
         Meta::List(list) if !list.tokens.is_empty() => list.tokens.clone(),
@@ -218,13 +218,13 @@ fn attribute_arguments(
                 cx.report_error(span, format!("`{}` has a second `#[{expected}]`", name.text))
                     .add_help("write all arguments in one attribute");
             } else {
-                found = Some(Arguments::of_attribute(attribute, cx));
+                found = Some(Arguments::parse_attribute_arguments(attribute, cx));
             }
         } else if ATTRIBUTES.contains(&word.as_str()) {
             cx.report_error(span, format!("a `{kind}` has no `#[{word}]`"))
                 .add_help(format!("expected `#[{expected}(…)]`"));
             return None;
-        } else if !check_foreign(&word, span, (kind, element.element_attributes()), cx) {
+        } else if !check_foreign_attribute(&word, span, (kind, element.element_attributes()), cx) {
             return None;
         }
     }
@@ -237,7 +237,12 @@ fn attribute_arguments(
 
 /// Checks an attribute, and reports it if it belongs neither to the language nor to Rust. Returns false after
 /// an unknown attribute, because it is most likely the required one misspelt.
-fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut Diagnostics) -> bool {
+fn check_foreign_attribute(
+    word: &str,
+    span: Span,
+    (kind, own): (&str, &[&str]),
+    cx: &mut Diagnostics,
+) -> bool {
     match word {
         "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,
         "cfg" | "cfg_attr" => {
@@ -300,19 +305,19 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
 
 fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Particle> {
     let keys = ["mass", "at"];
-    let mass = arguments.need_expr("mass", "m", "particle", &keys, cx);
+    let mass = arguments.require_expression("mass", "m", "particle", &keys, cx);
     let at = arguments.take_expr("at", cx);
     arguments.report_remaining_arguments("a Particle", &keys, cx);
     Some(Particle { name: name.clone(), mass: mass?, at })
 }
 
-/// Returns the name of an attribute.
+/// Returns the name of an attribute as text.
 fn attribute_name(attribute: &Attribute) -> String {
     attribute.path().get_ident().map_or_else(String::new, Ident::to_string)
 }
 
 /// Returns empty arguments for an element without an attribute, and reports attributes of the language.
-fn no_arguments(
+fn empty_arguments(
     name: &Name,
     kind: &str,
     attributes: &[Attribute],
@@ -329,7 +334,7 @@ fn no_arguments(
     }
     for attribute in attributes {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        if !check_foreign(&attribute_name(attribute), span, (kind, &[]), cx) {
+        if !check_foreign_attribute(&attribute_name(attribute), span, (kind, &[]), cx) {
             return None;
         }
     }
@@ -337,7 +342,7 @@ fn no_arguments(
 }
 
 /// Reads frames, points, coordinates, inputs, definitions, energies, limits, constraints and contacts.
-fn read_other(
+fn read_other_element(
     name: &Name,
     kind: OtherKind,
     attribute: Option<&str>,
@@ -353,7 +358,7 @@ fn read_other(
         }
         OtherKind::Input => description.inputs.push(name),
         OtherKind::Frame => {
-            let mut plain = arguments.take_plain().into_iter();
+            let mut plain = arguments.take_positional_arguments().into_iter();
             match plain.next() {
                 Some(start) => {
                     description.frames.push(Frame { name, start, rotations: plain.collect() });
@@ -452,7 +457,7 @@ fn read_expression(
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Expr> {
-    let mut plain = arguments.take_plain();
+    let mut plain = arguments.take_positional_arguments();
     let value = plain.pop();
     let word = attribute.unwrap_or("define");
     if !plain.is_empty() {

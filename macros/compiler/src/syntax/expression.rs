@@ -11,25 +11,25 @@ use syn::parse::discouraged::Speculative;
 use syn::parse::{ParseStream, Parser};
 use syn::{Ident, Lit, LitStr, Token, braced, bracketed, parenthesized, token};
 
-/// Maximum length of a chain of operators or members.
+/// Maximum length of a chain of operators or member accesses in an expression.
 const MAX_LENGTH: usize = 400;
 
 const PIECEWISE_HELP: &str =
     "a piecewise law is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
-/// Parsed expression with its size.
-struct Parsed(Expr, Size);
+/// Parsed expression with its size, for the limit on nesting.
+struct Parsed(Expr, ExpressionSize);
 
 /// Size of an expression, whose bounds limit the recursion of every traversal.
 #[derive(Clone, Copy, Default)]
-struct Size {
+struct ExpressionSize {
     /// Nesting of operands, arguments and pieces; left operands of operators are not nested.
     depth: usize,
     /// Length of the longest path of operators, members and calls.
     length: usize,
 }
 
-impl Size {
+impl ExpressionSize {
     const ONE: Self = Self { depth: 1, length: 1 };
 
     fn max(self, other: Self) -> Self {
@@ -47,22 +47,22 @@ impl Size {
     }
 }
 
-/// Parses one expression.
+/// Parses one expression of the language.
 pub fn parse_expr(input: ParseStream<'_>) -> syn::Result<Expr> {
     parse_sum(input).map(|p| p.0)
 }
 
-/// Parses a name, including keywords.
+/// Parses a name of the language, which may be a keyword of Rust.
 pub fn parse_name(input: ParseStream<'_>) -> syn::Result<Name> {
     Ident::parse_any(input).map(|ident| name_from_identifier(&ident))
 }
 
-/// Converts an identifier to a name.
+/// Converts an identifier token to a name with its span.
 pub fn name_from_identifier(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
 
-fn check_expression_size(kind: ExprKind, place: Place, size: Size) -> syn::Result<Parsed> {
+fn check_expression_size(kind: ExprKind, place: Place, size: ExpressionSize) -> syn::Result<Parsed> {
     let message = if size.depth > guard::MAX_DEPTH {
         "this expression is nested too deeply"
     } else if size.length > MAX_LENGTH {
@@ -175,7 +175,7 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
 
 fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(token::Group) {
-        return parse_fragment(input);
+        return parse_macro_fragment(input);
     }
     if input.peek(Lit) {
         return parse_number(input);
@@ -199,7 +199,7 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         return check_expression_size(ExprKind::Array(items), place, size.size_of_nested());
     }
     if input.peek(Token![if]) {
-        return parse_pieces(input);
+        return parse_if_expression(input);
     }
     let keyword = input.peek(Token![match]) || input.peek(Token![let]);
     if input.peek(Ident::peek_any) && !keyword {
@@ -213,7 +213,7 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
                 size.size_of_nested(),
             );
         }
-        return check_expression_size(ExprKind::Name(name.text), place, Size::ONE);
+        return check_expression_size(ExprKind::Name(name.text), place, ExpressionSize::ONE);
     }
     Err(missing_expression_error(input))
 }
@@ -230,7 +230,7 @@ struct Branch {
 /// Parses `if a < b { below } else { above }` into a call of `IF`. Its arguments are the operands of the
 /// comparison, the piece below and the piece above the border; `a > b` swaps the pieces. Further branches
 /// `else if` are nested in the last argument.
-fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_if_expression(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut branches = vec![parse_branch(input)?];
     let (mut last, end) = loop {
         if !input.peek(Token![else]) {
@@ -259,7 +259,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
     Ok(last)
 }
 
-/// Parses `if a < b { piece }`.
+/// Parses the branch `if a < b { piece }` of a piecewise expression.
 fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
     let keyword = input.parse::<Token![if]>()?.span;
     let left = parse_operand(keyword, input, parse_sum)?;
@@ -300,7 +300,7 @@ fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
 }
 
 /// Parses an expression that a macro of the user passes on: one operand without parentheses.
-fn parse_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_macro_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let TokenTree::Group(group) = input.parse()? else { return Err(missing_expression_error(input)) };
     let parse_whole_fragment = |inner: ParseStream<'_>| {
         let parsed = parse_sum(inner)?;
@@ -334,7 +334,7 @@ fn missing_expression_error(input: ParseStream<'_>) -> syn::Error {
     syn_error(input.span(), message, help)
 }
 
-/// Error for an unexpected token after an expression.
+/// Returns the error for an unexpected token after an expression.
 pub fn unexpected_token_error(input: ParseStream<'_>) -> syn::Error {
     let message = "expected `,` or an operator";
     let help = if input.peek(Token![->]) {
@@ -378,7 +378,11 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         Lit::Float(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         // Words; the error at their use is more helpful.
         Lit::Bool(b) => {
-            return check_expression_size(ExprKind::Name(b.value.to_string()), b.span.into(), Size::ONE);
+            return check_expression_size(
+                ExprKind::Name(b.value.to_string()),
+                b.span.into(),
+                ExpressionSize::ONE,
+            );
         }
         Lit::Str(_) | Lit::Char(_) => {
             let message = "expected an expression, found a string";
@@ -396,14 +400,14 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
     }
     match digits.parse::<f64>() {
         Ok(value) if value.is_finite() => {
-            check_expression_size(ExprKind::Number(value), literal.span().into(), Size::ONE)
+            check_expression_size(ExprKind::Number(value), literal.span().into(), ExpressionSize::ONE)
         }
         _ => Err(syn_error(literal.span(), "this number is too large", "the largest is about 1e308")),
     }
 }
 
 /// Parses expressions in parentheses; returns them with their common size and the closing parenthesis.
-fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span)> {
+fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSize, Span)> {
     let content;
     let close = parenthesized!(content in input).span.close();
     let (items, size, _) = parse_list(&content)?;
@@ -411,7 +415,7 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span
 }
 
 /// Parses the arguments of `hull(points)` or `hull("path")` with their size, and the closing parenthesis.
-fn parse_hull(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span)> {
+fn parse_hull(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSize, Span)> {
     let ahead = input.fork();
     let content;
     let close = parenthesized!(content in ahead).span.close();
@@ -424,13 +428,13 @@ fn parse_hull(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span)> {
     }
     input.advance_to(&ahead);
     let path = Expr { kind: ExprKind::Text(path.value()), place: path.span().into() };
-    Ok((vec![path], Size::ONE, close))
+    Ok((vec![path], ExpressionSize::ONE, close))
 }
 
 /// Parses comma-separated expressions to the end; returns their common size, and whether the last one is
 /// followed by a comma.
-fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, bool)> {
-    let (mut items, mut size, mut trailing) = (Vec::new(), Size::default(), false);
+fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSize, bool)> {
+    let (mut items, mut size, mut trailing) = (Vec::new(), ExpressionSize::default(), false);
     while !content.is_empty() {
         let item = parse_sum(content)?;
         size = size.max(item.1);

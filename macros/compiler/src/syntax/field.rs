@@ -1,4 +1,4 @@
-//! Fields of a mechanism: parameters, tables, states and elements.
+//! Parsing of the struct's fields: parameters, tables, states and elements.
 
 use super::expression::name_from_identifier;
 use super::mechanism::Shell;
@@ -10,7 +10,7 @@ use crate::diag::{Diagnostics, Place};
 use syn::spanned::Spanned;
 use syn::{Field, Ident};
 
-/// Reads a field of the struct.
+/// Reads a field of the struct as a parameter, table, state or element.
 pub fn read_field(
     mut field: Field,
     generic: Option<&str>,
@@ -31,7 +31,7 @@ pub fn read_field(
         return;
     }
     let Some(kind) = type_name(&field.ty) else {
-        element::unknown_type(&field_name, "", span_of(&field.ty), cx);
+        element::report_unknown_type(&field_name, "", span_of(&field.ty), cx);
         return;
     };
     let found = match kind.to_string().as_str() {
@@ -83,11 +83,11 @@ pub fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<
     names.extend(description.points.iter().map(|p| &p.name));
     names.extend(description.definitions.iter().chain(&description.outputs).map(|d| &d.name));
     names.extend(description.energies.iter().chain(&description.dissipations).map(|(name, _)| name));
-    check_distinct(&names, cx)
+    report_duplicate_names(&names, cx)
 }
 
 /// Reports every duplicate name at its second occurrence, and returns the duplicates.
-pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) -> Vec<String> {
+pub fn report_duplicate_names(names: &[&Name], cx: &mut Diagnostics) -> Vec<String> {
     let mut sorted: Vec<(usize, &&Name)> = names.iter().enumerate().collect();
     sorted.sort_by(|a, b| a.1.text.cmp(&b.1.text).then(a.0.cmp(&b.0)));
     let mut twice = Vec::new();

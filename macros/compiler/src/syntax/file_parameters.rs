@@ -11,7 +11,7 @@ use syn::{Ident, LitStr, Token, bracketed, parenthesized, token};
 /// Values of a file, of one kind, that become parameters of the mechanism.
 #[derive(Clone, Debug)]
 pub struct FileParameters {
-    /// Kind of the values, as written.
+    /// Kind of the file values that become parameters, as written.
     pub word: Name,
     /// Names of links or joints; all of them if absent.
     pub of: Option<Vec<Name>>,
@@ -35,24 +35,24 @@ pub enum FileFieldKind {
     Inertial,
     /// `Placement` of the runtime: the pose of a joint on its parent.
     Placement,
-    /// Scalar number.
+    /// The field is a scalar number.
     Number,
 }
 
-/// A field that holds values of a file.
+/// Struct field that holds values of the robot file.
 #[derive(Clone, Debug)]
 pub struct FileField {
-    /// Name of the field in Rust.
+    /// Name of the generated field in Rust.
     pub ident: String,
-    /// Type of the field.
+    /// Type of the generated field.
     pub kind: FileFieldKind,
     /// Name of the link or joint to which the field belongs.
     pub of: String,
-    /// Documentation of the field.
+    /// Documentation of the generated field.
     pub about: String,
-    /// Values in the file, in the order of [`member_accesses`](Self::member_accesses).
+    /// Values in the robot file, in the order of [`member_accesses`](Self::member_accesses).
     pub values: Vec<f64>,
-    /// Units of the values, in the same order.
+    /// Units of the values, in the order of the values.
     pub units: Vec<&'static str>,
 }
 
@@ -73,16 +73,16 @@ impl FileField {
 /// Parses one kind of file values, or a list of kinds.
 pub fn parse(input: ParseStream<'_>) -> syn::Result<Vec<FileParameters>> {
     if !input.peek(token::Bracket) {
-        return Ok(vec![parse_one(input)?]);
+        return Ok(vec![parse_file_parameters(input)?]);
     }
     let list;
     bracketed!(list in input);
-    Ok(Punctuated::<FileParameters, Token![,]>::parse_terminated_with(&list, parse_one)?
+    Ok(Punctuated::<FileParameters, Token![,]>::parse_terminated_with(&list, parse_file_parameters)?
         .into_iter()
         .collect())
 }
 
-fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
+fn parse_file_parameters(input: ParseStream<'_>) -> syn::Result<FileParameters> {
     if input.peek(LitStr) {
         let text: LitStr = input.parse()?;
         let help = format!("write `{INERTIAL}(\"{}\")` for the mass properties of a link", text.value());

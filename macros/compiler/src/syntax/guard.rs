@@ -11,24 +11,24 @@ pub const MAX_DEPTH: usize = 48;
 const MAX_TYPE_TOKENS: usize = 100;
 /// Maximum number of digits of a number in the source.
 const MAX_DIGITS: usize = 1000;
-/// Maximum number of tokens in one struct.
+/// Maximum number of tokens in one struct with the attribute.
 const MAX_TOKENS: usize = 400_000;
 /// Stack that an expansion may use, in bytes: a quarter of the stack of rustc's threads. A nesting level of
 /// the unoptimised compiler takes at most 32 KiB of it; a test expands the deepest input of every kind within
 /// this stack.
 pub const MAX_STACK: usize = MAX_DEPTH * (32 << 10) + (512 << 10);
 
-/// An open bracket during the traversal of tokens.
+/// Open bracket in the traversal of a token stream.
 struct OpenBracket {
-    /// Tokens that have not been visited.
+    /// Tokens in the bracket that have not been visited.
     tokens: proc_macro2::token_stream::IntoIter,
     /// Number of brackets and prefix operators that enclose the tokens.
     depth: usize,
-    /// Number of type tokens that enclose the tokens.
+    /// Number of type tokens that enclose the bracket.
     outer: usize,
     /// Whether types are possible; false within attributes, whose expressions have a separate parser.
     has_types: bool,
-    /// Whether the previous token is `#`.
+    /// Whether the previous token is `#`, so that a bracket begins an attribute.
     after_hash: bool,
 }
 
@@ -40,16 +40,16 @@ impl OpenBracket {
 
 /// Reports an attribute's arguments that are nested too deeply or have too many tokens. Returns whether
 /// parsing may continue.
-pub fn check_arguments(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_tokens(OpenBracket::outermost_bracket(tokens, false), cx)
+pub fn check_argument_size(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
+    check_token_limits(OpenBracket::outermost_bracket(tokens, false), cx)
 }
 
 /// Reports an item whose tokens are nested too deeply or are too many. Returns whether parsing may continue.
-pub fn check_item(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_tokens(OpenBracket::outermost_bracket(tokens, true), cx)
+pub fn check_item_size(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
+    check_token_limits(OpenBracket::outermost_bracket(tokens, true), cx)
 }
 
-fn check_tokens(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {
+fn check_token_limits(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {
     let mut count = 0;
     let mut angle = 0_usize;
     let mut run = 0_usize;

@@ -1,11 +1,11 @@
-//! Parsing of joints: their ends, axes and pitch.
+//! Parsing of joint declarations: ends, axes and pitch.
 
 use super::arguments::Arguments;
 use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
 use crate::diag::Diagnostics;
 use crate::language::{JointKind, Method};
 
-/// Reads the declaration of a joint.
+/// Reads the declaration of a joint from its attribute.
 pub fn read_joint(
     name: &Name,
     kind: JointKind,
@@ -20,7 +20,7 @@ pub fn read_joint(
     let branch = arguments.take_expr("branch", cx);
     let allowed = kind.row().arguments;
     for key in ["about", "along", "pitch", "lead"] {
-        if let Some(place) = arguments.taken_place(key)
+        if let Some(place) = arguments.place_of_taken_key(key)
             && !allowed.contains(&key)
         {
             let list: Vec<String> = allowed.iter().map(|k| format!("`{k}`")).collect();

@@ -6,17 +6,17 @@ use super::{Expr, ExprKind, Name, WrittenArguments};
 use crate::diag::Diagnostics;
 use crate::language::{Callable, Key, OtherKind, Relation};
 
-/// Arguments that the row of an element lists.
+/// Arguments of an element that its row in the table lists.
 pub struct Keys<'a> {
-    /// All arguments that the row of the element lists.
+    /// All arguments that the element's row lists.
     pub all: &'a [Key],
     /// Arguments that give alternative laws; one of them is given.
     pub laws: &'a [Key],
-    /// Arguments that must be given, with an example each.
+    /// Arguments that the element requires, with an example value for each.
     pub required: &'a [(Key, &'a str)],
-    /// Attribute of the element.
+    /// Attribute in which the arguments are written.
     pub attribute: &'a str,
-    /// Names of all arguments of the element.
+    /// Names of all arguments that the element can have.
     pub names: &'a [&'a str],
 }
 
@@ -42,7 +42,8 @@ impl<'a> Keys<'a> {
             let has_law = self.laws.contains(key) && given.iter().any(|(known, _)| self.laws.contains(known));
             let value = match self.required.iter().find(|(known, _)| known == key) {
                 Some((_, example)) if !has_law => {
-                    let value = arguments.need_expr(key.name(), example, self.attribute, self.names, cx);
+                    let value =
+                        arguments.require_expression(key.name(), example, self.attribute, self.names, cx);
                     is_complete &= value.is_some();
                     value
                 }
@@ -79,8 +80,9 @@ pub fn check_relations(
     for relation in relations {
         let Some(e) = given.get(relation.key) else { continue };
         let has_other = relation.others.iter().any(|key| given.get(*key).is_some());
-        let is_known = |known: &&Relation| known.key == relation.key || known.message == relation.message;
-        if has_other != relation.needs && !reported.iter().any(is_known) {
+        let is_reported_relation =
+            |known: &&Relation| known.key == relation.key || known.message == relation.message;
+        if has_other != relation.needs && !reported.iter().any(is_reported_relation) {
             cx.report_error(e.place.clone(), relation.message.replace("NAME", &name.text))
                 .add_help(relation.help);
             reported.push(relation);

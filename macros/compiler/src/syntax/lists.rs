@@ -11,22 +11,22 @@ use syn::{BinOp, Expr, ExprLit, Field, Fields, Lit, Meta, Type, UnOp};
 
 /// Name of the index of a list's element in its attributes.
 const INDEX: &str = "i";
-/// Maximum number of elements of all lists together.
+/// Maximum number of elements of all lists of a struct together.
 const MAX_LIST_ELEMENTS: usize = 4096;
-/// Maximum number of tokens after expansion.
+/// Maximum number of tokens of a struct after expansion of its lists.
 const MAX_EXPANDED_TOKENS: usize = 1_000_000;
 /// Maximum number of tokens in brackets after the name of a list.
 const MAX_INDEX_TOKENS: usize = 64;
 
-/// Lists of a struct, with their numbers of elements.
+/// Lists of elements in a struct, with their lengths.
 pub struct Lists {
     lists: Vec<(String, usize)>,
     tokens: usize,
 }
 
 impl Lists {
-    /// Expands the lists among the fields, and returns them.
-    pub fn expand(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
+    /// Expands the lists among the struct's fields, and returns their names and lengths.
+    pub fn expand_lists(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
         let mut lists = Lists { lists: Vec::new(), tokens: 0 };
         let Fields::Named(named_fields) = fields else { return lists };
         let counts: Vec<Option<usize>> =
@@ -34,7 +34,7 @@ impl Lists {
         if lists.lists.is_empty() {
             return lists;
         }
-        cx.count_alike(lists.lists.iter().map(|(name, _)| name.clone()).collect());
+        cx.set_list_names(lists.lists.iter().map(|(name, _)| name.clone()).collect());
         lists.check_names(named_fields.named.iter(), cx);
         let fields_before = std::mem::take(&mut named_fields.named);
         for (mut field, count) in fields_before.into_iter().zip(counts) {
@@ -83,7 +83,7 @@ impl Lists {
         Some(count)
     }
 
-    /// Reports a field with the name of the index.
+    /// Reports a field that has the name of the list index.
     fn check_names<'a>(&self, mut fields: impl Iterator<Item = &'a Field>, cx: &mut Diagnostics) {
         let other = fields.find(|field| field.ident.as_ref().is_some_and(|ident| ident == INDEX));
         if let Some(ident) = other.and_then(|field| field.ident.as_ref()) {
@@ -136,7 +136,7 @@ impl Lists {
                 }
                 break;
             }
-            let after_dot = std::mem::replace(&mut member, is_punct(&token, '.'));
+            let after_dot = std::mem::replace(&mut member, is_punctuation(&token, '.'));
             match token {
                 TokenTree::Ident(word) if !after_dot => {
                     let index_of = match tokens.peek() {
@@ -145,7 +145,7 @@ impl Lists {
                         }
                         _ => None,
                     };
-                    let ends = tokens.peek().is_none_or(|next| !is_punct(next, '='));
+                    let ends = tokens.peek().is_none_or(|next| !is_punctuation(next, '='));
                     let (token, used) = self.replace_word(&word, index_of.as_ref(), ends, index, cx);
                     written.push(token);
                     if used {
@@ -239,12 +239,12 @@ impl Lists {
     }
 }
 
-/// Returns the name of an element: `leg_1` of `leg`.
+/// Returns the name of a list element, such as `leg_1` of the list `leg`.
 fn element_name(list: &str, k: usize, span: Span) -> Ident {
     Ident::new(&format!("{list}_{k}"), span)
 }
 
-fn is_punct(token: &TokenTree, sign: char) -> bool {
+fn is_punctuation(token: &TokenTree, sign: char) -> bool {
     matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign)
 }
 

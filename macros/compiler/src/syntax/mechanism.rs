@@ -9,21 +9,21 @@ use syn::{Attribute, Field, Ident, Visibility};
 
 /// Parsed struct with the attribute `#[mechanism]`.
 pub struct Mechanism {
-    /// Description of the mechanism.
+    /// Description of the mechanism: its declared elements.
     pub description: Description,
-    /// Struct without the fields that are elements.
+    /// Struct without the fields that declare elements.
     pub shell: Shell,
-    /// File to import, if there is one.
+    /// Options of the robot file to import, if there is one.
     pub file: Option<FileOptions>,
-    /// Optional functions to generate.
+    /// Optional functions that are generated on request.
     pub requests: Requests,
-    /// Statement of which fields could be read.
+    /// Record of which fields could be read in spite of errors.
     pub reading: Reading,
 }
 
-/// Struct without the fields that are elements.
+/// Generated struct: the declared one without the fields that are elements.
 pub struct Shell {
-    /// Documentation and other attributes of the struct.
+    /// Documentation and other attributes that remain on the struct.
     pub attributes: Vec<Attribute>,
     /// Visibility of the struct.
     pub visibility: Visibility,
@@ -33,11 +33,11 @@ pub struct Shell {
     pub generics: syn::Generics,
     /// Fields that remain in the struct as parameters.
     pub parameters: Vec<Field>,
-    /// Fields that are tables, which also remain.
+    /// Fields that are interpolation tables, which also remain in the struct.
     pub tables: Vec<Field>,
-    /// Fields that hold values of a file.
+    /// Fields of the struct that hold values of the robot file.
     pub file_fields: Vec<FileField>,
-    /// Name and type of the removed fields, for editors.
+    /// Name and type of each removed field, for editors.
     pub elements: Vec<(Ident, Ident)>,
     /// Doc comments of fields: name of the field, first paragraph.
     pub notes: Vec<(String, String)>,
@@ -53,13 +53,13 @@ impl Shell {
         self.generics.params.is_empty()
     }
 
-    /// Returns the lines of the documentation comments.
+    /// Returns the lines of the struct's documentation comments.
     pub fn documentation_lines(&self) -> String {
         let lines: Vec<String> = doc_lines(&self.attributes).map(|line| line.trim().to_string()).collect();
         lines.join("\n").trim().to_string()
     }
 
-    /// Returns the names of all tables.
+    /// Returns the names of all interpolation tables.
     pub fn table_names(&self) -> Vec<String> {
         self.tables.iter().filter_map(|field| field.ident.as_ref().map(ToString::to_string)).collect()
     }
@@ -71,7 +71,7 @@ impl Shell {
     }
 }
 
-/// Name of the fixed frame.
+/// Name of the ground, the fixed frame.
 pub const GROUND: &str = "ground";
 
 /// Name of the joint of a file's root, which is unnamed in files; a number is appended if the name is taken.
@@ -80,30 +80,30 @@ pub const ROOT_JOINT: &str = "root_joint";
 /// Option for the treatment of the limits of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitOption {
-    /// Limits of the file are bounds for controllers.
+    /// Limits of the robot file are bounds for controllers.
     Honour,
-    /// Limits of the file are not read.
+    /// Limits of the robot file are not read.
     Ignore,
     /// Limits of the file are bounds for controllers and also stops.
     Stops,
 }
 
-/// File format of robots.
+/// File format from which robots are imported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
-    /// URDF, imported by `urdf = "…"`.
+    /// URDF, imported by the option `urdf = "…"`.
     Urdf,
-    /// MJCF, imported by `mjcf = "…"`.
+    /// MJCF, imported by the option `mjcf = "…"`.
     Mjcf,
-    /// SDF, imported by `sdf = "…"`.
+    /// SDF, imported by the option `sdf = "…"`.
     Sdf,
 }
 
 impl FileFormat {
-    /// All file formats of robots.
+    /// All file formats from which robots are imported.
     pub const ALL: [FileFormat; 3] = [FileFormat::Urdf, FileFormat::Mjcf, FileFormat::Sdf];
 
-    /// Returns the option of `#[mechanism]` for the format.
+    /// Returns the option of `#[mechanism]` that imports a file of the format.
     pub fn format_option(self) -> &'static str {
         match self {
             FileFormat::Urdf => "urdf",
@@ -112,7 +112,7 @@ impl FileFormat {
         }
     }
 
-    /// Returns the format's term for a body.
+    /// Returns the term of the format for a body, such as `link`.
     pub fn body_term(self) -> &'static str {
         match self {
             FileFormat::Urdf | FileFormat::Sdf => "link",
@@ -120,7 +120,7 @@ impl FileFormat {
         }
     }
 
-    /// Returns the name of the format.
+    /// Returns the name of the file format.
     pub fn format_name(self) -> &'static str {
         match self {
             FileFormat::Urdf => "URDF",
@@ -138,7 +138,7 @@ impl FileFormat {
         }
     }
 
-    /// Returns the file extensions of this format.
+    /// Returns the file extensions of the format.
     pub fn file_extensions(self) -> &'static [&'static str] {
         match self {
             FileFormat::Urdf => &["urdf", "xml"],
@@ -155,7 +155,7 @@ pub enum InputOption {
     Joints,
     /// One input for each motor that the file declares.
     Actuators,
-    /// No inputs.
+    /// The mechanism has no inputs.
     None,
 }
 
@@ -178,11 +178,11 @@ pub struct FileOptions {
     pub inertias: Inertias,
     /// Option for the inputs of the mechanism.
     pub inputs: InputOption,
-    /// Names of joints that are fixed at coordinate zero.
+    /// Names of the joints that are locked at the coordinate zero.
     pub lock: Vec<Name>,
     /// Tolerance within which frames and axes of the file are rounded, rad and m.
     pub snap: Option<f64>,
-    /// Values of the file that become parameters.
+    /// Values of the robot file that become parameters.
     pub parameters: Vec<FileParameters>,
     /// Whether contacts of the file are included.
     pub contacts: bool,

@@ -10,7 +10,7 @@ use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, Scal
 use crate::diag::{Diagnostics, Place, nearest_candidate, one_of};
 use proc_macro2::{Span, TokenStream};
 
-/// Maximum of the tolerance `snap`, rad and m.
+/// Maximum tolerance of the option `snap`, rad and m.
 const LARGEST_SNAP: f64 = 0.01;
 
 /// Options of `#[mechanism(…)]` that take a value.
@@ -259,7 +259,7 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
     }
 }
 
-/// Takes the options of [`Requests`] from the arguments.
+/// Takes the options that request functions ([`Requests`]) from the arguments.
 fn take_requests(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
     REQUESTS.iter().filter_map(|word| Some((*word, arguments.take_option(word)?))).collect()
 }
@@ -272,8 +272,8 @@ fn read_requests(
     description: &Description,
     cx: &mut Diagnostics,
 ) -> Requests {
-    let is_asked = |word: &str| requested.iter().any(|(known, _)| *known == word);
-    let requests = Requests::from_options(is_asked);
+    let is_requested_option = |word: &str| requested.iter().any(|(known, _)| *known == word);
+    let requests = Requests::from_options(is_requested_option);
     for (word, place) in requested {
         let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
@@ -284,7 +284,7 @@ fn read_requests(
             .add_help(format!("remove `{word}`: all numbers are known at compile time"));
         }
     }
-    for e in arguments.take_plain() {
+    for e in arguments.take_positional_arguments() {
         match e.as_name() {
             None => {
                 let inside = match &e.kind {

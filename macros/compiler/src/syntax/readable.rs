@@ -8,7 +8,7 @@ use quote::ToTokens;
 use std::collections::BTreeSet;
 use syn::Field;
 
-/// Options of `#[mechanism]` with which fields are checked.
+/// Options of `#[mechanism]` that the check of individual fields needs.
 const GLOBAL_OPTIONS: [&str; 2] = ["urdf", "inertia"];
 
 /// Identifiers that occur in the attributes of one field of a mechanism.
@@ -41,20 +41,20 @@ impl Reading {
         self.fields.extend(name.map(|name| FieldWords { name, words, body, has_errors: false }));
     }
 
-    /// Marks the whole mechanism as unreadable.
+    /// Marks the whole mechanism as unreadable after a syntax error.
     pub fn mark_unreadable(&mut self) {
         self.unreadable = true;
     }
 
-    /// Marks the field recorded last as unreadable.
+    /// Marks the most recently recorded field as unreadable.
     pub fn mark_last_field(&mut self) {
         if let Some(field) = self.fields.last_mut() {
             field.has_errors = true;
         }
     }
 
-    /// Marks fields with an ambiguous name as unreadable.
-    pub fn mark_name(&mut self, name: &str) {
+    /// Marks the fields with this name as unreadable, since the name is ambiguous.
+    pub fn mark_fields_named(&mut self, name: &str) {
         for field in self.fields.iter_mut().filter(|field| field.name.text == name) {
             (field.has_errors, field.body) = (true, false);
         }

@@ -1,6 +1,6 @@
 //! Optional functions of a mechanism, requested by options of the attribute.
 
-/// Equations printed in the documentation: `equations = word`.
+/// Equations of motion printed in the documentation, by the option `equations = word`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Printed {
     /// Prints Lagrange's equations if they are short enough to be readable.
@@ -53,7 +53,7 @@ macro_rules! words {
         }
 
         impl Word {
-            /// All options that request functions.
+            /// All options of `#[mechanism]` that request functions.
             pub const ALL: [Word; [$(stringify!($word)),+].len()] = [$(Word::$variant),+];
 
             /// Returns the trait of the runtime that reports a missing option.
@@ -75,7 +75,7 @@ macro_rules! words {
             pub file_parameters: bool,
             /// Whether mass properties of links are among these parameters.
             pub file_inertials: bool,
-            /// Whether only instructions of the compilation target are used.
+            /// Whether code uses only instructions of the compilation target, without dispatch.
             pub target_only: bool,
             /// Whether results have the same bits on every machine, and in C.
             pub reproducible: bool,
@@ -86,7 +86,7 @@ macro_rules! words {
         }
 
         impl Requests {
-            /// Returns whether an option is requested.
+            /// Returns whether the option that requests certain functions is set.
             pub fn has_option(&self, word: Word) -> bool {
                 match word {
                     $(Word::$variant => self.$word,)+
@@ -120,7 +120,7 @@ words! {
     routh: Routh,
     /// Option that requests the conserved quantities of the mechanism.
     conserved: Conserved,
-    /// Dynamics as linear functions of the mass properties.
+    /// Option that requests the dynamics as linear functions of inertial parameters.
     regressor: Regressor,
     /// Option that requests derivatives of the dynamics with respect to the parameters.
     sensitivities: Sensitivities,
@@ -128,7 +128,7 @@ words! {
     packed: Packed,
     /// A second struct with precomputed values that depend only on the parameters.
     prepare: Prepare,
-    /// Functions of several states at once, in SIMD lanes.
+    /// Option that requests functions of several states in SIMD lanes.
     batch: Batch,
     /// Option that requests a drawing of the mechanism.
     drawing: Drawing,

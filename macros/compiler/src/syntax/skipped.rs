@@ -1,14 +1,14 @@
-//! Passes over the model that a user disables.
+//! Option `skip_passes`: passes over the model that a user disables.
 
 use super::ExprKind;
 use super::arguments::Arguments;
 use super::request::Skipped;
 use crate::diag::Diagnostics;
 
-/// Name of the option that lists the skipped passes.
+/// Name of the option that lists passes to skip.
 const KEY: &str = "skip_passes";
 
-/// Passes that the option `skip_passes` accepts.
+/// Names of the passes that the option `skip_passes` accepts.
 const PASSES: [&str; 4] = ["frames", "regroup", "parallel", "limbs"];
 
 /// Takes the option `skip_passes` from the arguments of the attribute.

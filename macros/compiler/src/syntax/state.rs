@@ -46,7 +46,7 @@ fn span_of_path(attribute: &syn::Attribute) -> Span {
 }
 
 /// Sets the types of the fields of states to the scalar type of the mechanism.
-pub fn give_type(description: &Description, shell: &mut Shell) {
+pub fn set_state_types(description: &Description, shell: &mut Shell) {
     for field in &mut shell.parameters {
         let Some(ident) = &field.ident else { continue };
         let text = ident.to_string();

@@ -1,4 +1,4 @@
-//! Fields that are tables: parameters that are functions.
+//! Parsing of fields that are interpolation tables.
 
 use super::mechanism::Shell;
 use super::parameter::{check_parameter_attributes, span_of};

@@ -19,22 +19,22 @@ fn argument_synonyms(kind: &str) -> Words {
     }
 }
 
-/// Name of the attribute where an element is expected.
+/// Phrase for messages about arguments of the attribute `#[mechanism]` itself.
 const ATTRIBUTE: &str = "`#[mechanism]`";
 
 /// Returns the last word of a phrase that names an element, such as `Pin` of `a Pin`.
-fn kind_of(whose: &str) -> &str {
+fn kind_in_phrase(whose: &str) -> &str {
     whose.strip_suffix(" constraint").unwrap_or(whose).rsplit(' ').next().unwrap_or(whose)
 }
 
 /// Returns an example of an element's declaration; `whose` is its type, with or without an article.
 pub fn example_declaration(whose: &str) -> &'static str {
-    ElementKind::of_name(kind_of(whose))
+    ElementKind::of_name(kind_in_phrase(whose))
         .map_or("#[mechanism(gravity = -9.81 * y)]", ElementKind::declaration_example)
 }
 
 /// List of words that users may write by mistake, with their meanings in the language.
-type Entries<'a> = &'a [(&'static str, &'static str)];
+type WordEntries<'a> = &'a [(&'static str, &'static str)];
 
 /// Returns the names that other tools use for functions, with their meanings in the language.
 pub fn function_synonyms() -> Vec<(&'static str, &'static str)> {
@@ -58,23 +58,23 @@ fn normalise_word(word: &str) -> String {
 
 /// Returns the meaning of a word. A single-word meaning must be among the `known` words, unless these are
 /// empty.
-pub fn meaning_of_word(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
+pub fn meaning_of_word(words: WordEntries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
     let key = normalise_word(word);
     let is_applicable_meaning =
         |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
-    let synonyms = |(synonyms, meaning): &&(&str, &str)| {
+    let has_synonym = |(synonyms, meaning): &&(&str, &str)| {
         is_applicable_meaning(meaning) && synonyms.split(' ').any(|one| one == key)
     };
-    words.iter().find(synonyms).map(|(_, meaning)| *meaning)
+    words.iter().find(has_synonym).map(|(_, meaning)| *meaning)
 }
 
 /// Whether a word is an option of `#[mechanism]` without a value.
-pub fn is_request(word: &str) -> bool {
+pub fn is_request_option(word: &str) -> bool {
     super::request::REQUESTS.contains(&word)
 }
 
 /// Adds the meaning of an unknown word as help to an error message. Returns whether the meaning was found.
-pub fn explain_word(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) -> bool {
+pub fn explain_word(diagnostic: &mut Diagnostic, words: WordEntries<'_>, word: &str, known: &[&str]) -> bool {
     match meaning_of_word(words, word, known) {
         Some(meaning) if meaning.contains(' ') => diagnostic.add_help(meaning),
         Some(meaning) => diagnostic.add_help(format!("did you mean `{meaning}`?")),
@@ -84,7 +84,7 @@ pub fn explain_word(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str,
 }
 
 /// Adds the meaning of a word to a message, or the nearest known word, or the list of known words.
-pub fn suggest_meaning(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) {
+pub fn suggest_meaning(diagnostic: &mut Diagnostic, words: WordEntries<'_>, word: &str, known: &[&str]) {
     if !explain_word(diagnostic, words, word, known) {
         diagnostic.suggest_name(word, known.iter().copied());
     }
@@ -106,7 +106,7 @@ pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) 
 /// Returns the help for an argument that an element does not have; `whose` names the element with its
 /// article, such as `a Pin`.
 pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
-    let meaning = meaning_of_word(argument_synonyms(kind_of(whose)), word, known)?;
+    let meaning = meaning_of_word(argument_synonyms(kind_in_phrase(whose)), word, known)?;
     Some(match meaning.contains(' ') {
         true => meaning.replace("NAME", owner),
         false => format!("did you mean `{meaning}`?"),
@@ -194,7 +194,7 @@ impl Expr {
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
 
-    /// Returns whether another expression has the same source text.
+    /// Returns whether another expression would be written with the same text.
     pub fn has_same_text(&self, other: &Expr) -> bool {
         expression_text(self) == expression_text(other)
     }
@@ -224,10 +224,11 @@ fn expression_text(e: &Expr) -> String {
         ExprKind::Call(function, items) => format!("{}({})", function.text, spell_list(items)),
         ExprKind::Neg(inner) => format!("-{}", expression_text(inner)),
         ExprKind::Binary(op, left, right, _) => {
-            let is_sum = |e: &Expr| matches!(e.kind, ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..));
+            let is_sum_expression =
+                |e: &Expr| matches!(e.kind, ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..));
             let product = matches!(op, BinaryOp::Mul | BinaryOp::Div);
             let spell_operand = |e: &Expr, together: bool| match &e.kind {
-                ExprKind::Binary(..) if together || (product && is_sum(e)) => {
+                ExprKind::Binary(..) if together || (product && is_sum_expression(e)) => {
                     format!("({})", expression_text(e))
                 }
                 _ => expression_text(e),
@@ -252,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_stand_as_they_are_looked_up() {
+    fn word_tables_are_sorted_for_lookup() {
         let all = [
             ELEMENTS,
             OPTIONS,
@@ -283,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_are_found_by_their_coordinates() {
+    fn velocity_names_are_found_by_coordinate() {
         assert_eq!(rate_of("hinge_dot", &["hinge"]), Some("hinge"));
         assert_eq!(rate_of("dhinge", &["hinge"]), Some("hinge"));
         assert_eq!(rate_of("theta1dot", &["theta", "theta1"]), Some("theta1"));

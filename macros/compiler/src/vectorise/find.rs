@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Set of isomorphic limbs that are evaluated in SIMD lanes.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// Number of limbs in the group.
+    /// Number of identical limbs in the group.
     pub limbs: usize,
     /// Corresponding links, one per lane, in the order of the first limb. The number of lanes is a power of
     /// two; the last limb fills the lanes beyond the number of limbs.

@@ -15,10 +15,10 @@ pub struct Limbs<'g> {
     /// Vectorised mechanism without passive forces. Its velocity vector `v` has one entry per velocity of the
     /// vectorised mechanism.
     pub model: Model<'g>,
-    /// Joints of the vectorised mechanism.
+    /// Joints of the vectorised mechanism, whose identical limbs are SIMD lanes.
     pub joints: Vec<Joint<'g>>,
     velocities: Vec<Velocity>,
-    /// Location of each velocity of the whole mechanism.
+    /// Location of each velocity of the whole mechanism among those of the vectorised mechanism.
     places: Vec<Location>,
     /// Passive force for each velocity of the vectorised mechanism, in which identical limbs are SIMD lanes.
     passive_forces: Vec<Expr<'g>>,
@@ -29,17 +29,17 @@ pub struct Limbs<'g> {
 pub struct LimbLane {
     /// Index of the first velocity of the limb group, which identifies the group.
     pub group: usize,
-    /// SIMD lane of the limb.
+    /// SIMD lane to which the limb belongs.
     pub lane: usize,
     /// Number of SIMD lanes of the limb group.
     pub width: usize,
 }
 
-/// Corresponding matrix rows of the limbs of one group.
+/// Corresponding matrix rows of the identical limbs of one group.
 pub struct LimbRows {
     /// Index of the first velocity of the limb group, which identifies the group.
     pub group: usize,
-    /// Number of limbs in the group.
+    /// Number of identical limbs in the group.
     pub width: usize,
     /// Indices of the matrix rows that correspond to each other, one per SIMD lane.
     pub rows: Vec<Vec<usize>>,
@@ -63,7 +63,7 @@ impl<'g> Limbs<'g> {
         pair_coordinates(model, &rows, merge);
         let (velocities, places) = pair_velocities(model, joints, &rows)?;
         let mut limbs = Limbs {
-            model: without_forces(model),
+            model: without_passive_forces(model),
             joints: Vec::new(),
             velocities,
             places,
@@ -131,7 +131,7 @@ impl<'g> Limbs<'g> {
         let first = *lanes.first()?;
         let inertias: Vec<Inertia<'g>> = lanes.iter().map(|l| l.inertia).collect();
         let mut motion = first.motion.clone();
-        motion.place_velocities(|v| InV(self.places[v.0].index));
+        motion.renumber_velocities(|v| InV(self.places[v.0].index));
         Some(Link {
             parent,
             placement: first.placement.clone(),
@@ -177,14 +177,14 @@ impl<'g> Limbs<'g> {
         groups
     }
 
-    /// Returns the number of lanes of a velocity.
+    /// Returns the number of SIMD lanes of a velocity of the vectorised mechanism.
     pub fn lane_count_of_velocity(&self, index: usize) -> usize {
         self.velocities[index].lanes.len()
     }
 
     /// Returns the limb whose velocities have nonzero entries in a matrix row of the whole mechanism. Returns
     /// `None` unless this is a single limb in one SIMD lane.
-    pub fn lane_of(&self, row: &[Expr<'g>], groups: &[Option<usize>]) -> Option<LimbLane> {
+    pub fn limb_of_row(&self, row: &[Expr<'g>], groups: &[Option<usize>]) -> Option<LimbLane> {
         let entries = row.iter().zip(&self.places).filter(|(entry, _)| !entry.is_zero());
         let mut found: Option<LimbLane> = None;
         for (_, place) in entries {
@@ -209,7 +209,7 @@ impl<'g> Limbs<'g> {
         let groups = self.group_of_each_velocity();
         let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
         for (i, row) in rows.iter().enumerate() {
-            let LimbLane { group, lane, width } = self.lane_of(row, &groups)?;
+            let LimbLane { group, lane, width } = self.limb_of_row(row, &groups)?;
             found.entry(group).or_insert_with(|| vec![Vec::new(); width])[lane].push(i);
         }
         let limb_rows = |(group, lanes): (usize, Vec<Vec<usize>>)| {
@@ -231,7 +231,7 @@ impl<'g> Limbs<'g> {
     pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let merged_entry = |velocity: &Velocity| {
             let lane_entry =
-                |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
+                |(lane, row): (usize, &&[Expr<'g>])| self.velocity_of_lane(velocity, lane).map(|k| row[k]);
             let lanes =
                 rows.iter().enumerate().map(|of_lane| lane_entry(of_lane).unwrap_or(self.model.graph.zero()));
             merge.merge_lanes(&lanes.collect::<Vec<_>>())
@@ -248,7 +248,7 @@ impl<'g> Limbs<'g> {
     ) -> Option<Vec<Vec<Expr<'g>>>> {
         let merged_row = |velocity: &Velocity| {
             let lane_row = |(lane, matrix): (usize, &'_ Vec<Vec<Expr<'g>>>)| {
-                self.velocity_in(velocity, lane).map(|k| matrix[k].clone())
+                self.velocity_of_lane(velocity, lane).map(|k| matrix[k].clone())
             };
             let rows: Option<Vec<Vec<Expr<'g>>>> = lanes.iter().enumerate().map(lane_row).collect();
             match rows {
@@ -261,7 +261,7 @@ impl<'g> Limbs<'g> {
 
     /// Returns the velocity of the whole mechanism that a velocity is in a lane; the same in all lanes
     /// outside the limbs.
-    fn velocity_in(&self, velocity: &Velocity, lane: usize) -> Option<usize> {
+    fn velocity_of_lane(&self, velocity: &Velocity, lane: usize) -> Option<usize> {
         let is_alone = velocity.lanes.len() == 1;
         velocity.lanes.get(if is_alone { 0 } else { lane }).copied()
     }
@@ -279,7 +279,8 @@ impl<'g> Limbs<'g> {
         let merge = &mut Merge::new(g);
         let entry_in_lanes = |velocity: &Velocity| {
             // Velocities outside the limbs are common to all rows; those of other groups are absent.
-            let lane_entry = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_in(velocity, lane) {
+            let lane_entry = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_of_lane(velocity, lane)
+            {
                 Some(k) => row[k],
                 None => g.zero(),
             };
@@ -292,7 +293,7 @@ impl<'g> Limbs<'g> {
 
     /// Returns an expression for each velocity of the whole mechanism. `of` receives the index of that
     /// velocity in the vectorised mechanism, and its lane.
-    pub fn scattered_from(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
+    pub fn scatter_from_lanes(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let scatter_to_location = |place: &Location| match place.lane {
             Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * of(place.index, k)).lane(k),
@@ -376,7 +377,7 @@ fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_
 }
 
 /// Returns a copy of the mechanism without passive forces.
-fn without_forces<'g>(model: &Model<'g>) -> Model<'g> {
+fn without_passive_forces<'g>(model: &Model<'g>) -> Model<'g> {
     let mut model = model.clone();
     model.springs.clear();
     model.dashpots.clear();

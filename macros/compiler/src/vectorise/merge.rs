@@ -17,18 +17,18 @@ const MAX_DEPTH: usize = 64;
 /// Maximum number of steps per mechanism, of about 0.1 µs each in an unoptimised build.
 const STEPS: usize = 2_000_000;
 
-/// Merges expressions into lanes and remembers the results.
+/// Merges corresponding expressions of identical limbs into SIMD lanes, and remembers the results.
 pub struct Merge<'g> {
     graph: &'g Graph,
     known: BTreeMap<Vec<Id>, Option<Id>>,
-    /// Results for expressions with signs, true for minus.
+    /// Results of merging expressions with signs; the flag is true for minus.
     signed: BTreeMap<Vec<(Id, bool)>, Option<Id>>,
     /// Symbols that correspond to each other in different limbs, one list per quantity with one symbol per
     /// lane.
     partners: Vec<Vec<Symbol>>,
     /// Nesting depth of the expression that is being merged.
     depth: usize,
-    /// Number of steps that merging may still take.
+    /// Number of steps that merging may still take before it is abandoned.
     steps: usize,
 }
 
@@ -57,13 +57,13 @@ impl<'g> Merge<'g> {
     fn lane_filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
         let partners_of_symbol = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
         let is_own_symbol = |s: &Symbol| partners_of_symbol(*s).is_none_or(|list| list.get(from) == Some(s));
-        if !symbols_in(&[e]).iter().all(is_own_symbol) || !is_finite(e) {
+        if !symbols_in(&[e]).iter().all(is_own_symbol) || !is_always_finite(e) {
             return e;
         }
         substitute_symbols(e, &|s| partners_of_symbol(s)?.get(to).map(|s| self.graph.symbol(*s)))
     }
 
-    /// Uses up steps; returns `None` when too few remain.
+    /// Subtracts steps from the remaining work of merging; returns `None` when too few remain.
     fn spend_steps(&mut self, steps: usize) -> Option<()> {
         self.steps = self.steps.checked_sub(steps)?;
         Some(())
@@ -98,12 +98,12 @@ impl<'g> Merge<'g> {
             return known.map(|id| self.graph.expr(id));
         }
         self.spend_steps(ids.len())?;
-        let found = self.build_nested_expression(|merge| merge.build(lanes));
+        let found = self.build_nested_expression(|merge| merge.merge_uncached_lanes(lanes));
         self.known.insert(ids, found.map(Expr::id));
         found
     }
 
-    fn build(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
+    fn merge_uncached_lanes(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
         // Offsets and factors that differ between lanes become lane constants.
         let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| split_affine(*e)).collect();
         let moving = lanes.iter().position(|e| e.constant_value().is_none())?;
@@ -228,8 +228,12 @@ impl<'g> Merge<'g> {
     ) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
         let (a, b) = *operands.first()?;
         for (x, y) in &mut operands {
-            let in_order = self.is_similar(a, *x, DEPTH)? && self.is_similar(b, *y, DEPTH)?;
-            if !in_order && self.is_similar(a, *y, DEPTH)? && self.is_similar(b, *x, DEPTH)? {
+            let in_order =
+                self.has_similar_structure(a, *x, DEPTH)? && self.has_similar_structure(b, *y, DEPTH)?;
+            if !in_order
+                && self.has_similar_structure(a, *y, DEPTH)?
+                && self.has_similar_structure(b, *x, DEPTH)?
+            {
                 std::mem::swap(x, y);
             }
         }
@@ -238,13 +242,14 @@ impl<'g> Merge<'g> {
 
     /// Returns true if two expressions have the same structure down to a depth, or `None` when no steps
     /// remain.
-    fn is_similar(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
+    fn has_similar_structure(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
         self.spend_steps(1)?;
         let ((.., a), (.., b)) = (split_affine(a), split_affine(b));
         if a == b || depth == 0 || a.constant_value().is_some() || b.constant_value().is_some() {
             return Some(true);
         }
-        let mut same = |x: Id, y: Id| self.is_similar(a.graph().expr(x), a.graph().expr(y), depth - 1);
+        let mut same =
+            |x: Id, y: Id| self.has_similar_structure(a.graph().expr(x), a.graph().expr(y), depth - 1);
         Some(match (a.node(), b.node()) {
             (Node::Symbol(s), Node::Symbol(t)) => {
                 std::mem::discriminant(&Quantity::from_symbol(s))
@@ -262,7 +267,7 @@ impl<'g> Merge<'g> {
     }
 }
 
-/// Returns the terms of a sum or difference.
+/// Returns the two terms of a sum or difference; `None` for other expressions.
 fn terms_of_sum(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
     let expression_of_id = |id: Id| e.graph().expr(id);
     match e.node() {
@@ -322,7 +327,7 @@ fn split_affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
 }
 
 /// Returns true if an expression is finite for finite symbols, overflow aside.
-fn is_finite(e: Expr<'_>) -> bool {
+fn is_always_finite(e: Expr<'_>) -> bool {
     let graph = e.graph();
     let (mut todo, mut seen) = (vec![e.id()], BTreeSet::new());
     while let Some(id) = todo.pop() {

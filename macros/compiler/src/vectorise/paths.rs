@@ -6,15 +6,15 @@ use crate::kinematics::{Joint, Spatial};
 
 /// A quantity that a degree of freedom propagates to the root.
 pub trait Propagated<'g>: Sized {
-    /// Combines the expressions of two quantities entry by entry.
+    /// Combines the expressions of two propagated quantities entry by entry.
     fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self;
-    /// Transforms the quantity to the parent's origin and axes.
+    /// Transforms the propagated quantity to the parent's origin and axes.
     fn to_parent(&self, joint: &Joint<'g>) -> Self;
 }
 
 /// Algorithm that processes quantities while they are propagated from degrees of freedom to the root.
 pub trait Visitor<'g> {
-    /// Quantity that is propagated to the root.
+    /// Type of the quantity that is propagated from the links to the root.
     type Item: Propagated<'g>;
     /// Returns the quantity that a degree of freedom propagates, in the frame of its own link.
     fn start(&mut self, dof: usize) -> Self::Item;
@@ -26,20 +26,20 @@ pub trait Visitor<'g> {
 pub struct LaneGroup<T> {
     /// Index of the link that the quantities are given in.
     pub link: usize,
-    /// The quantities, in lanes if there are several.
+    /// Propagated quantities, in SIMD lanes if there are several.
     pub item: T,
     /// Degree of freedom of each quantity; `None` for a filler.
     members: Vec<Option<usize>>,
     /// Number of limbs that each propagated quantity covers as SIMD lanes.
     width: usize,
-    /// Number of limbs in the expressions of the link.
+    /// Number of identical limbs in the expressions of the link.
     link_width: usize,
 }
 
 /// Paths from the links of the degrees of freedom to the root, with the groups that are propagated together.
 pub struct Paths<'a, 'g> {
     joints: &'a [Joint<'g>],
-    /// Number of limbs in the expressions of each link.
+    /// Number of identical limbs in the expressions of each link.
     widths: Vec<usize>,
     /// Link of each degree of freedom, parents first.
     links: Vec<usize>,

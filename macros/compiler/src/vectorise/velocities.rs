@@ -4,7 +4,7 @@
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::Model;
 
-/// Velocity of the vectorised mechanism.
+/// Velocity of the vectorised mechanism, one or several velocities of the whole one.
 #[derive(Clone, Debug)]
 pub struct Velocity {
     /// Index in the whole mechanism of the velocity in each lane; a single index for a velocity outside the
@@ -19,7 +19,7 @@ pub struct Velocity {
 pub struct Location {
     /// Index of the velocity in the vectorised mechanism.
     pub index: usize,
-    /// Lane of that velocity, if it has several.
+    /// SIMD lane of the velocity, if the vectorised one has several lanes.
     pub lane: Option<usize>,
 }
 

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Path of a module from the crate's root.
+/// Path of a module from the crate's root, as a list of names.
 type Module = Vec<String>;
 
 /// Source file of the compiler with its imports, for checks of the architecture.
@@ -28,7 +28,7 @@ pub struct Imports {
 }
 
 impl Imports {
-    /// Reads all source files below a folder, except tests.
+    /// Reads all source files of the compiler below a folder, except tests.
     pub fn read_imports(source: &Path) -> Imports {
         let mut files = Vec::new();
         let mut todo = vec![source.to_path_buf()];
@@ -37,7 +37,7 @@ impl Imports {
                 let path = entry.unwrap().path();
                 if path.is_dir() {
                     todo.push(path);
-                } else if path.extension().is_some_and(|end| end == "rs") && !is_test(&path) {
+                } else if path.extension().is_some_and(|end| end == "rs") && !is_test_file(&path) {
                     files.push(File::read_file_imports(source, path));
                 }
             }
@@ -52,7 +52,7 @@ impl Imports {
         self.files[file].path.to_string_lossy().into_owned()
     }
 
-    /// Returns the files that each file depends on.
+    /// Returns the import graph: for each file, the files on which it depends.
     pub fn dependency_graph(&self) -> Vec<BTreeSet<usize>> {
         (0..self.files.len()).map(|k| self.dependencies_of_file(k)).collect()
     }
@@ -67,7 +67,7 @@ impl Imports {
         }
         let mut at = 0;
         while at < file.tokens.len() {
-            let path = path_at(&file.tokens, at);
+            let path = path_from_token(&file.tokens, at);
             at += (2 * path.len()).saturating_sub(1).max(1);
             if path.len() > 1 {
                 found.extend(self.defining_file(&file.module, &path, 0));
@@ -148,7 +148,7 @@ pub fn dependency_cycles(graph: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
     all
 }
 
-fn is_test(path: &Path) -> bool {
+fn is_test_file(path: &Path) -> bool {
     path.components().any(|c| c.as_os_str() == "tests") || path.ends_with("tests.rs")
 }
 
@@ -162,13 +162,13 @@ impl File {
             .map(|c| c.as_os_str().to_string_lossy().into_owned())
             .collect();
         module.pop_if(|last| last == "mod" || last == "lib");
-        let mut file = File::parse(&text);
+        let mut file = File::parse_source(&text);
         (file.path, file.module) = (path, module);
         file
     }
 
     /// Parses the text of a source file into its tokens, definitions and imports.
-    fn parse(text: &str) -> File {
+    fn parse_source(text: &str) -> File {
         let all = split_into_tokens(text.split("#[cfg(test)]\nmod tests {").next().unwrap());
         let mut file = File {
             path: PathBuf::new(),
@@ -250,14 +250,14 @@ fn collect_import_leaves(
     }
 }
 
-/// Returns the path that begins at a token.
-fn path_at(tokens: &[String], mut at: usize) -> Vec<String> {
-    let is_word =
+/// Returns the Rust path that begins at a token.
+fn path_from_token(tokens: &[String], mut at: usize) -> Vec<String> {
+    let is_word_token =
         |t: Option<&String>| t.is_some_and(|t| t.starts_with(|c: char| c.is_alphabetic() || c == '_'));
     let mut path = Vec::new();
-    while is_word(tokens.get(at)) {
+    while is_word_token(tokens.get(at)) {
         path.push(tokens[at].clone());
-        if tokens.get(at + 1).is_none_or(|t| t != "::") || !is_word(tokens.get(at + 2)) {
+        if tokens.get(at + 1).is_none_or(|t| t != "::") || !is_word_token(tokens.get(at + 2)) {
             break;
         }
         at += 2;
@@ -303,8 +303,8 @@ fn split_into_tokens(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn files_are_read_as_rust_reads_them() {
-    let file = File::parse(
+fn use_items_of_files_are_parsed() {
+    let file = File::parse_source(
         "use crate::a::{self, b::{C, d as e}}; pub use f::*; // use g;\nimpl<'a> X<'a> { fn y() { z::w(\"use \
          h;\", ':') } }",
     );
@@ -312,11 +312,11 @@ fn files_are_read_as_rust_reads_them() {
         file.imports.iter().map(|(name, path, on)| format!("{name} {} {on}", path.join("::"))).collect();
     assert_eq!(imports, ["a crate::a false", "C crate::a::b::C false", "e crate::a::b::d false", "* f true"]);
     let at = file.tokens.iter().position(|t| t == "z").unwrap();
-    assert_eq!(path_at(&file.tokens, at), ["z", "w"]);
+    assert_eq!(path_from_token(&file.tokens, at), ["z", "w"]);
 }
 
 #[test]
-fn circles_are_what_reaches_itself() {
+fn import_cycles_are_found() {
     let graph: Vec<BTreeSet<usize>> = [vec![1], vec![2], vec![0], vec![0, 4], vec![]]
         .into_iter()
         .map(|list: Vec<usize>| list.into_iter().collect())

@@ -87,7 +87,7 @@ fn modules_named_in_code(code: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_stage_imports_only_what_stands_before_it() {
+fn stages_import_only_earlier_stages() {
     let invariants = permitted_modules();
     let mut violations = Vec::new();
     for (module, path) in source_files_with_modules() {
@@ -116,7 +116,7 @@ fn stages_of_readme() -> Vec<String> {
 }
 
 #[test]
-fn a_stage_uses_what_stands_above_it() {
+fn stages_use_only_stages_listed_above() {
     let (stages, invariants) = (stages_of_readme(), permitted_modules());
     assert!(invariants.keys().all(|stage| stages.contains(stage)), "missing in the table: {invariants:?}");
     for (at, stage) in stages.iter().enumerate() {
@@ -126,11 +126,11 @@ fn a_stage_uses_what_stands_above_it() {
     }
 }
 
-/// Maximum number of files in an import cycle.
+/// Maximum number of files in a permitted import cycle.
 const MOST_IN_A_CIRCLE: usize = 3;
 
 #[test]
-fn circles_of_imports_are_small() {
+fn import_cycles_have_a_maximum_length() {
     let imports = Imports::read_imports(&Path::new(ROOT).join("src"));
     let format_import_cycle = |circle: &Vec<usize>| {
         let names: Vec<String> = circle.iter().map(|file| imports.relative_file_path(*file)).collect();
@@ -143,7 +143,7 @@ fn circles_of_imports_are_small() {
 }
 
 #[test]
-fn tokens_end_at_the_mechanism() {
+fn middle_stages_use_no_tokens_or_spans() {
     for (module, path) in source_files_with_modules() {
         let words: &[&str] = match module.as_str() {
             "expr" | "mechanism" | "kinematics" | "passes" | "vectorise" | "mechanics" | "lower" => {
@@ -160,7 +160,7 @@ fn tokens_end_at_the_mechanism() {
 }
 
 #[test]
-fn output_does_not_depend_on_the_order_of_a_hash_table() {
+fn compiler_uses_no_hash_tables() {
     for (_, path) in source_files_with_modules() {
         let code = code_without_tests(&path);
         for word in ["HashMap", "HashSet", "RandomState"] {
@@ -170,7 +170,7 @@ fn output_does_not_depend_on_the_order_of_a_hash_table() {
 }
 
 #[test]
-fn imports_are_read_as_rust_reads_them() {
+fn use_items_are_parsed_like_rustc() {
     let code = "use crate::diag::{A, b}; use crate::{expr, mechanism::{Model, x}, lower::y}; let z = \
                 crate::emit::f();";
     assert_eq!(modules_named_in_code(code), ["diag", "expr", "mechanism", "lower", "emit"]);

@@ -6,7 +6,7 @@ mod sizes;
 use linkwork_compiler::expand;
 use linkwork_compiler::syntax::guard::MAX_STACK;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
-use sizes::with_mass;
+use sizes::mechanism_with_mass;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -107,7 +107,7 @@ const MECHANISMS: [&str; 12] = [
     }",
 ];
 
-/// Tokens that the fuzzer inserts at random places.
+/// Words that the fuzzer inserts at random places of a mechanism.
 const WORDS: &str = "f64 f32 T self crate super Self ground x y z t pi q v 0 1 2 1e999 1e-999 -1 0.5 99999999999999999999 \
     1u8 2.5f32 'a' \"text\" b\"x\" Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring \
     Dashpot Force Torque Inerter Coordinate Vec mass com inertia about along on at rotated pitch lead damping stiffness \
@@ -178,7 +178,7 @@ fn mutate_tokens(tokens: TokenStream, words: &[TokenTree], random: &mut Random) 
 }
 
 /// Expands a mechanism and checks the output. `text` is shown in failures.
-fn try_expand(arguments: TokenStream, item: TokenStream, text: &str) {
+fn expand_and_check(arguments: TokenStream, item: TokenStream, text: &str) {
     let start = Instant::now();
     let output = expand(arguments, item, Path::new("../../tests/ui"));
     let output = format!("{} {}", output.tokens, output.text);
@@ -203,7 +203,7 @@ fn with_little_stack(run: impl FnOnce() + Send + 'static) {
 }
 
 #[test]
-fn mutations_neither_panic_nor_break_the_output() {
+fn mutated_source_neither_panics_nor_yields_invalid_output() {
     with_little_stack(|| {
         let words: Vec<TokenTree> =
             WORDS.split(' ').flat_map(|w| w.parse::<TokenStream>().ok()).flatten().collect();
@@ -218,13 +218,13 @@ fn mutations_neither_panic_nor_break_the_output() {
                 }
             }
             let text = format!("round {round}: #[mechanism({arguments})] {item}");
-            try_expand(arguments, item, &text);
+            expand_and_check(arguments, item, &text);
         }
     });
 }
 
 #[test]
-fn words_at_random_are_refused() {
+fn random_tokens_are_rejected() {
     with_little_stack(|| {
         let words: Vec<&str> = WORDS.split(' ').collect();
         let mut random = Random(2);
@@ -242,16 +242,16 @@ fn words_at_random_are_refused() {
                 _ => format!("struct S {{ #[body(mass = {inside})] b: Body, #[joint({inside})] j: Pin }}"),
             };
             if let (Ok(arguments), Ok(item)) = (inside.parse(), item.parse()) {
-                try_expand(arguments, item, &inside);
+                expand_and_check(arguments, item, &inside);
             }
         }
     });
 }
 
 #[test]
-fn arguments_of_any_kind_are_read() {
+fn arguments_of_all_kinds_are_parsed() {
     with_little_stack(|| {
-        let item = with_mass("m");
+        let item = mechanism_with_mass("m");
         for arguments in [
             "urdf = \"\"",
             "urdf = \".\"",
@@ -281,15 +281,15 @@ fn arguments_of_any_kind_are_read() {
             "friction_speed = 1e999",
             "friction_speed = 0 / 0",
         ] {
-            try_expand(arguments.parse().unwrap(), item.parse().unwrap(), arguments);
+            expand_and_check(arguments.parse().unwrap(), item.parse().unwrap(), arguments);
         }
         let long = format!("urdf = \"{}\"", "a/".repeat(100_000));
-        try_expand(long.parse().unwrap(), item.parse().unwrap(), "a long path");
+        expand_and_check(long.parse().unwrap(), item.parse().unwrap(), "a long path");
     });
 }
 
 #[test]
-fn names_of_any_kind_are_kept() {
+fn unusual_field_names_are_preserved() {
     with_little_stack(|| {
         for name in [
             "r#type",
@@ -343,7 +343,7 @@ fn names_of_any_kind_are_kept() {
                 ),
             ] {
                 if let Ok(tokens) = item.parse() {
-                    try_expand(TokenStream::new(), tokens, &item);
+                    expand_and_check(TokenStream::new(), tokens, &item);
                 }
             }
         }

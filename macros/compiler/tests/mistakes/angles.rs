@@ -1,8 +1,8 @@
 //! Tests of messages about angles that are probably meant in degrees.
 
-use super::{ARM, Row, check_error_rows, compiler_messages};
+use super::{ARM, ErrorRow, check_error_rows, compiler_messages};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "#[joint(ground.rotated(z(90)) -> tool, about = z)] wrist: Pin",
         "an angle of 90 rad is more than a full turn",
@@ -63,7 +63,7 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn degrees_are_asked_for() {
+fn angles_written_in_degrees_are_reported() {
     check_error_rows(
         |said| (String::new(), format!("{ARM} #[body(mass = 1, inertia = sphere(1, 1))] tool: Body, {said}")),
         ROWS,
@@ -72,7 +72,7 @@ fn degrees_are_asked_for() {
 
 /// Checks that plausible angles, such as `2 * pi` and `degrees(90)`, are accepted without an error.
 #[test]
-fn angles_that_are_meant_pass() {
+fn plausible_angles_are_accepted() {
     for angle in [
         "degrees(90)",
         "-degrees(90)",
@@ -98,7 +98,7 @@ fn angles_that_are_meant_pass() {
 
 /// Right angles in degrees are exact: the generated code is identical to that with radians.
 #[test]
-fn right_angles_are_exact() {
+fn right_angles_in_degrees_are_exact() {
     let expand_with_angle = |angle: &str| {
         let arm = "#[body(mass = 1, com = x + y, inertia = diagonal(1, 2, 3))] arm: Body";
         let hinge = format!(

@@ -1,9 +1,9 @@
-//! Names of arguments in the terminology of other tools.
+//! Tests of error messages for arguments in the terminology of other tools.
 
-use super::{ARM, CART, Row, check_error_rows};
+use super::{ARM, CART, ErrorRow, check_error_rows};
 
 /// Wrong arguments of bodies, with the expected messages.
-const BODIES: &[Row] = &[
+const BODIES: &[ErrorRow] = &[
     ("m = 1", "a Body has no argument `m`", "did you mean `mass`?"),
     ("weight = 1", "a Body has no argument `weight`", "did you mean `mass`?"),
     ("mass = 1, cog = x", "a Body has no argument `cog`", "did you mean `com`?"),
@@ -31,7 +31,7 @@ const BODIES: &[Row] = &[
 ];
 
 #[test]
-fn bodies() {
+fn invalid_body_arguments_are_reported() {
     check_error_rows(
         |said| {
             let tool = format!("#[body({said})] tool: Body, #[joint(arm -> tool, about = z)] wrist: Pin");
@@ -42,7 +42,7 @@ fn bodies() {
 }
 
 /// Wrong arguments of elements that act on a hinge, with the expected messages.
-const ACTIONS: &[Row] = &[
+const ACTIONS: &[ErrorRow] = &[
     ("#[acts(on = hinge, k = 1)] coil: Spring", "a Spring has no argument `k`", "did you mean `stiffness`?"),
     (
         "#[acts(on = hinge, stiffnes = 1)] coil: Spring",
@@ -210,12 +210,12 @@ const ACTIONS: &[Row] = &[
 ];
 
 #[test]
-fn actions() {
+fn invalid_force_element_arguments_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ACTIONS);
 }
 
 /// Wrong arguments of other elements, with the expected messages.
-const OTHERS: &[Row] = &[
+const OTHERS: &[ErrorRow] = &[
     (
         "theta: Coordinate, #[particle(m = 1, at = theta * x)] bead: Particle",
         "a Particle has no argument `m`",
@@ -298,6 +298,6 @@ const OTHERS: &[Row] = &[
 ];
 
 #[test]
-fn others() {
+fn invalid_arguments_of_other_elements_are_reported() {
     check_error_rows(|said| (String::new(), format!("{CART} {said}")), OTHERS);
 }

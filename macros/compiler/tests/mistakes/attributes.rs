@@ -1,8 +1,8 @@
-//! Attributes of fields in the terminology of other tools.
+//! Tests of error messages for attributes in the terminology of other tools.
 
-use super::{ARM, Row, check_error_rows};
+use super::{ARM, ErrorRow, check_error_rows};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "#[spring(on = hinge, stiffness = 1)] coil: Spring",
         "unknown attribute `#[spring]` on an element",
@@ -104,6 +104,6 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn attributes_belong_to_their_elements() {
+fn attributes_on_wrong_elements_are_rejected() {
     check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ROWS);
 }

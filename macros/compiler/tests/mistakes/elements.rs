@@ -1,6 +1,6 @@
-//! Types of fields in the terminology of other tools.
+//! Tests of error messages for element types in the terminology of other tools.
 
-use super::{ARM, CART, Row, check_error_rows};
+use super::{ARM, CART, ErrorRow, check_error_rows};
 
 /// Type names of other tools, with the element of the language that corresponds to each.
 const ONE: &[(&str, &str)] = &[
@@ -56,7 +56,7 @@ const ONE: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn words_of_other_tools_are_understood() {
+fn synonyms_of_other_tools_get_suggestions() {
     for (said, meant) in ONE {
         let message = format!("unknown element type `{said}`");
         let help = format!("did you mean `{meant}`?");
@@ -70,7 +70,7 @@ fn words_of_other_tools_are_understood() {
 }
 
 /// Types without a corresponding element, which are expressed in another way.
-const OTHERS: &[Row] = &[
+const OTHERS: &[ErrorRow] = &[
     ("Mass", "unknown element type `Mass`", "if it is extended or rotates"),
     ("Joint", "unknown element type `Joint`", "`Pin`, `Sleeve`"),
     ("Gear", "unknown element type `Gear`", "`#[constraint(second + ratio * first = 0)] gear: Holonomic`"),
@@ -103,6 +103,6 @@ const OTHERS: &[Row] = &[
 ];
 
 #[test]
-fn other_things_are_said_in_another_way() {
+fn foreign_concepts_get_an_explanation() {
     check_error_rows(|said| (String::new(), format!("{CART} other: {said}")), OTHERS);
 }

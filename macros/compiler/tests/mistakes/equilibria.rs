@@ -1,6 +1,6 @@
 //! Declared equilibria that are invalid or have no linear equations.
 
-use super::{Row, check_error_rows, compiler_messages};
+use super::{ErrorRow, check_error_rows, compiler_messages};
 
 /// Returns the source of a pendulum with a motor and one declared equilibrium, for tests of error messages.
 fn pendulum_setting(said: &str) -> (String, String) {
@@ -11,7 +11,7 @@ fn pendulum_setting(said: &str) -> (String, String) {
     ("gravity = -9.81 * y".to_string(), format!("{fields} #[equilibrium({said})] rest: Equilibrium"))
 }
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "hinge = pi / 2",
         "`rest` is not an equilibrium: the residual force `-9.81 m l` acts on `hinge`",
@@ -39,7 +39,7 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn what_is_no_equilibrium_is_said() {
+fn invalid_equilibria_are_reported() {
     check_error_rows(pendulum_setting, ROWS);
 }
 
@@ -51,7 +51,7 @@ fn carriage_setting(said: &str) -> (String, String) {
     (String::new(), format!("{fields} {said}"))
 }
 
-const REFUSED: &[Row] = &[
+const REFUSED: &[ErrorRow] = &[
     (
         "#[acts(on = rail, coulomb = k)] f: Friction, #[equilibrium] rest: Equilibrium",
         "dry friction cannot be linearised about `rest`",
@@ -91,12 +91,12 @@ const REFUSED: &[Row] = &[
 ];
 
 #[test]
-fn what_has_no_linear_equations_is_said() {
+fn mechanisms_without_linear_equations_are_reported() {
     check_error_rows(carriage_setting, REFUSED);
 }
 
 #[test]
-fn orientations_are_unit() {
+fn equilibrium_quaternions_must_have_unit_norm() {
     let fields_with_equilibrium = |q: &str| {
         format!(
             "#[body(mass = 1, inertia = sphere(1, 1))] ball: Body, #[joint(ground -> ball)] tip: Ball,

@@ -1,9 +1,9 @@
 //! Expressions: functions, names and numbers in the terminology of other tools.
 
-use super::{ARM, Row, check_error_rows};
+use super::{ARM, ErrorRow, check_error_rows};
 
 /// Values of an output of an arm on a hinge, with a parameter `theta` and a length `l`.
-const SCALARS: &[Row] = &[
+const SCALARS: &[ErrorRow] = &[
     ("arctan(hinge)", "unknown function `arctan`", "did you mean `atan`?"),
     ("arcsin(hinge)", "unknown function `arcsin`", "did you mean `asin`?"),
     ("atan(hinge, 1)", "`atan` takes 1 argument", "did you mean `atan2`?"),
@@ -199,7 +199,7 @@ const SCALARS: &[Row] = &[
 ];
 
 #[test]
-fn scalars() {
+fn invalid_scalar_expressions_are_reported() {
     check_error_rows(
         |said| {
             let used = "#[acts(on = hinge, stiffness = l, free_angle = theta)] coil: Spring";
@@ -210,7 +210,7 @@ fn scalars() {
 }
 
 /// Vectors as the centre of mass of a body, with a length `l`.
-const VECTORS: &[Row] = &[
+const VECTORS: &[ErrorRow] = &[
     ("(0, 0, l)", "expected a scalar or a vector, found a list", "write `[0, 0, l]`"),
     ("vec(0, 0, l)", "unknown function `vec`", "`[a, b, c]`"),
     ("Vector3::new(0, 0, l)", "expected `,` or an operator", "`[a, b, c]`"),
@@ -231,7 +231,7 @@ const VECTORS: &[Row] = &[
 ];
 
 #[test]
-fn vectors() {
+fn invalid_vector_expressions_are_reported() {
     check_error_rows(
         |said| {
             let arm = format!("#[body(mass = 1, com = {said}, inertia = rod(1, l, y))] arm: Body");
@@ -242,7 +242,7 @@ fn vectors() {
 }
 
 /// Inertias of a body with mass `m` and length `l`.
-const INERTIAS: &[Row] = &[
+const INERTIAS: &[ErrorRow] = &[
     ("[1, 1, 1]", "expected a 3×3 matrix, found three numbers", "write `diagonal(1, 1, 1)`"),
     ("[m, l, m]", "expected a 3×3 matrix, found three numbers", "write `diagonal(m, l, m)`"),
     ("(1, 1, 1)", "expected an inertia, found a list", "write `diagonal(1, 1, 1)`"),
@@ -280,7 +280,7 @@ const INERTIAS: &[Row] = &[
 ];
 
 #[test]
-fn inertias() {
+fn invalid_inertia_expressions_are_reported() {
     check_error_rows(
         |said| {
             let arm = format!("#[body(mass = m, com = l * y, inertia = {said})] arm: Body");

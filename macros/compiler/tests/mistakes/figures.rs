@@ -1,8 +1,8 @@
-//! Coefficients that are outside the range of computations.
+//! Tests of error messages for coefficients outside the range of computations.
 
-use super::{Row, check_error_rows, compiler_messages};
+use super::{ErrorRow, check_error_rows, compiler_messages};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "mass = 1e308, inertia = sphere(1, 1)",
         "this number is too large for `f64`: 1e308",
@@ -28,7 +28,7 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn figures_leave_room() {
+fn coefficients_near_overflow_are_rejected() {
     check_error_rows(
         |said| {
             let arm = format!("#[body({said})] arm: Body");
@@ -38,10 +38,10 @@ fn figures_leave_room() {
     );
 }
 
-/// Functions that do not contain these coefficients are finite.
+/// Functions that do not contain the overflowing coefficients remain finite.
 #[test]
-fn products_of_figures_leave_room() {
-    const ROWS: &[Row] = &[(
+fn overflowing_products_are_rejected_only_where_used() {
+    const ROWS: &[ErrorRow] = &[(
         "1e200 * hinge * 1e200",
         "the values of this mechanism are too large",
         "a product of masses, lengths or forces in its equations is not a finite number",
@@ -55,7 +55,7 @@ fn products_of_figures_leave_room() {
     );
 }
 
-const SINGLE: &[Row] = &[
+const SINGLE: &[ErrorRow] = &[
     (
         "mass = 1e25, inertia = sphere(1, 1)",
         "this number is too large for `f32`: 1e25",
@@ -67,7 +67,7 @@ const SINGLE: &[Row] = &[
 ];
 
 #[test]
-fn figures_leave_room_in_single_precision() {
+fn coefficients_near_single_precision_overflow_are_rejected() {
     check_error_rows(
         |said| {
             let arm = format!("#[body({said})] arm: Body");
@@ -79,7 +79,7 @@ fn figures_leave_room_in_single_precision() {
 
 /// Coefficients of planets and of small machines are accepted.
 #[test]
-fn figures_of_planets_and_of_small_machines_pass() {
+fn coefficients_of_planets_and_micromachines_are_accepted() {
     for (scalar, mass, length) in [
         ("f64", "1.989e30", "1.5e11"),
         ("f64", "1e-15", "1e-6"),

@@ -33,7 +33,7 @@ fn robot_messages(name: &str, xyz: &str, axis: &str) -> Vec<String> {
 }
 
 #[test]
-fn commas_are_one_mistake() {
+fn comma_separated_file_values_are_one_error() {
     for (name, xyz, axis) in [("commas.urdf", "0, 0, 1", "0, 0, 1"), ("decimal.urdf", "0,5 0 1", "0 0 1")] {
         let found = robot_messages(name, xyz, axis);
         let good = matches!(found.as_slice(), [one] if one.contains("expected 3 numbers in `xyz`, found")
@@ -44,7 +44,7 @@ fn commas_are_one_mistake() {
 }
 
 #[test]
-fn a_wrong_path_is_one_mistake() {
+fn wrong_file_path_is_one_error() {
     let found = compiler_messages(
         "urdf = \"no_such_robot.urdf\", lock = [\"a\"]",
         "#[acts(on = elbow)] motor: Torque",
@@ -86,7 +86,7 @@ const PARAMETERS: &[(&str, &str, &str)] = &[
 ];
 
 #[test]
-fn figures_that_are_parameters_are_those_of_the_file() {
+fn invalid_parameters_of_robot_files_are_reported() {
     fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures.urdf"), ROBOT).unwrap();
     let mut wrong = Vec::new();
     for (said, message, help) in PARAMETERS {
@@ -123,7 +123,7 @@ fn figures_that_are_parameters_are_those_of_the_file() {
 }
 
 #[test]
-fn collision_geometry_is_read_when_it_is_named() {
+fn collision_geometry_is_read_when_referenced() {
     let robot_with = |inside: &str| {
         let foot = format!("<link name=\"foot\"><collision><geometry>{inside}</geometry></collision></link>");
         let sole = r#"<joint name="sole" type="fixed"><origin xyz="0 0.5 0"/><parent link="hand"/><child link="foot"/></joint>"#;

@@ -1,6 +1,6 @@
 //! Forms of the equations that do not exist for a mechanism.
 
-use super::{Row, check_error_rows};
+use super::{ErrorRow, check_error_rows};
 
 /// Inserts the text before `|` into the attribute and the text after it into the fields.
 fn mechanism_setting(said: &str) -> (String, String) {
@@ -13,8 +13,8 @@ fn mechanism_setting(said: &str) -> (String, String) {
 }
 
 #[test]
-fn mechanisms_without_a_form_say_which_they_have() {
-    const ROWS: &[Row] = &[
+fn unavailable_forms_name_the_available_ones() {
+    const ROWS: &[ErrorRow] = &[
         (
             "equations = hamilton|#[constraint(rail * rail + 1 * hinge * hinge = 1)] wire: Holonomic,",
             "Hamilton's equations are printed only for mechanisms without constraints",
@@ -67,7 +67,7 @@ fn mechanisms_without_a_form_say_which_they_have() {
 
 /// Checks that Routh's equations of four coupled cyclic coordinates are rejected as too long to print.
 #[test]
-fn equations_of_routh_that_are_too_long_are_not_printed() {
+fn overlong_routh_equations_are_rejected() {
     fn cyclic_coordinates_setting(words: &str) -> (String, String) {
         let mut fields = "#[body(mass = 1, inertia = sphere(1, 1))] cart0: Body, \
                           #[joint(ground -> cart0, along = x)] rail0: Sleeve,"
@@ -81,7 +81,7 @@ fn equations_of_routh_that_are_too_long_are_not_printed() {
         }
         (words.to_string(), fields)
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = routh",
         "Routh's equations of this mechanism are too long: more than three cyclic coordinates are coupled by \
          inertia, or thousands of terms",
@@ -92,14 +92,14 @@ fn equations_of_routh_that_are_too_long_are_not_printed() {
 
 /// A sliding contact has a normal force, which independent speeds do not eliminate.
 #[test]
-fn contacts_that_slip_have_no_equations_of_kane() {
+fn kane_equations_are_rejected_for_sliding_contacts() {
     fn sliding_contact_setting(words: &str) -> (String, String) {
         let fields = "#[body(mass = 1, inertia = disk(1, 0.2, z))] disk: Body, #[joint(ground -> disk, about = z)] pose: Planar,
             #[constraint(slips(disk.circle(0.2, z), ground.plane(y)), friction = 0.3, speed = 0.01)] contact: Slipping,
             #[constraint(pose.x = 0.1 * pose.angle)] wire: Holonomic,";
         (format!("gravity = -9.81 * y, {words}"), fields.to_string())
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = kane",
         "the equations of a slipping contact contain its normal force, which is a multiplier",
         "write `equations = lagrange`",
@@ -109,7 +109,7 @@ fn contacts_that_slip_have_no_equations_of_kane() {
 
 /// Pins about skew axes, with a nonholonomic constraint on the last link.
 #[test]
-fn equations_of_kane_that_are_too_long_are_not_printed() {
+fn overlong_kane_equations_are_rejected() {
     fn pin_chain_setting(words: &str) -> (String, String) {
         let link_declarations = |k: usize| {
             let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(0.4 * x)", k - 1) };
@@ -123,7 +123,7 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
             "#[constraint(dot(v(link4.at(0.4 * x) / ground / ground), link4.y) = 0)] blade: Nonholonomic,";
         (format!("gravity = -9.81 * z, {words}"), (0..5).map(link_declarations).collect::<String>() + blade)
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = kane",
         "Kane's equations of this mechanism have thousands of terms",
         "or declare generalized speeds in which the equations are shorter",
@@ -134,7 +134,7 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
 /// A plate on three cranks that remain parallel. One constraint is redundant in every parallel configuration,
 /// but none may be dropped where the cranks are not parallel.
 #[test]
-fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
+fn kane_equations_are_rejected_for_dependent_constraints() {
     fn crank_linkage_setting(words: &str) -> (String, String) {
         let cranks = (0..3).map(|k| {
             format!(
@@ -150,7 +150,7 @@ fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
             cranks.collect::<String>() + plate + &ends.collect::<String>(),
         )
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = kane",
         "no velocities of this mechanism are determined by the others through its constraints in every \
          configuration",
@@ -161,8 +161,8 @@ fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
 
 /// The canonical equations are not defined for forces that depend on accelerations.
 #[test]
-fn forces_of_accelerations_leave_no_momenta() {
-    fn added_force(words: &str) -> (String, String) {
+fn acceleration_forces_exclude_hamiltons_equations() {
+    fn arguments_and_force(words: &str) -> (String, String) {
         mechanism_setting(&format!(
             "{words}|#[acts(on = rail, value = -m * dot(a(arm / ground / ground), x))] added: Force,"
         ))
@@ -172,7 +172,7 @@ fn forces_of_accelerations_leave_no_momenta() {
     const SECOND: &str = "a force that depends on accelerations excludes second derivatives";
     const MOMENTA: &str = "a force that depends on accelerations excludes derivatives of momenta";
     const HELP: &str = "remove the option that requests them, or these terms of the force";
-    const ROWS: &[Row] = &[
+    const ROWS: &[ErrorRow] = &[
         ("hamilton", HAMILTON, HELP),
         ("equations = hamilton", HAMILTON, HELP),
         ("routh", ROUTH, HELP),
@@ -180,7 +180,7 @@ fn forces_of_accelerations_leave_no_momenta() {
         ("second_derivatives", SECOND, HELP),
         ("momentum_derivatives", MOMENTA, HELP),
     ];
-    check_error_rows(added_force, ROWS);
+    check_error_rows(arguments_and_force, ROWS);
 }
 
 /// Returns `count` carts on separate rails, with forces on the first `forces` of them.
@@ -196,7 +196,7 @@ fn carts_with_forces(count: usize, forces: usize) -> String {
 }
 
 #[test]
-fn what_would_be_too_long_is_not_written() {
+fn requests_for_overlong_functions_are_rejected() {
     const HELP: &str = "request it for a smaller mechanism";
     check_error_rows(
         |words| (words.to_string(), carts_with_forces(68, 68)),
@@ -212,7 +212,7 @@ fn what_would_be_too_long_is_not_written() {
 }
 
 #[test]
-fn equations_of_thousands_of_terms_are_not_printed() {
+fn equations_of_thousands_of_terms_are_rejected() {
     let chain_with_options = |words: &str| {
         let link_declarations = |k: usize| {
             let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(x)", k - 1) };

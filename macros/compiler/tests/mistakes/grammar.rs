@@ -1,8 +1,8 @@
-//! Syntax errors in attributes and in the struct.
+//! Tests of error messages for syntax errors in attributes and in the struct.
 
-use super::{ARM, Row, check_error_rows};
+use super::{ARM, ErrorRow, check_error_rows};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     ("#[body(mass = 1 com = x)] tool: Body", "expected `,`", "write `…, com = …`"),
     ("#[body(mass = 1; com = x)] tool: Body", "expected `,`", "arguments are separated by `,`"),
     ("#[body(mass: 1)] tool: Body", "expected `=`", "write `mass = …`"),
@@ -51,6 +51,6 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn slips() {
+fn grammar_errors_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ROWS);
 }

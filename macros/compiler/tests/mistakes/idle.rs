@@ -7,7 +7,7 @@ const CARTS: &str = "h: f64, #[body(mass = 1)] first: Body, #[body(mass = 3)] se
     #[joint(ground -> first, along = (x, y))] one: Stage, #[joint(ground.at(h * z) -> second, along = (x, y))] two: Stage,";
 
 #[test]
-fn what_restricts_nothing_is_refused() {
+fn constraints_without_effect_are_rejected() {
     let carts_with_constraint = |constraint: &str| (String::new(), format!("{CARTS} {constraint}"));
     check_error_rows(
         carts_with_constraint,
@@ -33,7 +33,7 @@ fn what_restricts_nothing_is_refused() {
 }
 
 #[test]
-fn what_restricts_some_components_is_not() {
+fn partially_effective_constraints_are_accepted() {
     let carts_with_constraint = |constraint: &str| format!("{CARTS} {constraint}");
     for constraint in [
         "#[constraint(v(first / ground / ground) = v(second / ground / ground))] same: Nonholonomic",
@@ -46,7 +46,7 @@ fn what_restricts_some_components_is_not() {
 /// A product that is zero in every configuration but not simplified to zero. Its row contains only rounding
 /// errors.
 #[test]
-fn what_is_nothing_but_rounding_is_dropped() {
+fn constraint_rows_of_rounding_error_are_dropped() {
     let fields = "#[body(mass = 2, com = x, inertia = rod(2, 1, x))] arm: Body,
         #[joint(ground -> arm, about = z)] collar: Collar,
         #[body(mass = 0.9, com = 0.3 * x, inertia = cuboid(0.9, 0.1, 0.2, 0.3))] hand: Body,

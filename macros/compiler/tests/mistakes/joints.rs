@@ -1,8 +1,8 @@
 //! Tests of error messages about the endpoints and axes of joints.
 
-use super::{Row, check_error_rows};
+use super::{ErrorRow, check_error_rows};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "#[joint(parent = ground, child = arm, about = z)] hinge: Pin",
         "a joint needs the two bodies that it connects",
@@ -230,7 +230,7 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn joints() {
+fn invalid_joint_arguments_are_reported() {
     check_error_rows(
         |said| {
             (

@@ -1,10 +1,10 @@
 //! Instant centres, curves, cables and vector fields: missing, unknown or nonexistent quantities.
 
-use super::{ARM, Row, check_error_rows, compiler_messages};
+use super::{ARM, ErrorRow, check_error_rows, compiler_messages};
 
 /// Vector outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
 /// stone.
-const VECTORS: &[Row] = &[
+const VECTORS: &[ErrorRow] = &[
     ("instant_center(arm)", "`instant_center` takes a body and a frame", "`instant_center(body / frame)`"),
     ("instant_center(arm / ground / ground)", "`instant_center` takes a body and a frame", "(body / frame)"),
     ("instant_center(arms / ground)", "unknown frame `arms`", "did you mean `arm`?"),
@@ -73,7 +73,7 @@ const VECTORS: &[Row] = &[
 
 /// Scalar outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
 /// stone.
-const SCALARS: &[Row] = &[
+const SCALARS: &[ErrorRow] = &[
     ("curvature(wire)", "`curvature` takes a curve and the coordinate along it", "`curvature(curve, s)`"),
     ("curvature(wire, u)", "`curvature` takes the coordinate that parametrises the curve", ""),
     ("curvature(wire, hinge)", "this vector does not depend on `hinge`", "`curvature(curve, s)`"),
@@ -120,14 +120,14 @@ const MORE: &str = "s: Coordinate,
     #[body(mass = 1)] sledge: Body, #[joint(ground -> sledge, along = x)] way: Sleeve,";
 
 #[test]
-fn points_of_motions() {
+fn invalid_points_in_velocities_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Vector")), VECTORS);
     check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), SCALARS);
 }
 
 /// Matrix outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
 /// stone.
-const MATRICES: &[Row] = &[
+const MATRICES: &[ErrorRow] = &[
     ("r(arm / ground)", "expected a matrix, found a vector", "`projector(n)`"),
     ("2 * s", "expected a matrix, found a scalar", "`inertia(body / point)`"),
     ("projector(2)", "expected a vector, found a scalar", ""),
@@ -153,18 +153,18 @@ const MATRICES: &[Row] = &[
 ];
 
 #[test]
-fn matrices() {
+fn invalid_matrix_outputs_are_reported() {
     check_error_rows(
         |said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Matrix")),
         MATRICES,
     );
-    let scalars: &[Row] = &[
+    let scalars: &[ErrorRow] = &[
         ("identity()", "expected a scalar, found a matrix", "declare it as a `Matrix`"),
         ("norm(identity())", "expected a vector, found a matrix", "`M * v`"),
         ("sin(skew(x))", "expected a scalar, found a matrix", "`trace(M)`"),
     ];
     check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), scalars);
-    let fields: &[Row] = &[
+    let fields: &[ErrorRow] = &[
         (
             "#[define(x)] named: Matrix",
             "`named` is a vector, but it is declared as a Matrix",
@@ -187,7 +187,7 @@ fn matrices() {
 
 /// Further fields of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
 /// stone.
-const FIELDS: &[Row] = &[
+const FIELDS: &[ErrorRow] = &[
     ("#[frame(ground, frenet(line, s))] f: Frame", "this curve is straight, and has no normal", "unit"),
     (
         "#[frame(ground, frenet(wire))] f: Frame",
@@ -250,13 +250,13 @@ const FIELDS: &[Row] = &[
 ];
 
 #[test]
-fn frames_elements_and_inertias() {
+fn invalid_frames_elements_and_inertias_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {MORE} {said}")), FIELDS);
 }
 
 /// Units of curvature and of cable lengths are inferred from the expressions around them.
 #[test]
-fn units_are_inferred() {
+fn units_of_curvature_and_cable_length_are_inferred() {
     let assert_no_messages = |fields: &str| {
         let found = compiler_messages("", &format!("{ARM} {fields}"));
         assert_eq!(found, Vec::<String>::new(), "{fields}");

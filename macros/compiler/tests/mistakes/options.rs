@@ -1,8 +1,8 @@
 //! Tests of error messages about options of `#[mechanism]`.
 
-use super::{ARM, Row, check_error_rows};
+use super::{ARM, ErrorRow, check_error_rows};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "g = 9.81",
         "`#[mechanism]` has no argument `g`",
@@ -51,6 +51,6 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn options() {
+fn invalid_options_are_reported() {
     check_error_rows(|said| (said.to_string(), ARM.to_string()), ROWS);
 }

@@ -5,7 +5,7 @@ use super::{ARM, check_error_counts, compiler_messages};
 const TOOL: &str = "#[body(mass = 1, inertia = sphere(1, 1))] tool: Body,";
 
 #[test]
-fn independent_mistakes_are_said_at_once() {
+fn independent_errors_are_reported_together() {
     let arm = format!("{ARM} {TOOL}");
     let rows: Vec<(String, usize)> = vec![
         // An axis, a mass, a spring on an unknown joint, an output.
@@ -73,7 +73,7 @@ fn independent_mistakes_are_said_at_once() {
 
 /// Checks that a conflict between two positions is one error, with the second position as a note.
 #[test]
-fn conflicts_are_one_error_with_a_note() {
+fn conflicting_declarations_are_one_error_with_a_note() {
     for (fields, note) in [
         ("l: f64, #[body(mass = l, com = l * x)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin", "in \
             `mass` of `arm`"),
@@ -99,7 +99,7 @@ fn conflicts_are_one_error_with_a_note() {
 }
 
 #[test]
-fn too_many_degrees_of_freedom_are_told_what_to_do() {
+fn too_many_degrees_of_freedom_are_rejected_with_advice() {
     let mut fields = String::new();
     for k in 0..132 {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}", k - 1) };

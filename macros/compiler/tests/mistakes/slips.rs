@@ -1,7 +1,7 @@
 //! Tests of errors by users who know Rust, other tools or mechanics, but not yet the language. Each causes
 //! one error with help.
 
-use super::{ARM, Row, compiler_messages};
+use super::{ARM, ErrorRow, compiler_messages};
 use std::path::Path;
 
 /// Erroneous sources: arguments of the attribute, and fields added to an arm on a hinge.
@@ -104,7 +104,7 @@ const SLIPS: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn each_is_one_error_with_help() {
+fn each_misspelling_is_one_error_with_help() {
     let mut wrong = Vec::new();
     for (attribute, fields) in SLIPS {
         let found = compiler_messages(attribute, &format!("{ARM} {fields}"));
@@ -116,7 +116,7 @@ fn each_is_one_error_with_help() {
 }
 
 /// Erroneous fields added to an arm on a hinge, with the first line of the message and a part of the help.
-const POINTERS: &[Row] = &[
+const POINTERS: &[ErrorRow] = &[
     (
         "#[acts(on = hinge, value = 3 * hinge_ddot)] k: Torque",
         "unknown name `hinge_ddot`",
@@ -142,12 +142,12 @@ const POINTERS: &[Row] = &[
 ];
 
 #[test]
-fn each_points_at_what_was_meant() {
+fn misspelling_errors_point_at_the_token() {
     super::check_error_rows(|fields| (String::new(), format!("{ARM} {fields}")), POINTERS);
 }
 
 /// Invalid options for an imported robot file, with the expected messages.
-const OPTIONS: &[Row] = &[
+const OPTIONS: &[ErrorRow] = &[
     ("lock = [hand_joint]", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
     ("lock = \"hand_joint\"", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
     ("lock = (a, b)", "expected a list of strings for `lock`", "write `lock = [\"a\", \"b\"]`"),
@@ -157,7 +157,7 @@ const OPTIONS: &[Row] = &[
 ];
 
 #[test]
-fn options_of_a_file_are_written_as_they_are_meant() {
+fn file_options_are_suggested_in_correct_syntax() {
     let robot = "<robot name=\"arm\"><link name=\"arm\"/></robot>";
     std::fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("options.urdf"), robot).unwrap();
     let options_without_fields =
@@ -166,6 +166,6 @@ fn options_of_a_file_are_written_as_they_are_meant() {
 }
 
 #[test]
-fn gravity_may_name_the_axes_of_the_ground() {
+fn gravity_may_be_written_in_ground_axes() {
     assert_eq!(compiler_messages("gravity = -9.81 * ground.y", ARM), Vec::<String>::new());
 }

@@ -1,6 +1,6 @@
 //! Tests of error messages about invalid generalized speeds.
 
-use super::{Row, check_error_rows};
+use super::{ErrorRow, check_error_rows};
 
 fn mechanism_setting(fields: &str) -> (String, String) {
     let own = "a: f64,
@@ -11,8 +11,8 @@ fn mechanism_setting(fields: &str) -> (String, String) {
 }
 
 #[test]
-fn speeds_that_are_none() {
-    const ROWS: &[Row] = &[
+fn invalid_generalized_speeds_are_reported() {
+    const ROWS: &[ErrorRow] = &[
         (
             "#[speed(rate(rail) * rate(hinge))] u: Speed,",
             "a speed is linear in the rates",

@@ -12,7 +12,7 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Marks around the tokens that a message points at.
+/// Marks around the tokens at which an error message points, in the table files.
 const MARKS: [char; 2] = ['‹', '›'];
 
 /// Returns the folder of the tables and of the robots' files.
@@ -21,14 +21,14 @@ fn tables_folder() -> PathBuf {
 }
 
 /// Message with its byte range in the source. The range is empty for the attribute as a whole.
-struct Said {
+struct ShownMessage {
     from: usize,
     to: usize,
     text: String,
 }
 
 /// Returns the error messages of the compiler for the source `#[mechanism(…)] item`, ordered by position.
-fn messages_of_mechanism(source: &str) -> Vec<Said> {
+fn messages_of_mechanism(source: &str) -> Vec<ShownMessage> {
     let mut tokens = source.parse::<TokenStream>().expect("these are tokens").into_iter().skip(1);
     let Some(TokenTree::Group(attribute)) = tokens.next() else { panic!("{source} has no attribute") };
     let arguments = attribute.stream().into_iter().find_map(|token| match token {
@@ -45,10 +45,10 @@ fn messages_of_mechanism(source: &str) -> Vec<Said> {
     // Each error is `::core::compile_error! { "…" }`: eight tokens, of which the first and the last have the
     // spans of the error.
     let errors: Vec<Span> = cx.into_tokens().into_iter().map(|token| token.span()).collect();
-    let mut found: Vec<Said> = errors
+    let mut found: Vec<ShownMessage> = errors
         .chunks((errors.len() / texts.len().max(1)).max(1))
         .zip(texts)
-        .map(|(spans, text)| Said {
+        .map(|(spans, text)| ShownMessage {
             from: spans[0].byte_range().start,
             to: spans[spans.len() - 1].byte_range().end,
             text,
@@ -67,7 +67,7 @@ fn table_row_with_messages(before: &str, row: &str, after: &str) -> String {
         if k < before.len() || k > before.len() + row.len() {
             continue;
         }
-        let is_marked_range = |one: &&Said| one.from < one.to;
+        let is_marked_range = |one: &&ShownMessage| one.from < one.to;
         let ends = found.iter().filter(is_marked_range).filter(|one| one.to == k && one.from >= before.len());
         marked.extend(ends.map(|_| MARKS[1]));
         let starts =
@@ -111,7 +111,7 @@ fn table_with_messages(text: &str) -> String {
 }
 
 #[test]
-fn messages_and_their_tokens() {
+fn table_errors_have_expected_messages_and_tokens() {
     let mut wrong = Vec::new();
     let mut count = 0;
     for file in fs::read_dir(tables_folder().join("tables")).unwrap() {

@@ -130,7 +130,7 @@ fn motion_text(link: &Link<'_>, model: &Model<'_>) -> String {
     text
 }
 
-/// Returns position and axes as text, without identity parts.
+/// Returns the position and axes of a pose as text, without identity parts.
 fn pose_text(pose: &Pose<'_>) -> String {
     let mut text = String::new();
     if !pose.translation.is_zero() {
@@ -166,7 +166,7 @@ fn matrix_text(m: &Mat3<'_>) -> String {
 const BODY: &str = "#[body(mass = 1, inertia = sphere(1, 1))]";
 
 #[test]
-fn coordinates_are_named_after_their_joints_in_the_order_of_declaration() {
+fn coordinates_are_named_by_joint_in_declaration_order() {
     let joints = [
         ("Pin", "about = z", "j", ""),
         ("Sleeve", "along = x", "j", ""),
@@ -225,7 +225,7 @@ fn welded_bodies_become_one_link() {
 }
 
 #[test]
-fn ends_are_placed_and_rotated() {
+fn joint_ends_are_placed_and_rotated() {
     // Both ends of the joint have the same frame, so the body's end coincides with the other end.
     check_model(
         "l: f64,
@@ -259,7 +259,7 @@ fn ends_are_placed_and_rotated() {
 }
 
 #[test]
-fn turning_axes_of_numbers_are_brought_onto_coordinate_axes() {
+fn constant_joint_axes_are_aligned_with_coordinate_axes() {
     // The frame of the body does not change: the rotation of the link's frame is compensated.
     check_model(
         "#[body(mass = 1, com = x)] b: Body, #[joint(ground -> b, about = [0.6, 0, 0.8])] pin: Pin,",
@@ -290,7 +290,7 @@ fn turning_axes_of_numbers_are_brought_onto_coordinate_axes() {
 }
 
 #[test]
-fn joints_of_several_motions_are_chains() {
+fn multi_coordinate_joints_become_chains() {
     check_model(
         &format!("{BODY} b: Body, #[joint(ground -> b, about = (z, x))] j: Universal,"),
         "q: j.first j.second
@@ -319,7 +319,7 @@ fn joints_of_several_motions_are_chains() {
 }
 
 #[test]
-fn followers_share_their_masters_coordinate() {
+fn followers_share_the_coordinate_of_their_leader() {
     let link_element = |name: &str| {
         format!(
             "<link name='{name}'><inertial><mass value='1'/>\
@@ -359,7 +359,7 @@ fn followers_share_their_masters_coordinate() {
 }
 
 #[test]
-fn a_link_with_inertia_has_mass() {
+fn link_with_inertia_must_have_mass() {
     let robot_with_joint_type = |kind: &str| {
         format!(
             "<link name='a'><inertial><mass value='0'/>
@@ -381,7 +381,7 @@ fn a_link_with_inertia_has_mass() {
 /// Checks that inconsistent moments of inertia of rounding-error magnitude, which exporters write for bodies
 /// without inertia, are accepted, and that larger ones are rejected.
 #[test]
-fn noise_is_no_inertia() {
+fn inertia_of_rounding_magnitude_counts_as_zero() {
     let robot_with_inertia = |mass: &str, moment: &str| {
         format!(
             "<link name='a'><inertial><mass value='{mass}'/>
@@ -411,7 +411,7 @@ fn noise_is_no_inertia() {
 }
 
 #[test]
-fn mistakes_are_reported_together_and_once() {
+fn errors_are_reported_together_and_once() {
     check_model(
         "#[body(mass = -1)] a: Body, #[body(mass = 1, com = 2)] b: Body,
         #[joint(ground -> a, along = x + y)] first: Sleeve,
@@ -442,7 +442,7 @@ fn mistakes_are_reported_together_and_once() {
 }
 
 #[test]
-fn elements_between_points_need_no_others() {
+fn two_point_elements_act_without_other_elements() {
     let plain = "#[body(mass = 1, inertia = 1)] hull: Body, #[joint(ground -> hull)] pose: Free,";
     let links = facts_text(plain, None);
     let links = links.lines().next().expect("there is a link");

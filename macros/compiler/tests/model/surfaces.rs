@@ -37,7 +37,7 @@ fn errors_of_surface_pair(pair: &str) -> String {
 }
 
 #[test]
-fn listed_pairs_of_surfaces_are_supported() {
+fn every_listed_pair_of_surfaces_is_supported() {
     let mut wrong = Vec::new();
     let mut check = |attribute: &str, is_listed: bool| {
         let found = errors_of_surface_pair(attribute);

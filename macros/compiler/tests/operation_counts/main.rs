@@ -62,7 +62,7 @@ fn main_operation_counts(arguments: &str, item: &str) -> [usize; 4] {
 }
 
 /// Checks that no operation count exceeds its bound.
-fn at_most(found: &[usize], bounds: &[usize], what: &str) {
+fn assert_within_bounds(found: &[usize], bounds: &[usize], what: &str) {
     assert!(found.iter().zip(bounds).all(|(n, most)| n <= most), "{what}: {found:?}, at most {bounds:?}");
 }
 
@@ -74,7 +74,7 @@ fn count_fused_instructions(program: &Program) -> usize {
 
 /// Returns the operations of the main functions of a robot, without sines and cosines, and the number of
 /// instructions after fusion. With `lanes`, the programs with lanes for identical limbs are counted.
-fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
+fn robot_operation_counts(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
     let arguments = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
     let all = compiled_programs(&arguments, "pub struct Robot;", &MAIN);
     let all: Vec<&Program> =
@@ -86,10 +86,14 @@ fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
 }
 
 #[test]
-fn exactly() {
-    assert_eq!(of_robot("ur5", "", false), [[229, 170, 93, 356], [149, 117, 70, 243]], "{MAIN:?}");
+fn operation_counts_of_small_mechanisms_are_exact() {
     assert_eq!(
-        of_robot("solo12", ", base = free", true),
+        robot_operation_counts("ur5", "", false),
+        [[229, 170, 93, 356], [149, 117, 70, 243]],
+        "{MAIN:?}"
+    );
+    assert_eq!(
+        robot_operation_counts("solo12", ", base = free", true),
         [[323, 292, 139, 757], [205, 187, 101, 499]],
         "{MAIN:?}"
     );
@@ -106,7 +110,7 @@ fn exactly() {
 }
 
 #[test]
-fn robots() {
+fn operation_counts_of_robots_are_exact() {
     let free = ", base = free";
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     for (name, options, lanes, total, fused) in [
@@ -120,16 +124,16 @@ fn robots() {
         ("simple_humanoid", free, false, [2000, 1910, 2380, 4850], [1250, 1190, 1640, 3210]),
         ("simple_humanoid", free, true, [1160, 1100, 1280, 2870], [730, 690, 890, 1880]),
     ] {
-        let [totals, instructions] = of_robot(name, options, lanes);
-        at_most(&totals, &total, &format!("{name}{options}, operations of {MAIN:?}"));
-        at_most(&instructions, &fused, &format!("{name}{options}, instructions of {MAIN:?}"));
+        let [totals, instructions] = robot_operation_counts(name, options, lanes);
+        assert_within_bounds(&totals, &total, &format!("{name}{options}, operations of {MAIN:?}"));
+        assert_within_bounds(&instructions, &fused, &format!("{name}{options}, instructions of {MAIN:?}"));
     }
 }
 
 /// Instructions of contact functions for four legs. Contact velocities of the legs are evaluated in lanes. A
 /// step with fixed contact modes calls these functions.
 #[test]
-fn contacts_of_legs() {
+fn operation_counts_of_legged_contacts_are_exact() {
     let item = "pub struct Robot {
         #[contact(FL_FOOT, ground.plane(z), friction = 0.7)] front_left: Contact,
         #[contact(FR_FOOT, ground.plane(z), friction = 0.7)] front_right: Contact,
@@ -145,15 +149,19 @@ fn contacts_of_legs() {
         .iter()
         .map(|p| count_fused_instructions(p.simd.as_deref().expect("its limbs are alike")))
         .collect();
-    at_most(&in_lanes, &[92, 126, 199, 1142, 1083], &format!("instructions in lanes of {functions:?}"));
+    assert_within_bounds(
+        &in_lanes,
+        &[92, 126, 199, 1142, 1083],
+        &format!("instructions in lanes of {functions:?}"),
+    );
     let alone: Vec<usize> = all.iter().map(count_fused_instructions).collect();
-    at_most(&alone, &[254, 262, 485, 3486, 3777], &format!("instructions of {functions:?}"));
+    assert_within_bounds(&alone, &[254, 262, 485, 3486, 3777], &format!("instructions of {functions:?}"));
 }
 
 /// Chains of pins about alternating axes, with numbers and with parameters. Inverse and forward dynamics grow
 /// linearly with the number of joints, the mass matrix grows quadratically.
 #[test]
-fn chains() {
+fn operation_counts_of_chains_grow_linearly() {
     let mut before: Option<[usize; 4]> = None;
     for (n, numbers, parameters) in [
         (1, [1, 0, 0, 1], [9, 0, 8, 10]),
@@ -164,9 +172,9 @@ fn chains() {
         (64, [4310, 4230, 30760, 12850], [5690, 5600, 33980, 14430]),
     ] {
         let found = main_operation_counts("gravity = -9.81 * z", &chain_source(n, false));
-        at_most(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
+        assert_within_bounds(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
         let symbolic = main_operation_counts("gravity = -9.81 * z", &chain_source(n, true));
-        at_most(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
+        assert_within_bounds(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
         // Beyond some length, articulated bodies replace the factorisation, so growth is tested from eight
         // joints on.
         if let Some(before) = before.filter(|_| n >= 16) {
@@ -187,7 +195,7 @@ fn chains() {
 /// dynamics, quadratically for the mass matrix and derivatives. The number of expressions for all functions
 /// grows at most quadratically.
 #[test]
-fn curves_of_growth() {
+fn operation_counts_grow_with_the_expected_power() {
     let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
     let parabolas = ["mass_matrix", "inverse_dynamics_derivatives", "coriolis_matrix"];
     let all = [&lines[..], &parabolas].concat();
@@ -235,7 +243,7 @@ fn placed_chain(n: usize) -> String {
 /// Common terms of the particles are summed once. The mass matrix takes `3/2 n²` operations, the
 /// factorisation takes the `n³/3` of a full matrix, and all other functions grow linearly.
 #[test]
-fn chains_placed_by_expressions() {
+fn operation_counts_of_chains_in_absolute_coordinates() {
     let lines = [
         ("bias_forces", 16, -10),
         ("inverse_dynamics", 22, -24),
@@ -259,7 +267,7 @@ fn chains_placed_by_expressions() {
 /// Checks that a mechanism just below the size limit for comparing candidates takes fewer expressions to
 /// compile than one of twice the size.
 #[test]
-fn comparing_stays_cheaper_than_growing() {
+fn comparing_candidates_costs_less_than_doubling_the_size() {
     let chain_declaration = |n: usize| {
         let mut item = String::from("pub struct Chain {");
         for k in 0..n {
@@ -298,7 +306,7 @@ fn prepared_operation_counts(arguments: &str) -> [usize; 4] {
 /// coefficients of the file, unless its bodies are symmetric. Zeros in a file save operations only as
 /// numbers: the UR5, whose bodies are symmetric, takes twice as many.
 #[test]
-fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
+fn prepared_mass_parameters_add_few_operations() {
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     for (name, options, parameters) in [
         ("panda", locked, "inertial"),
@@ -306,7 +314,7 @@ fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
         ("panda", locked, "inertial(\"panda_hand\")"),
     ] {
         let file = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
-        let plain: [usize; 4] = of_robot(name, options, false)[0];
+        let plain: [usize; 4] = robot_operation_counts(name, options, false)[0];
         let all = prepared_operation_counts(&format!("{file}, prepare, parameters = {parameters}"));
         let is_close = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
         assert!(is_close(all), "{name}: {all:?}, of the file's figures {plain:?}");

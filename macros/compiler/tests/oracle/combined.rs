@@ -14,7 +14,7 @@ use linkwork_compiler::{compile, read_source};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Time step of the finite differences.
+/// Time step of the finite differences, s.
 const H: f64 = 4e-3;
 /// Maximum difference, relative to the magnitude of the compared values.
 const TOLERANCE: f64 = 1e-7;
@@ -29,9 +29,9 @@ pub enum Law {
     Dashpot(f64),
     Inerter(f64),
     Push(f64),
-    /// Central force with the potential `−c / s`.
+    /// Central force with the potential `−c / s` at the distance `s`.
     Central(f64),
-    /// Potential `½ k s²` times the square of time.
+    /// Time-dependent spring with the potential `½ k s²` times the square of time.
     Growing(f64),
 }
 
@@ -47,7 +47,7 @@ pub struct Row {
 }
 
 #[test]
-fn combinations_obey_dalemberts_principle() {
+fn random_force_laws_obey_dalemberts_principle() {
     const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
     for row in ROWS {
         let constrained = row.item.contains("#[constraint") || row.item.contains("closing");
@@ -121,7 +121,7 @@ fn check_row(row: &Row, more: &str) {
         let state = State { t: 0.4, q, v: list(nv, 0.8), a: list(nv, 1.5), tau: list(nv, 2.0) };
         case.check_forces(&state);
         case.check_constraints(&state);
-        case.check_accelerations(&state);
+        case.check_equations_of_motion(&state);
         case.check_derivatives(&state);
     }
 }
@@ -390,7 +390,7 @@ impl Case<'_> {
     }
 
     /// Checks `M v̇ + h = τ + Jᵀ λ` and `J v̇ + b = 0`.
-    fn check_accelerations(&self, s: &State) {
+    fn check_equations_of_motion(&self, s: &State) {
         let nv = s.v.len();
         let constrained = self.has_function("constraint_jacobian");
         let found =

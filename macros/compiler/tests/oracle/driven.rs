@@ -51,7 +51,7 @@ pub fn check_driven_mechanism(seed: u64) -> bool {
         let state = State::new(&q, &unit, &zero);
         drives
             .iter()
-            .map(|drive| kane::value_of_measure(&spec, &state, &drive.measure).time_rate().re)
+            .map(|drive| kane::value_of_measure(&spec, &state, &drive.measure).first_time_derivative().re)
             .collect()
     };
     // Stored by rows.
@@ -59,7 +59,8 @@ pub fn check_driven_mechanism(seed: u64) -> bool {
     let jacobian: Vec<Vec<f64>> = (0..nv).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
     let state = State::new(&q, &v, &zero);
     let missing = drives.iter().map(|drive| {
-        2.0 * drive.path[2] - kane::value_of_measure(&spec, &state, &drive.measure).second_rate().re
+        2.0 * drive.path[2]
+            - kane::value_of_measure(&spec, &state, &drive.measure).second_time_derivative().re
     });
     let Some(a) = solve_linear_system(jacobian, missing.collect()) else { return false };
     let forces = kane::inverse_dynamics(&spec, &State::new(&q, &v, &a));

@@ -8,7 +8,7 @@ use syn::{Block, Expr, ExprCall, ExprField, Lit, Member, Pat, Stmt, UnOp};
 /// Reason why a generated function body cannot be interpreted.
 #[derive(Debug)]
 pub enum Stop {
-    /// The generated function body calls an unsupported function.
+    /// The function body calls a function that the interpreter does not support.
     Foreign,
     /// The body is invalid Rust, or it does not end with a value.
     Wrong(String),
@@ -63,7 +63,7 @@ impl Value {
     }
 }
 
-/// Applies an operation to numbers, or lane by lane.
+/// Applies an operation to numbers, or to vectors lane by lane.
 fn apply_lane_by_lane(values: &[Value], f: &dyn Fn(&[f64]) -> f64) -> Result<Value> {
     if let [Value::Number(_), ..] = values {
         let numbers: Result<Vec<f64>> =
@@ -452,7 +452,7 @@ fn sine_and_cosine(x: &Value) -> Result<Value> {
     Ok(Value::List(vec![apply_lane_by_lane(x, &|x| x[0].sin())?, apply_lane_by_lane(x, &|x| x[0].cos())?]))
 }
 
-/// Returns the value of an integer literal.
+/// Returns the value of an integer literal in a function body.
 fn index(expr: &Expr) -> Result<usize> {
     match expr {
         Expr::Lit(syn::ExprLit { lit: Lit::Int(k), .. }) => {
@@ -462,7 +462,7 @@ fn index(expr: &Expr) -> Result<usize> {
     }
 }
 
-/// Returns the integers among generic arguments.
+/// Returns the integers among the generic arguments of a call.
 fn generic_constants(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
     let constant_argument = |argument: &syn::GenericArgument| match argument {
         syn::GenericArgument::Const(expr) => index(expr).ok(),

@@ -48,7 +48,7 @@ fn unbound_values(text: &str) -> Vec<String> {
     missing
 }
 
-/// Returns the generated code or the messages as text.
+/// Returns the generated code of a mechanism as text, or the error messages.
 fn expanded_text(arguments: &str, item: &str) -> String {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
@@ -73,7 +73,7 @@ fn messages_by_frequency(seeds: std::ops::Range<u64>) -> String {
 /// `LINKWORK_SOURCES` names a file, the compilable ones are written to it, one module each, for a check with
 /// rustc.
 #[test]
-fn combinations_compile_or_are_answered() {
+fn random_mechanisms_compile_or_get_an_error() {
     let (mut compiled, mut modules) = (0, String::new());
     let all = test_seeds(120);
     for seed in all.clone() {
@@ -104,7 +104,7 @@ fn combinations_compile_or_are_answered() {
 /// A mechanism that exceeds the capacity for expressions is always rejected because its equations are too
 /// long, for any capacity.
 #[test]
-fn what_is_too_long_is_answered() {
+fn overlong_mechanisms_are_rejected_at_any_capacity() {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut long, all) = (0, test_seeds(60));
     for seed in all.clone() {
@@ -129,7 +129,7 @@ fn what_is_too_long_is_answered() {
 }
 
 #[test]
-fn functions_agree_with_each_other() {
+fn generated_functions_of_random_mechanisms_agree() {
     let all = test_seeds(60);
     let compared: Vec<usize> = all.clone().map(agreement::check_all_functions).collect();
     let (many, most) = (compared.iter().filter(|n| **n > 20).count() as u64, all.end - all.start);
@@ -137,7 +137,7 @@ fn functions_agree_with_each_other() {
 }
 
 #[test]
-fn chosen_mechanisms_agree_with_themselves() {
+fn generated_functions_of_chosen_mechanisms_agree() {
     for (arguments, fields, functions) in chosen::MECHANISMS {
         let item = format!("pub struct Any {{ {fields} }}");
         let compared = agreement::check_all(arguments, &item, functions, 0);
@@ -151,7 +151,7 @@ fn chosen_mechanisms_agree_with_themselves() {
 /// Checks a mechanism with many springs, whose passive forces are computed by one function that other
 /// functions call.
 #[test]
-fn long_passive_forces_agree() {
+fn separately_computed_passive_forces_agree() {
     let fields = chosen::springs_source(SPRINGS);
     let item = format!("pub struct Any {{ {fields} }}");
     let functions = ["__passive_forces", "__passive_derivatives", "inverse_dynamics_derivatives"];
@@ -185,7 +185,7 @@ const BODIES: [&str; 13] = [
 ];
 
 #[test]
-fn bodies_compute_what_their_programs_do() {
+fn emitted_bodies_compute_their_programs() {
     let mut run = BTreeSet::new();
     for seed in test_seeds(8) {
         let (arguments, item) = source::random_source(seed);
@@ -205,7 +205,7 @@ fn bodies_compute_what_their_programs_do() {
 /// Long bodies are divided into blocks, and sines and cosines are computed before the first block. Some of
 /// them are results themselves.
 #[test]
-fn sines_of_long_bodies_may_be_results() {
+fn sines_may_be_results_of_long_bodies() {
     let text = expanded_text(
         "gravity = -9.81 * y, derivatives",
         "pub struct Any {

@@ -76,7 +76,7 @@ fn assert_near(what: &str, seed: u64, found: &[f64], expected: &[f64], text: &st
 }
 
 /// Reference values of a motion: generalized forces, energies, centre of mass.
-struct Truth {
+struct ReferenceMotion {
     forces: Vec<f64>,
     kinetic: f64,
     potential: f64,
@@ -84,19 +84,19 @@ struct Truth {
 }
 
 /// Computes the reference values with Kane's equations, from the partial velocities of every link.
-fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
+fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> ReferenceMotion {
     let pieces = robot.moving_bodies(&State::new(q, v, a));
     let partial_velocities = |k: usize| {
         let unit: Vec<f64> = (0..v.len()).map(|j| f64::from(u8::from(j == k))).collect();
         robot.moving_bodies(&State::new(q, &unit, &vec![0.0; v.len()]))
     };
-    let force = |k: usize| {
+    let inertial_force = |k: usize| {
         pieces.iter().zip(partial_velocities(k)).map(|(p, moved)| p.inertial_force(&moved, GRAVITY).re).sum()
     };
     let mass: f64 = pieces.iter().map(|p| p.mass).sum();
     let moment = std::array::from_fn(|i| pieces.iter().map(|p| p.mass * p.p[i].0[0].re).sum::<f64>());
-    Truth {
-        forces: (0..v.len()).map(force).collect(),
+    ReferenceMotion {
+        forces: (0..v.len()).map(inertial_force).collect(),
         kinetic: pieces.iter().map(|p| p.kinetic_energy().re).sum(),
         potential: -(0..3).map(|i| GRAVITY[i] * moment[i]).sum::<f64>(),
         center: moment.map(|m| m / mass),
@@ -105,7 +105,7 @@ fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
 
 /// Files of two to seven links, some of which are locked, follow others or are in random order.
 #[test]
-fn random_files_move_as_the_format_says() {
+fn random_urdf_files_have_the_dynamics_of_the_format() {
     let mut kinds = [0; 7];
     for seed in test_seeds(20) {
         let mut random = Random::new(4_000_000 + seed);
@@ -118,7 +118,7 @@ fn random_files_move_as_the_format_says() {
 
 /// Files of all versions of SDF, which use different frames for links and axes, describe the same motion.
 #[test]
-fn random_sdf_files_move_as_their_version_says() {
+fn random_sdf_files_of_all_versions_have_equal_dynamics() {
     for seed in test_seeds(40) {
         let mut random = Random::new(4_500_000 + seed);
         let robot = Robot::random_robot(&sdf::OF_SDF, &mut random);

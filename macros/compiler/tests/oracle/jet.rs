@@ -6,7 +6,7 @@ use num_complex::Complex;
 use std::array::from_fn;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// Number with a derivative in its imaginary part.
+/// Complex number whose imaginary part contains a derivative.
 pub type C = Complex<f64>;
 
 /// Returns a real number as a complex number.
@@ -14,7 +14,7 @@ pub fn real_number(x: f64) -> C {
     C::new(x, 0.0)
 }
 
-/// Taylor series `x₀ + x₁ t + x₂ t²`.
+/// Taylor series `x₀ + x₁ t + x₂ t²` in time with complex coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet(pub [C; 3]);
 
@@ -50,13 +50,13 @@ impl Jet {
         Jet([angle, first, (c * dds - s * ddc - first * (c * dc + s * ds)) / square])
     }
 
-    /// Returns the first derivative with respect to time.
-    pub fn time_rate(self) -> C {
+    /// Returns the first time derivative of the Taylor series.
+    pub fn first_time_derivative(self) -> C {
         self.0[1]
     }
 
-    /// Returns the second derivative with respect to time.
-    pub fn second_rate(self) -> C {
+    /// Returns the second time derivative of the Taylor series.
+    pub fn second_time_derivative(self) -> C {
         self.0[2] * 2.0
     }
 }

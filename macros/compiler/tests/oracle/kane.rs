@@ -9,8 +9,8 @@ use crate::jet::{
     rotated_vector, rotation_about_axis, scaled_vector, sum_of_vectors,
 };
 use crate::motion::{
-    Piece, Pose, angular_motion, complex_dot, compose_poses, drifting_position, inverse, of_quaternion,
-    rotating_orientation, velocity_of_position,
+    Piece, Pose, angular_motion, complex_dot, compose_poses, drifting_position, inverse,
+    rotating_orientation, rotation_of_quaternion, velocity_of_position,
 };
 use crate::spec::{Body, Element, End, Kind, Law, Path, Place, Spec};
 use std::array::from_fn;
@@ -47,7 +47,7 @@ fn rotation_from_turns(list: &[(usize, f64)]) -> Matrix {
     })
 }
 
-fn of_place(place: &Place) -> Pose {
+fn pose_of_place(place: &Place) -> Pose {
     Pose { r: rotation_from_turns(&place.turns), p: constant_vector(place.at) }
 }
 
@@ -113,8 +113,8 @@ fn world_of_state(spec: &Spec, state: &State) -> World {
             joint_pose(body, &state.q[q0..q0 + nq], &state.v[v0..v0 + nv], &state.a[v0..v0 + nv]);
         (q0, v0) = (q0 + nq, v0 + nv);
         let parent = body.parent.map_or(Pose::identity(), |k| world.poses[k]);
-        let carried = compose_poses(&compose_poses(&parent, &of_place(&body.on_parent)), &motion);
-        let pose = compose_poses(&carried, &inverse(&of_place(&body.on_child)));
+        let carried = compose_poses(&compose_poses(&parent, &pose_of_place(&body.on_parent)), &motion);
+        let pose = compose_poses(&carried, &inverse(&pose_of_place(&body.on_child)));
         world.pieces.push(Piece {
             mass: body.mass,
             inertia: inertia_in_body_axes(body),
@@ -249,13 +249,13 @@ fn tension_of_law(law: Law, length: Jet) -> C {
     match law {
         Law::Attraction(k) => (length.0[0] * length.0[0]).inv() * k,
         Law::Friction(f) => {
-            let v = length.time_rate();
+            let v = length.first_time_derivative();
             let peak = (-(v * v) / (f.stribeck_speed * f.stribeck_speed)).exp() * (f.stiction - f.coulomb);
             (peak + f.coulomb) * (v / f.speed).tanh() + v * f.viscous
         }
         Law::Spring(k, free) => (length.0[0] - free) * k,
-        Law::Dashpot(c) => length.time_rate() * c,
-        Law::Inerter(b) => length.second_rate() * b,
+        Law::Dashpot(c) => length.first_time_derivative() * c,
+        Law::Inerter(b) => length.second_time_derivative() * b,
     }
 }
 
@@ -291,13 +291,14 @@ fn generalized_force(spec: &Spec, now: &World, partial: &World) -> C {
         tau += match element {
             Element::Between(law, a, b) => {
                 tension_of_law(*law, distance_between_ends(now, a, b))
-                    * distance_between_ends(partial, a, b).time_rate()
+                    * distance_between_ends(partial, a, b).first_time_derivative()
             }
             Element::Along(law, path) => {
-                tension_of_law(*law, length(now, path)) * length(partial, path).time_rate()
+                tension_of_law(*law, length(now, path)) * length(partial, path).first_time_derivative()
             }
             Element::On(law, body, k) => {
-                tension_of_law(*law, now.coordinates[*body][*k]) * partial.coordinates[*body][*k].time_rate()
+                tension_of_law(*law, now.coordinates[*body][*k])
+                    * partial.coordinates[*body][*k].first_time_derivative()
             }
             Element::Push(end, force) => {
                 -complex_dot(force.map(real_number), velocity_of_position(position_of_end(partial, end)))
@@ -343,13 +344,14 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
 /// Returns the configuration after an imaginary step along one velocity on the configuration manifold,
 /// `q ⊕ i h e`.
 pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
-    step(spec, q, k, C::new(0.0, h))
+    stepped_configuration(spec, q, k, C::new(0.0, h))
 }
 
 /// Returns the point with parameter `h` of a curve on the configuration manifold that starts at `q` with
 /// these velocities.
 pub fn displaced_configuration(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
-    let step_coordinate = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real_number(rate * h));
+    let step_coordinate =
+        |q: Vec<C>, (k, rate): (usize, &f64)| stepped_configuration(spec, &q, k, real_number(rate * h));
     let mut q = rates.iter().enumerate().fold(q.to_vec(), step_coordinate);
     let mut first = 0;
     for body in &spec.bodies {
@@ -366,7 +368,7 @@ pub fn displaced_configuration(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> V
 
 /// Returns the configuration after a step along one velocity, `q ⊕ h e`. Terms of second order in `h` are
 /// neglected.
-fn step(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
+fn stepped_configuration(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
     let mut stepped = q.to_vec();
     let (mut q0, mut v0) = (0, 0);
     for body in &spec.bodies {
@@ -389,7 +391,7 @@ fn step_joint(kind: Kind, q: &mut [C], k: usize, h: C) {
     match (kind, k) {
         (Kind::Ball, _) => rotate_quaternion(q, k, h),
         (Kind::Free, 0..3) => {
-            let r = of_quaternion(&q[3..]);
+            let r = rotation_of_quaternion(&q[3..]);
             (0..3).for_each(|i| q[i] += r[i][k] * h);
         }
         (Kind::Free, _) => rotate_quaternion(&mut q[3..], k - 3, h),

@@ -37,14 +37,14 @@ fn test_seeds(usual: u64) -> std::ops::Range<u64> {
 const PLAIN: Style = Style { bodies: 6, limbs: 0, decades: 0.3, noise: None };
 
 #[test]
-fn random_trees_obey_kanes_equations() {
+fn random_trees_satisfy_kanes_equations() {
     for seed in test_seeds(40) {
         programs::check_mechanism(&random_spec(seed, PLAIN), seed);
     }
 }
 
 #[test]
-fn random_limbs_obey_kanes_equations() {
+fn random_limbs_satisfy_kanes_equations() {
     for seed in test_seeds(20) {
         let limbs = 2 + seed as usize % 4;
         programs::check_mechanism(&random_spec(1_000_000 + seed, Style { limbs, ..PLAIN }), seed);
@@ -52,7 +52,7 @@ fn random_limbs_obey_kanes_equations() {
 }
 
 #[test]
-fn masses_over_twelve_powers_of_ten_obey_kanes_equations() {
+fn mass_ratios_of_twelve_decades_satisfy_kanes_equations() {
     for seed in test_seeds(30) {
         programs::check_mechanism(&random_spec(2_000_000 + seed, Style { decades: 6.0, ..PLAIN }), seed);
     }
@@ -60,7 +60,7 @@ fn masses_over_twelve_powers_of_ten_obey_kanes_equations() {
 
 /// Identical limbs with small deviations of masses and angles.
 #[test]
-fn limbs_of_all_masses_and_angles_with_noise_obey_kanes_equations() {
+fn nearly_identical_limbs_satisfy_kanes_equations() {
     for seed in test_seeds(20) {
         let noise = (seed % 2 == 0).then(|| 10.0_f64.powi(-16 + (seed % 14) as i32));
         let limbs = 2 + seed as usize % 4;
@@ -73,14 +73,14 @@ fn limbs_of_all_masses_and_angles_with_noise_obey_kanes_equations() {
 }
 
 #[test]
-fn driven_mechanisms_obey_kanes_equations() {
+fn driven_mechanisms_satisfy_kanes_equations() {
     let all = test_seeds(40);
     let checked = all.clone().filter(|seed| driven::check_driven_mechanism(*seed)).count();
     assert!(checked > 0 || all.count() < 40);
 }
 
 #[test]
-fn angles_with_noise_obey_kanes_equations() {
+fn noisy_right_angles_satisfy_kanes_equations() {
     for seed in test_seeds(30) {
         let noise = 10.0_f64.powi(-16 + (seed % 14) as i32);
         let style = Style { bodies: 8, noise: Some(noise), ..PLAIN };

@@ -15,7 +15,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Returns the identity pose.
+    /// Returns the identity pose, at rest.
     pub fn identity() -> Pose {
         Pose { r: identity(), p: constant_vector([0.0; 3]) }
     }
@@ -24,17 +24,17 @@ impl Pose {
 /// Rigid body with its mass, inertia and motion in ground axes.
 pub struct Piece {
     pub mass: f64,
-    /// Inertia about the centre of mass in body axes.
+    /// Inertia of the body about its centre of mass, in body axes.
     pub inertia: [[f64; 3]; 3],
     /// Rotation matrix of the body axes relative to the ground.
     pub r: Matrix,
-    /// Position of the centre of mass in ground axes.
+    /// Position of the body's centre of mass in ground axes.
     pub p: Vector,
 }
 
 impl Piece {
     /// Returns the product of the inertia in ground axes and a vector.
-    fn turned_inertia(&self, x: [C; 3]) -> [C; 3] {
+    fn inertia_times_vector(&self, x: [C; 3]) -> [C; 3] {
         let r: [[C; 3]; 3] = from_fn(|i| from_fn(|j| self.r[i][j].0[0]));
         let own: [C; 3] = from_fn(|i| (0..3).map(|j| r[j][i] * x[j]).sum());
         let product: [C; 3] = from_fn(|i| (0..3).map(|j| own[j] * self.inertia[i][j]).sum());
@@ -43,9 +43,9 @@ impl Piece {
 
     /// Returns the generalized inertial force, including gravity, for the partial velocity of `moved`.
     pub fn inertial_force(&self, moved: &Piece, gravity: [f64; 3]) -> C {
-        let force: [C; 3] = from_fn(|i| (self.p[i].second_rate() - gravity[i]) * self.mass);
+        let force: [C; 3] = from_fn(|i| (self.p[i].second_time_derivative() - gravity[i]) * self.mass);
         let (w, alpha) = angular_motion(&self.r);
-        let (first, second) = (self.turned_inertia(alpha), cross(w, self.turned_inertia(w)));
+        let (first, second) = (self.inertia_times_vector(alpha), cross(w, self.inertia_times_vector(w)));
         let torque: [C; 3] = from_fn(|i| first[i] + second[i]);
         complex_dot(force, velocity_of_position(moved.p)) + complex_dot(torque, angular_motion(&moved.r).0)
     }
@@ -53,7 +53,7 @@ impl Piece {
     /// Returns the kinetic energy of the body.
     pub fn kinetic_energy(&self) -> C {
         let (v, (w, _)) = (velocity_of_position(self.p), angular_motion(&self.r));
-        (complex_dot(v, v) * self.mass + complex_dot(w, self.turned_inertia(w))) * 0.5
+        (complex_dot(v, v) * self.mass + complex_dot(w, self.inertia_times_vector(w))) * 0.5
     }
 }
 
@@ -62,14 +62,14 @@ pub fn compose_poses(a: &Pose, b: &Pose) -> Pose {
     Pose { r: matrix_product(&a.r, &b.r), p: sum_of_vectors(a.p, rotated_vector(&a.r, b.p)) }
 }
 
-/// Returns the inverse pose.
+/// Returns the inverse of a pose.
 pub fn inverse(pose: &Pose) -> Pose {
     let r = transposed_matrix(&pose.r);
     Pose { r, p: rotated_vector(&r, pose.p).map(|x| -x) }
 }
 
 /// Returns the rotation matrix of a quaternion (x, y, z, w).
-pub fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
+pub fn rotation_of_quaternion(q: &[C]) -> [[C; 3]; 3] {
     let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
     let two = real_number(2.0);
     let one = real_number(1.0);
@@ -83,12 +83,12 @@ pub fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
 /// Returns `R (1 + [w] t + ([w'] + [w]²) t²/2)`: an orientation that rotates with angular velocity `w` and
 /// its rate in body axes.
 pub fn rotating_orientation(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
-    let r0 = of_quaternion(q);
-    let skew = |w: [C; 3]| {
+    let r0 = rotation_of_quaternion(q);
+    let skew_matrix = |w: [C; 3]| {
         let o = real_number(0.0);
         [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
     };
-    let (k, l) = (skew(w), skew(rate));
+    let (k, l) = (skew_matrix(w), skew_matrix(rate));
     from_fn(|i| {
         from_fn(|j| {
             let first: C = (0..3).map(|m| r0[i][m] * k[m][j]).sum();
@@ -136,10 +136,10 @@ pub fn angular_motion(r: &Matrix) -> ([C; 3], [C; 3]) {
 
 /// Returns the velocity, which is the first derivative of a position series.
 pub fn velocity_of_position(p: Vector) -> [C; 3] {
-    p.map(Jet::time_rate)
+    p.map(Jet::first_time_derivative)
 }
 
-/// Returns `a · b` of complex vectors, without conjugation.
+/// Returns the product `a · b` of complex vectors, without conjugation.
 pub fn complex_dot(a: [C; 3], b: [C; 3]) -> C {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

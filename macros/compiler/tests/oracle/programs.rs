@@ -1,4 +1,4 @@
-//! Comparison of the generated programs with the oracle.
+//! Comparison of the generated programs with Kane's equations.
 
 use crate::jet::{C, real_number};
 use crate::kane::{self, State};
@@ -65,14 +65,14 @@ pub fn check_mechanism(spec: &Spec, seed: u64) {
         return;
     }
     // With inerters on cables around cylinders, second derivatives may be too long.
-    let checked = check_with(spec, ", second_derivatives", &point, seed)
-        || check_with(spec, ", derivatives", &point, seed);
+    let checked = check_with_derivatives(spec, ", second_derivatives", &point, seed)
+        || check_with_derivatives(spec, ", derivatives", &point, seed);
     assert!(checked || kane::coordinate_and_velocity_counts(spec).1 > 40, "seed {seed}");
 }
 
 /// Compares the functions of a mechanism, with the derivatives of the option `word`, with the oracle. Returns
 /// false if the derivatives are too long.
-fn check_with(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
+fn check_with_derivatives(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
     let (arguments, item) = words::mechanism_source(spec, "Random", word);
     let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();

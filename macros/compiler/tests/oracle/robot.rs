@@ -16,12 +16,12 @@ pub const KINDS: [&str; 7] =
 pub struct Link {
     name: String,
     pub mass: f64,
-    /// Position of the centre of mass in link axes.
+    /// Position of the link's centre of mass in link axes.
     pub com: [f64; 3],
-    /// Inertia about the centre of mass in link axes.
+    /// Inertia of the link about its centre of mass, in link axes.
     pub inertia: [[f64; 3]; 3],
     inertial: String,
-    /// Joint to the parent; `None` for the root.
+    /// Joint of the link to its parent; `None` for the root.
     pub joint: Option<Joint>,
 }
 
@@ -33,19 +33,19 @@ pub struct Joint {
     pub rpy: [f64; 3],
     pub axis: [f64; 3],
     locked: bool,
-    /// Link whose joint is the leader, factor and offset.
+    /// Mimic relation: link whose joint is the leader, factor and offset.
     pub mimic: Option<(usize, f64, f64)>,
 }
 
 pub struct Robot {
     pub free: bool,
     pub links: Vec<Link>,
-    /// Order in which links and joints are written.
+    /// Order in which links and joints are written to the file.
     shuffle: Vec<usize>,
 }
 
-/// Returns the rotation matrix `R_z(yaw) R_y(pitch) R_x(roll)`.
-pub fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
+/// Returns the rotation matrix `R_z(yaw) R_y(pitch) R_x(roll)` of roll, pitch and yaw.
+pub fn rotation_of_rpy([roll, pitch, yaw]: [f64; 3]) -> Matrix {
     let axis_rotation = |k: usize, angle| {
         rotation_about_axis(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant_series(angle))
     };
@@ -70,7 +70,7 @@ impl Link {
         }
         let (com, rpy) =
             (random.four_digit_numbers(), random.four_digit_numbers::<3>().map(|angle| 3.0 * angle));
-        let rotated = fixed_axes(rpy);
+        let rotated = rotation_of_rpy(rpy);
         let r: [[f64; 3]; 3] = rotated.map(|row| row.map(|entry| entry.0[0].re));
         let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (own[0], own[1], own[2]);
         let inertial = format!(
@@ -247,7 +247,7 @@ impl Robot {
     pub fn pose_of_frame(&self, link: usize, xyz: [f64; 3], rpy: [f64; 3], state: &State) -> Pose {
         compose_poses(
             &self.poses_of_links(state)[link],
-            &Pose { r: fixed_axes(rpy), p: constant_vector(xyz) },
+            &Pose { r: rotation_of_rpy(rpy), p: constant_vector(xyz) },
         )
     }
 
@@ -298,7 +298,7 @@ impl Robot {
         order
     }
 
-    /// Returns the names of the entries of `q`.
+    /// Returns the names of the entries of the configuration `q`.
     pub fn coordinate_names(&self) -> Vec<String> {
         const PLACE: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
         let mut names = Vec::new();
@@ -360,7 +360,7 @@ impl Robot {
                 places.push(if self.free { floating_pose(state, entries[k]) } else { Pose::identity() });
                 continue;
             };
-            let start = Pose { r: fixed_axes(joint.rpy), p: constant_vector(joint.xyz) };
+            let start = Pose { r: rotation_of_rpy(joint.rpy), p: constant_vector(joint.xyz) };
             let moved = match joint.mimic {
                 _ if joint.locked => Pose::identity(),
                 Some((leader, factor, offset)) => {
@@ -429,7 +429,7 @@ impl Joint {
     }
 }
 
-/// Returns a coordinate as a Taylor series in time.
+/// Returns a joint coordinate as a Taylor series in time.
 fn coordinate_series(state: &State, [q, v]: [usize; 2]) -> Jet {
     Jet([state.q[q], state.v[v], state.a[v] * 0.5])
 }

@@ -9,14 +9,14 @@ use std::fmt::Write;
 /// Joint types of SDF, as indices of the joint types of URDF.
 pub const OF_SDF: [usize; 5] = [0, 1, 2, 3, 6];
 
-/// Minor numbers of the versions 1.2 to 1.12.
+/// Minor version numbers of SDF 1.2 to 1.12.
 const VERSIONS: [usize; 11] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
 
 type Matrix = [[f64; 3]; 3];
 
-/// Rigid pose with axes as columns, and position.
+/// Rigid pose: a matrix whose columns are the axes, and a position.
 #[derive(Clone, Copy)]
-struct Placed(Matrix, [f64; 3]);
+struct RigidPose(Matrix, [f64; 3]);
 
 fn rotate_vector(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
     m.map(|row| (0..3).map(|k| row[k] * v[k]).sum())
@@ -26,34 +26,34 @@ fn transposed_matrix(m: &Matrix) -> Matrix {
     from_fn(|i| from_fn(|j| m[j][i]))
 }
 
-impl Placed {
-    const ZERO: Placed = Placed([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
+impl RigidPose {
+    const ZERO: RigidPose = RigidPose([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
 
     /// Creates the pose with this position, and roll, pitch and yaw.
-    fn new(xyz: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Placed {
+    fn new(xyz: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> RigidPose {
         let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(f64::sin_cos);
         let rows = [
             [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
             [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
             [-sp, cp * sr, cp * cr],
         ];
-        Placed(rows, xyz)
+        RigidPose(rows, xyz)
     }
 
-    fn then_inner_pose(&self, inner: &Placed) -> Placed {
+    fn then_inner_pose(&self, inner: &RigidPose) -> RigidPose {
         let columns = transposed_matrix(&inner.0).map(|column| rotate_vector(&self.0, column));
         let moved = rotate_vector(&self.0, inner.1);
-        Placed(transposed_matrix(&columns), from_fn(|k| self.1[k] + moved[k]))
+        RigidPose(transposed_matrix(&columns), from_fn(|k| self.1[k] + moved[k]))
     }
 
-    fn inverse_pose(&self) -> Placed {
+    fn inverse_pose(&self) -> RigidPose {
         let axes = transposed_matrix(&self.0);
-        Placed(axes, rotate_vector(&axes, self.1).map(|x| -x))
+        RigidPose(axes, rotate_vector(&axes, self.1).map(|x| -x))
     }
 
     /// Returns the pose as the six numbers of an SDF element `<pose>`: position, then roll, pitch and yaw.
     fn pose_text(&self) -> String {
-        let Placed(m, [x, y, z]) = self;
+        let RigidPose(m, [x, y, z]) = self;
         let angles =
             [m[2][1].atan2(m[2][2]), (-m[2][0]).atan2(m[0][0].hypot(m[1][0])), m[1][0].atan2(m[0][0])];
         [*x, *y, *z].iter().chain(&angles).map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ")
@@ -65,16 +65,16 @@ struct Writer<'a> {
     robot: &'a Robot,
     minor: usize,
     /// Pose of each link in the model while all coordinates are zero.
-    placed: Vec<Placed>,
+    placed: Vec<RigidPose>,
 }
 
 /// Writes the robot in a random version. Its joint types must be in [`OF_SDF`].
 pub fn sdf_text(robot: &Robot, random: &mut Random) -> String {
     let minor = VERSIONS[random.index_below(VERSIONS.len())];
-    let mut placed = vec![Placed::ZERO];
+    let mut placed = vec![RigidPose::ZERO];
     for link in &robot.links[1..] {
-        let parent = link.joint.as_ref().map_or(Placed::ZERO, |joint| {
-            placed[joint.parent].then_inner_pose(&Placed::new(joint.xyz, joint.rpy))
+        let parent = link.joint.as_ref().map_or(RigidPose::ZERO, |joint| {
+            placed[joint.parent].then_inner_pose(&RigidPose::new(joint.xyz, joint.rpy))
         });
         placed.push(parent);
     }
@@ -98,7 +98,7 @@ pub fn sdf_text(robot: &Robot, random: &mut Random) -> String {
 impl Writer<'_> {
     /// Returns the attribute of a pose that names a random link before link `k`, with the pose of that link.
     /// May also return an empty attribute and the pose `usual`.
-    fn random_base_pose(&self, k: usize, usual: Placed, random: &mut Random) -> (String, Placed) {
+    fn random_base_pose(&self, k: usize, usual: RigidPose, random: &mut Random) -> (String, RigidPose) {
         let word = match self.minor {
             ..5 => "",
             5 | 6 => "frame",
@@ -113,10 +113,10 @@ impl Writer<'_> {
 
     fn link_text(&self, k: usize, random: &mut Random) -> String {
         let Link { mass, com, inertia, .. } = self.robot.links[k];
-        let (attribute, base) = self.random_base_pose(k, Placed::ZERO, random);
+        let (attribute, base) = self.random_base_pose(k, RigidPose::ZERO, random);
         let pose = base.inverse_pose().then_inner_pose(&self.placed[k]).pose_text();
         // Before version 1.7, the pose of the inertial frame may be relative to other links.
-        let center = self.placed[k].then_inner_pose(&Placed::new(com, [0.0; 3]));
+        let center = self.placed[k].then_inner_pose(&RigidPose::new(com, [0.0; 3]));
         let usual = (String::new(), self.placed[k]);
         let (of_center, base) =
             if self.minor < 7 { self.random_base_pose(k, usual.1, random) } else { usual };
@@ -154,11 +154,11 @@ impl Writer<'_> {
         let other = random.index_below(self.placed.len());
         let own = self.placed[child];
         let (attribute, element, frame) = match self.minor {
-            ..5 => (String::new(), "", Placed::ZERO),
+            ..5 => (String::new(), "", RigidPose::ZERO),
             5 | 6 if in_model => {
-                (String::new(), "<use_parent_model_frame>true</use_parent_model_frame>", Placed::ZERO)
+                (String::new(), "<use_parent_model_frame>true</use_parent_model_frame>", RigidPose::ZERO)
             }
-            7.. if in_model => (" expressed_in=\"__model__\"".to_string(), "", Placed::ZERO),
+            7.. if in_model => (" expressed_in=\"__model__\"".to_string(), "", RigidPose::ZERO),
             7.. if random.index_below(2) == 0 => {
                 (format!(" expressed_in=\"l{other}\""), "", self.placed[other])
             }

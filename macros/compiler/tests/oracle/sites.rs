@@ -4,7 +4,7 @@ use crate::jet::{C, constant_vector, cross, real_number};
 use crate::kane::State;
 use crate::motion::{Pose, angular_motion, complex_dot, velocity_of_position};
 use crate::random::Random;
-use crate::robot::{Robot, fixed_axes, space_separated};
+use crate::robot::{Robot, rotation_of_rpy, space_separated};
 use crate::test_seeds;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
@@ -61,7 +61,7 @@ fn forces_of_motors(text: &str, locked: &[String]) -> Forces {
     Forces { coordinates, inputs, values: Box::new(evaluate_forces) }
 }
 
-/// Frame on a link or on the ground.
+/// Site of a random MJCF file: a frame on a link or on the ground.
 struct Site {
     link: Option<usize>,
     xyz: [f64; 3],
@@ -86,7 +86,7 @@ impl Site {
     }
 
     fn pose_of_site(&self, robot: &Robot, state: &State) -> Pose {
-        let ground = Pose { r: fixed_axes(self.rpy), p: constant_vector(self.xyz) };
+        let ground = Pose { r: rotation_of_rpy(self.rpy), p: constant_vector(self.xyz) };
         self.link.map_or(ground, |link| robot.pose_of_frame(link, self.xyz, self.rpy, state))
     }
 }
@@ -104,7 +104,7 @@ impl Motor {
     fn motor_power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
         let [on, against] = self.sites.map(|k| sites[k].pose_of_site(robot, state));
         let axes = if self.against { &against } else { &on };
-        let in_ground =
+        let vector_in_ground =
             |v: [f64; 3]| -> [C; 3] { from_fn(|i| (0..3).map(|j| axes.r[i][j].0[0] * v[j]).sum()) };
         let [x, y, z, a, b, c] = self.gear;
         let (mut v, mut w) = (velocity_of_position(on.p), angular_motion(&on.r).0);
@@ -115,14 +115,14 @@ impl Motor {
             v = from_fn(|i| v[i] - other[i] - carried[i]);
             w = from_fn(|i| w[i] - turn[i]);
         }
-        complex_dot(in_ground([x, y, z]), v) + complex_dot(in_ground([a, b, c]), w)
+        complex_dot(vector_in_ground([x, y, z]), v) + complex_dot(vector_in_ground([a, b, c]), w)
     }
 }
 
 /// Checks that motors on sites do the work of their forces. Random files have two to seven links and one to
 /// four motors, on moving and fixed links.
 #[test]
-fn random_motors_on_sites_do_the_work_of_their_forces() {
+fn random_site_motors_do_the_work_of_their_forces() {
     for seed in test_seeds(60) {
         let mut random = Random::new(6_000_000 + seed);
         let robot = Robot::random_mjcf(&mut random);
@@ -185,7 +185,7 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
 
 /// Nozzle at the end of an arm: results calculated by hand and with MuJoCo 4.0.0.
 #[test]
-fn motors_on_sites_of_an_arm() {
+fn site_motors_of_an_arm_agree_with_mujoco() {
     let arm_model_text = |actuator: &str| {
         format!(
             "<mujoco><worldbody><site name='base'/><body name='arm'><inertial pos='0.2 0 0' mass='1' diaginertia='0.01 0.01 0.01'/>\

@@ -86,15 +86,15 @@ pub struct Body {
     pub pitch: f64,
     pub mass: f64,
     pub com: [f64; 3],
-    /// Principal moments, about axes that are rotated by [`Body::inertia_turns`].
+    /// Principal moments of inertia, about axes that are rotated by [`Body::inertia_turns`].
     pub moments: [f64; 3],
     pub inertia_turns: Vec<(usize, f64)>,
-    /// Mass and position of a particle on the body.
+    /// Mass and position of a particle that is fixed on the body.
     pub particle: Option<(f64, [f64; 3])>,
     pub slider: Option<Slider>,
 }
 
-/// Point of a body or of the ground.
+/// End of a force element: a point of a body or of the ground.
 #[derive(Clone, Debug)]
 pub struct End {
     pub body: Option<usize>,
@@ -127,7 +127,7 @@ pub struct Friction {
     pub speed: f64,
 }
 
-/// Path whose length a force element acts on.
+/// Path along which a force element acts, by the path's length.
 #[derive(Clone, Debug)]
 pub enum Path {
     /// Rope of straight segments through three points.
@@ -150,7 +150,7 @@ pub enum Element {
     Push(End, [f64; 3]),
     /// Force in body axes at a point of a body.
     Follow(End, [f64; 3]),
-    /// Torque on a body, in ground axes.
+    /// Input torque on a body, in ground axes.
     Twist(usize, [f64; 3]),
 }
 
@@ -177,7 +177,7 @@ pub struct Style {
     pub noise: Option<f64>,
 }
 
-/// Source of random numbers and choices for a mechanism.
+/// Source of random numbers and choices for a random mechanism.
 struct Source(Random);
 
 impl Source {
@@ -193,7 +193,7 @@ impl Source {
         std::array::from_fn(|_| self.0.uniform_number(bound))
     }
 
-    /// Returns a coordinate axis or a random axis.
+    /// Returns a coordinate axis or a random unit vector.
     fn random_axis(&mut self, style: &Style) -> [f64; 3] {
         let mut axis = [0.0; 3];
         if style.noise.is_some() || !self.has_chance(3) {
@@ -394,7 +394,7 @@ const LIMB_KINDS: [Kind; 12] = [
     Kind::Free,
 ];
 
-/// Returns the random mechanism of a seed.
+/// Returns the random mechanism that a seed determines.
 pub fn random_spec(seed: u64, style: Style) -> Spec {
     let mut source = Source(Random::new(seed));
     let mut bodies: Vec<Body> = Vec::new();

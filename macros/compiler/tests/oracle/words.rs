@@ -1,4 +1,4 @@
-//! Source text of random test mechanisms.
+//! Writer of random test mechanisms as source text.
 
 use crate::spec::{Body, Element, End, Friction, Kind, Law, Path, Place, Spec};
 use std::fmt::Write;
@@ -98,7 +98,7 @@ pub fn end_text(end: &End) -> String {
 fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String) {
     let _ = match element {
         Element::Between(law, a, b) => {
-            let (words, kind) = law_words(*law, "free_length");
+            let (words, kind) = law_in_words(*law, "free_length");
             writeln!(
                 out,
                 "#[acts(between = ({}, {}), {words})] element{k}: {kind},",
@@ -107,7 +107,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
             )
         }
         Element::Along(law, path) => {
-            let (words, kind) = law_words(*law, "free_length");
+            let (words, kind) = law_in_words(*law, "free_length");
             writeln!(out, "#[acts(on = {}, {words})] element{k}: {kind},", length(path))
         }
         Element::On(law, body, coordinate) => {
@@ -116,7 +116,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
             let is_angle = matches!(which, ".turn" | ".first" | ".second" | ".angle")
                 || matches!(kind, Kind::Pin | Kind::Screw);
             let free = if is_angle { "free_angle" } else { "free_length" };
-            let (words, kind) = law_words(*law, free);
+            let (words, kind) = law_in_words(*law, free);
             writeln!(out, "#[acts(on = joint{body}{which}, {words})] element{k}: {kind},")
         }
         Element::Push(end, [x, y, z]) => writeln!(
@@ -157,7 +157,7 @@ fn length(path: &Path) -> String {
     }
 }
 
-fn law_words(law: Law, free: &str) -> (String, &'static str) {
+fn law_in_words(law: Law, free: &str) -> (String, &'static str) {
     match law {
         Law::Spring(k, free_value) => (format!("stiffness = {k:?}, {free} = {free_value:?}"), "Spring"),
         Law::Dashpot(c) => (format!("damping = {c:?}"), "Dashpot"),

@@ -1,4 +1,4 @@
-//! Linkages with singular configurations, and random instances of them.
+//! Linkages with singular configurations, with random dimensions, for tests.
 
 use linkwork::prelude::*;
 use std::f64::consts::PI;
@@ -183,7 +183,7 @@ pub struct Row {
     s3: Spring,
 }
 
-/// Ranges of masses and springs, in powers of ten.
+/// Ranges from which random masses and springs are drawn, in powers of ten.
 pub struct Style {
     pub masses: f64,
     pub springs: f64,

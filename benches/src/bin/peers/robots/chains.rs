@@ -22,7 +22,7 @@ macro_rules! chain {
     };
 }
 
-/// Returns the constructors of all chains.
+/// Returns the constructors of all chains of the comparison.
 pub fn chain_constructors() -> Vec<fn() -> Robot> {
     vec![
         || chain!("chain_6", 6, Chain6, Chain6Parameters, PreparedChain6Parameters, functions derivatives),

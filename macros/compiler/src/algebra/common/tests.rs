@@ -46,7 +46,7 @@ fn random_polynomial(r: &mut Random, most: u64) -> Polynomial {
 }
 
 #[test]
-fn factored_sums_are_what_they_were() {
+fn factored_sums_keep_their_values() {
     let mut ring = test_ring();
     let mut r = Random(77);
     let (mut shorter, atoms) = (0, [0.3, 1.7, -0.9, 2.2, 0.7, -1.3, 1.1, 0.6, -0.4]);
@@ -76,7 +76,7 @@ fn factored_sums_are_what_they_were() {
 
 /// Expands `(a + b) (c + d)` and recovers the factors.
 #[test]
-fn products_of_sums_are_found() {
+fn factors_of_expanded_products_are_recovered() {
     let mut ring = test_ring();
     let sum_of_two_terms =
         |i, j, sign| Polynomial::sum_of_terms(vec![term_of_atom(i, 1.0), term_of_atom(j, sign)]);
@@ -91,7 +91,7 @@ fn term_of_atom(atom: usize, coefficient: f64) -> Term {
 
 /// Kinetic and potential energy have no common factors taken out, nor have the coefficients of a linear form.
 #[test]
-fn what_is_apart_stays_apart() {
+fn factor_scope_limits_common_factors() {
     let mut ring = test_ring();
     let [m, g, x, v] = [0, 1, 4, 6].map(|k| Polynomial::sum_of_terms(vec![term_of_atom(k, 1.0)]));
     let kinetic = product_of_polynomials(&mut ring, &[&m, &v, &v]);

@@ -3,7 +3,7 @@
 use super::{Atom, Polynomial, Ring, Wave};
 use crate::expr::{Expr, Graph};
 
-/// Builds a polynomial as an expression of `graph`.
+/// Converts a polynomial to an expression of `graph`.
 pub fn polynomial_to_expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomial) -> Expr<'g> {
     let mut sum = graph.zero();
     for term in &p.terms {

@@ -8,7 +8,7 @@ const HALF: usize = 32;
 /// The highest bit of every power: set after an overflow, otherwise zero.
 const OVERFLOW: u128 = 0x8888_8888_8888_8888_8888_8888_8888_8888;
 
-/// Product of powers of atoms, with powers of at most seven. The same type is used as a bit mask of such
+/// Product of powers of atoms, with powers of at most seven. The type also serves as a bit mask of such
 /// powers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Monomial {
@@ -39,11 +39,11 @@ impl Monomial {
     }
 
     /// Returns a mask of the bits that are set only in powers of the atom above one.
-    pub fn above_one(atom: usize) -> Monomial {
+    pub fn bits_above_first_power(atom: usize) -> Monomial {
         Monomial::power_bits(atom, 14)
     }
 
-    /// Returns the power of an atom.
+    /// Returns the power of an atom in the monomial.
     pub fn power_of_atom(self, atom: usize) -> u8 {
         let shifted = match atom {
             0..HALF => self.low >> (4 * atom),
@@ -52,7 +52,7 @@ impl Monomial {
         (shifted & 15) as u8
     }
 
-    /// Returns the atoms with their powers.
+    /// Returns the atoms of the monomial with their powers.
     pub fn atoms_with_powers(self) -> impl Iterator<Item = (usize, u8)> {
         let mut rest = self;
         std::iter::from_fn(move || {
@@ -75,7 +75,7 @@ impl Monomial {
         ((product.high | product.low) & OVERFLOW == 0).then_some(product)
     }
 
-    /// Divides by a monomial that is a divisor of this one.
+    /// Divides the monomial by one of its divisors.
     pub fn quotient(self, divisor: Monomial) -> Monomial {
         Monomial { high: self.high.wrapping_sub(divisor.high), low: self.low.wrapping_sub(divisor.low) }
     }
@@ -105,12 +105,12 @@ impl Monomial {
         Monomial { high: self.high | other.high, low: self.low | other.low }
     }
 
-    /// Returns the bits that are in a mask.
+    /// Returns the bits of the monomial that are set in a mask.
     pub fn restrict_to_mask(self, mask: Monomial) -> Monomial {
         Monomial { high: self.high & mask.high, low: self.low & mask.low }
     }
 
-    /// Returns the bits that are not in a mask.
+    /// Returns the bits of the monomial that are not set in a mask.
     pub fn clear_mask(self, mask: Monomial) -> Monomial {
         Monomial { high: self.high & !mask.high, low: self.low & !mask.low }
     }

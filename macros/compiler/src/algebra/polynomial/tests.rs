@@ -11,7 +11,7 @@ pub fn rank_of_symbol(symbol: Symbol) -> Rank {
     if symbol.0 < 3 { Rank::Parameter } else { Rank::Position }
 }
 
-fn value_of(symbol: Symbol) -> f64 {
+fn value_of_symbol(symbol: Symbol) -> f64 {
     0.37 + 0.61 * f64::from(symbol.0)
 }
 
@@ -52,19 +52,19 @@ fn assert_near(a: f64, b: f64, what: &str) {
 }
 
 #[test]
-fn random_expressions_keep_their_values() {
+fn normal_forms_keep_values_of_random_expressions() {
     let mut r = Random(0x9E37_79B9_7F4A_7C15);
     let mut found = 0;
     for _ in 0..400 {
         let graph = Graph::new();
         let e = random_expression(&graph, &mut r, 5, true);
-        let expected = eval_one(e, &value_of);
+        let expected = eval_one(e, &value_of_symbol);
         let mut normal = Normal::new(&graph, rank_of_symbol);
         let Some(p) = normal.normal_form(e) else { continue };
-        assert_near(normal.ring.evaluate_polynomial(&p, &value_of), expected, &format!("{e:?}"));
+        assert_near(normal.ring.evaluate_polynomial(&p, &value_of_symbol), expected, &format!("{e:?}"));
         let Some(short) = simplify_trigonometry(&mut normal.ring, &p) else { continue };
         assert!(short.terms.len() <= p.terms.len());
-        assert_near(normal.ring.evaluate_polynomial(&short, &value_of), expected, &format!("{e:?}"));
+        assert_near(normal.ring.evaluate_polynomial(&short, &value_of_symbol), expected, &format!("{e:?}"));
         found += 1;
     }
     assert!(found > 300, "only {found} of 400 are within the limits");
@@ -72,7 +72,7 @@ fn random_expressions_keep_their_values() {
 
 /// The normal form of a normal form is identical to it.
 #[test]
-fn normal_forms_of_normal_forms_are_the_same() {
+fn normal_form_is_idempotent() {
     let mut r = Random(77);
     for _ in 0..200 {
         let graph = Graph::new();
@@ -102,7 +102,7 @@ fn assert_zero(build: impl Fn(&Graph, [Expr<'_>; 3]) -> Vec<usize>) {
 }
 
 #[test]
-fn identities_are_zero() {
+fn algebraic_identities_reduce_to_zero() {
     assert_zero(|graph, [x, y, z]| {
         let zeros = [
             (x + y) * (x - y) - (x.square() - y.square()),
@@ -122,7 +122,7 @@ fn identities_are_zero() {
 }
 
 #[test]
-fn monomials_multiply_and_divide() {
+fn monomial_products_and_quotients_add_exponents() {
     let (x, y) = (Monomial::first_power_of_atom(2), Monomial::first_power_of_atom(40));
     let product = x.checked_product(x).and_then(|m| m.checked_product(y)).unwrap();
     assert_eq!(product.atoms_with_powers().collect::<Vec<_>>(), [(2, 2), (40, 1)]);
@@ -141,7 +141,7 @@ fn monomials_multiply_and_divide() {
 }
 
 #[test]
-fn what_grows_too_large_is_given_up() {
+fn polynomials_beyond_the_limits_are_abandoned() {
     let graph = Graph::new();
     let sum = (0..6).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
     let mut normal = Normal::new(&graph, rank_of_symbol);

@@ -21,7 +21,7 @@ fn shortest_form_text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 3], Expr<'g>)
 }
 
 #[test]
-fn squares() {
+fn squared_sine_plus_squared_cosine_is_one() {
     assert_eq!(shortest_form_text(|_, [a, ..], m| m * a.sin().square() + m * a.cos().square()), "m");
     assert_eq!(shortest_form_text(|g, [a, ..], m| m * (g.one() - a.cos().square())), "m sin²(a)");
     assert_eq!(shortest_form_text(|g, [a, ..], m| m * (g.one() - a.sin().square())), "m cos²(a)");
@@ -34,7 +34,7 @@ fn squares() {
 }
 
 #[test]
-fn sums_of_angles() {
+fn addition_theorems_combine_angles() {
     assert_eq!(shortest_form_text(|_, [a, b, _], _| a.cos() * b.cos() + a.sin() * b.sin()), "cos(a - b)");
     assert_eq!(shortest_form_text(|_, [a, b, _], _| a.cos() * b.cos() - a.sin() * b.sin()), "cos(a + b)");
     assert_eq!(shortest_form_text(|_, [a, b, _], _| a.sin() * b.cos() - a.cos() * b.sin()), "sin(a - b)");
@@ -45,7 +45,7 @@ fn sums_of_angles() {
 }
 
 #[test]
-fn products_stay_products() {
+fn products_of_sines_keep_their_shortest_form() {
     assert_eq!(shortest_form_text(|_, [a, b, _], m| m * a.cos() * b.cos()), "m cos(a) cos(b)");
     assert_eq!(shortest_form_text(|_, [a, b, _], _| (a + b).cos() + (a - b).cos()), "2 cos(a) cos(b)");
     assert_eq!(shortest_form_text(|_, [a, ..], _| (a * 2.0).sin()), "2 sin(a) cos(a)");
@@ -55,7 +55,7 @@ fn products_stay_products() {
 
 /// Simplifies the squared length of a bent arm: the square of a sum of cosines.
 #[test]
-fn bent_arm() {
+fn squared_length_of_a_bent_arm_simplifies() {
     let text = shortest_form_text(|_, [a, b, _], m| (m * a.cos() + (a + b).cos()).square());
     assert_eq!(text, "m² cos²(a) + 2 m cos(a) cos(a + b) + cos²(a + b)");
 }

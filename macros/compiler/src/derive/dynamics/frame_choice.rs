@@ -1,4 +1,4 @@
-//! Choice of the frames in which dynamics is derived.
+//! Choice of the link frames in which the dynamics is derived.
 
 use super::variants::Variants;
 use crate::derive::specialisation::{Candidate, Specialisation};

@@ -14,7 +14,7 @@ use crate::passes::{Passes, Variant};
 use crate::vectorise::{self, Limbs};
 use std::rc::Rc;
 
-/// Variants of a model with the same frames.
+/// Variants of a model that have the same link frames.
 pub struct Variants<'g> {
     all: Vec<Variant<'g>>,
     pub joints: Vec<Joint<'g>>,
@@ -55,19 +55,20 @@ impl<'g> Variants<'g> {
             }
             _ => Vec::new(),
         };
-        let in_lanes = |variant: &Variant<'g>| {
+        let forces_of_variant = |variant: &Variant<'g>| {
             let passive_forces_of_variant = || passive_forces(&variant.model, true);
             Some((
                 Limbs::new(&variant.model, &joints, &groups, passive_forces_of_variant)?,
                 variant.for_inverse_dynamics,
             ))
         };
-        let limbs = all.iter().filter_map(in_lanes).collect();
+        let limbs = all.iter().filter_map(forces_of_variant).collect();
         Variants { all, joints, specialisation, speeds, limbs, bias: Bias::default() }
     }
 
-    pub fn find_bias(&mut self) {
-        let (variant, program) = self.specialisation.cheapest_of(self.inverse_dynamics_candidates(false));
+    pub fn find_bias_forces(&mut self) {
+        let (variant, program) =
+            self.specialisation.cheapest_candidate(self.inverse_dynamics_candidates(false));
         let simd = self.recursions_in_lanes(false).map(|list| self.specialisation.candidate_with_size(list));
         let simd = self
             .specialisation
@@ -158,7 +159,7 @@ impl<'g> Variants<'g> {
             return Vec::new();
         };
         let v = mechanics::velocity_symbols(bias);
-        let wrenches = rnea::wrenches(bias, &self.joints, &v, None);
+        let wrenches = rnea::link_wrenches(bias, &self.joints, &v, None);
         let tau = mechanics::generalized_force_symbols(bias);
         let all = self.general_variants().filter_map(|model| {
             let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
@@ -262,7 +263,7 @@ impl<'g> Variants<'g> {
         bias: &[Expr<'g>],
     ) -> (crba::Matrix<'g>, Vec<Expr<'g>>) {
         let mass = crba::mass_matrix(model, &self.joints);
-        let force = massless::loaded_force(model, &self.joints, force, bias);
-        (massless::loaded_mass(model, &self.joints, mass), force)
+        let force = massless::augmented_force(model, &self.joints, force, bias);
+        (massless::augmented_mass(model, &self.joints, mass), force)
     }
 }

@@ -3,7 +3,7 @@
 
 use super::parts::{Coefficients, rank_of_symbol};
 use super::rest::vanishes_identically;
-use crate::algebra::factor::without_noise;
+use crate::algebra::factor::remove_noise;
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 /// Maximum number of velocities of mechanisms whose polynomial is printed.
 const VELOCITIES: usize = 3;
-/// Maximum number of rows, including constraints and states.
+/// Maximum number of rows of the linear system, including constraints and states.
 const ROWS: usize = 6;
 /// Maximum degree: the largest power of the root that a monomial can have.
 const DEGREE: usize = 7;
@@ -44,7 +44,7 @@ pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) 
         return None;
     }
     let mut normal = Normal::new(model.graph, rank_of_symbol);
-    normal.ring.allow_more();
+    normal.ring.raise_limits();
     let mut matrix: Vec<Vec<OfRoot>> = Vec::new();
     for k in 0..rows {
         let deviations = 0..rows - nc;
@@ -62,7 +62,7 @@ pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) 
     let determinant = determinant_of_polynomials(&matrix, &mut normal.ring)?;
     let mut coefficients = Vec::new();
     for p in determinant {
-        let p = without_noise(&normal.ring, &p);
+        let p = remove_noise(&normal.ring, &p);
         let p = simplify_trigonometry(&mut normal.ring, &p)?;
         coefficients.push(if vanishes_identically(&normal.ring, &p) { Polynomial::default() } else { p });
     }

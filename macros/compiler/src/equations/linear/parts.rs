@@ -19,13 +19,13 @@ pub fn multiplier_symbol(k: usize) -> Quantity {
 /// Symbol of the roots of the characteristic polynomial.
 pub const ROOT: Quantity = Quantity::Laplace;
 
-/// Coefficients of the linear equations, evaluated at rest.
+/// Coefficients of the linear equations, evaluated at the equilibrium.
 pub struct Coefficients<'g> {
     /// Coefficients of the deviations, of their first and of their second derivatives, by row.
     pub orders: [Matrix<'g>; 3],
-    /// Coefficients of the inputs, by row.
+    /// Coefficients of the inputs, by row of the linear equations.
     pub inputs: Matrix<'g>,
-    /// Coefficients of the multipliers, by row.
+    /// Coefficients of the constraint multipliers, by row of the linear equations.
     pub multipliers: Matrix<'g>,
 }
 

@@ -3,7 +3,7 @@
 //! numerically at random parameters.
 
 use super::parts::{Coefficients, deviation_symbol, linear_equation_rows as linear_rows, multiplier_symbol};
-use crate::algebra::factor::without_noise;
+use crate::algebra::factor::remove_noise;
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
@@ -16,7 +16,7 @@ use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity, Supplied};
 
-/// Maximum number of random parameter sets that are tried.
+/// Maximum number of random parameter sets that are tried in the numeric check.
 const TRIALS: u64 = 400;
 /// Required number of parameter sets for which all values are finite.
 const ENOUGH: usize = 6;
@@ -27,16 +27,16 @@ const ROUNDING: f64 = 1e-10;
 const MAX_FORCE_CHARACTERS: usize = 100;
 
 /// Values of coordinates, inputs, multipliers and states at a declared equilibrium.
-pub struct Rest<'g> {
+pub struct RestValues<'g> {
     configuration: Vec<Expr<'g>>,
     inputs: Vec<Expr<'g>>,
     multipliers: Vec<Expr<'g>>,
     states: Vec<(usize, Expr<'g>)>,
 }
 
-impl<'g> Rest<'g> {
-    fn new(at: &Equilibrium<'g>) -> Rest<'g> {
-        Rest {
+impl<'g> RestValues<'g> {
+    fn new(at: &Equilibrium<'g>) -> RestValues<'g> {
+        RestValues {
             configuration: at.configuration.clone(),
             inputs: at.inputs.clone(),
             multipliers: Vec::new(),
@@ -80,7 +80,7 @@ impl<'g> Rest<'g> {
     }
 }
 
-/// Text of an error, and advice on how to correct it.
+/// Error text with advice on how to correct the error.
 type Refusal = (String, &'static str);
 
 /// Checks an equilibrium and determines its multipliers. Returns `None` with an error in `cx` if forces do
@@ -91,7 +91,7 @@ pub fn check_equilibrium<'g>(
     balance: &[Expr<'g>],
     normal: &mut Normal<'g>,
     cx: &mut Diagnostics,
-) -> Option<Rest<'g>> {
+) -> Option<RestValues<'g>> {
     match find_rest_state(model, at, balance, normal) {
         Ok(rest) => Some(rest),
         Err((what, help)) => {
@@ -106,13 +106,13 @@ fn find_rest_state<'g>(
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
     normal: &mut Normal<'g>,
-) -> Result<Rest<'g>, Refusal> {
-    let mut rest = Rest::new(at);
+) -> Result<RestValues<'g>, Refusal> {
+    let mut rest = RestValues::new(at);
     let name = &at.name;
     if !model.frictions.is_empty() || model.constraints.iter().any(|c| !c.friction.is_empty()) {
         return Err((format!("dry friction cannot be linearised about `{name}`"), DRY_FRICTION));
     }
-    if let Some(k) = not_unit(model, &rest, normal) {
+    if let Some(k) = first_non_unit_quaternion(model, &rest, normal) {
         return Err((
             format!("the quaternion of `{}` in `{name}` has not the length one", model.configuration[k]),
             "its components are those of a unit quaternion; what is not named is an orientation along the \
@@ -127,7 +127,7 @@ fn find_rest_state<'g>(
             "declare the equilibrium away from it, or round the corner off",
         ));
     }
-    check_kept(model, at, &rest, &kept, normal)?;
+    check_persistence(model, at, &rest, &kept, normal)?;
     let mut left = rest.evaluate_at_rest(balance);
     if !model.constraints.is_empty() {
         (rest.multipliers, left) = solve_for_multipliers(model, &rest, balance).ok_or_else(|| {
@@ -138,7 +138,7 @@ fn find_rest_state<'g>(
         })?;
     }
     for (k, force) in left.into_iter().enumerate() {
-        is_zero(-force, normal, model).map_err(|left| {
+        check_zero(-force, normal, model).map_err(|left| {
             let velocity = &model.velocities[k].0;
             (
                 format!("`{name}` is not an equilibrium: the residual force {left} acts on `{velocity}`"),
@@ -151,16 +151,16 @@ fn find_rest_state<'g>(
 }
 
 /// Checks that the constraints are satisfied and remain so at rest, and that the states are constant.
-fn check_kept<'g>(
+fn check_persistence<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
-    rest: &Rest<'g>,
+    rest: &RestValues<'g>,
     kept: &[Expr<'g>],
     normal: &mut Normal<'g>,
 ) -> Result<(), Refusal> {
     let name = &at.name;
     for (c, row) in model.constraints.iter().zip(rest.evaluate_at_rest(kept)) {
-        is_zero(row, normal, model).map_err(|left| {
+        check_zero(row, normal, model).map_err(|left| {
             (
                 format!("`{name}` does not satisfy the constraint `{}`: the residual is {left}", c.name),
                 "give the coordinates values that fulfil it: `#[equilibrium(joint = value)]`, with \
@@ -169,7 +169,7 @@ fn check_kept<'g>(
         })?;
     }
     let rates: Vec<Expr<'g>> = model.constraints.iter().flat_map(|c| [c.rate, c.bias]).collect();
-    if rest.evaluate_at_rest(&rates).into_iter().any(|rate| is_zero(rate, normal, model).is_err()) {
+    if rest.evaluate_at_rest(&rates).into_iter().any(|rate| check_zero(rate, normal, model).is_err()) {
         return Err((
             format!("constraints that are driven in time leave `{name}` no rest"),
             "linear equations with constant coefficients need constraints that stay the same",
@@ -177,7 +177,7 @@ fn check_kept<'g>(
     }
     let states: Vec<Expr<'g>> = at.states.iter().map(|state| state.rate).collect();
     for (state, rate) in at.states.iter().zip(rest.evaluate_at_rest(&states)) {
-        is_zero(rate, normal, model).map_err(|left| {
+        check_zero(rate, normal, model).map_err(|left| {
             let state = &model.parameters[state.parameter];
             (
                 format!("the state `{state}` changes in `{name}`: its rate is {left}"),
@@ -189,11 +189,15 @@ fn check_kept<'g>(
 }
 
 /// Returns the index of the first component of a quaternion whose length is not one, if any.
-fn not_unit<'g>(model: &Model<'g>, rest: &Rest<'g>, normal: &mut Normal<'g>) -> Option<usize> {
+fn first_non_unit_quaternion<'g>(
+    model: &Model<'g>,
+    rest: &RestValues<'g>,
+    normal: &mut Normal<'g>,
+) -> Option<usize> {
     quaternion_indices(model).find(|q| {
         let components = &rest.configuration[*q..q + 4];
         let length = components.iter().fold(model.graph.zero(), |sum, c| sum + c.square());
-        is_zero(length - model.graph.one(), normal, model).is_err()
+        check_zero(length - model.graph.one(), normal, model).is_err()
     })
 }
 
@@ -203,8 +207,8 @@ fn quaternion_indices(model: &Model<'_>) -> impl Iterator<Item = usize> {
 }
 
 /// Checks that an expression of the parameters is always zero. The error is the nonzero remainder as text.
-fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Result<(), String> {
-    let p = normal.normal_form(e).map(|p| without_noise(&normal.ring, &p));
+fn check_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Result<(), String> {
+    let p = normal.normal_form(e).map(|p| remove_noise(&normal.ring, &p));
     let Some(p) = p.and_then(|p| simplify_trigonometry(&mut normal.ring, &p)) else {
         let tape = Tape::new(&[e]);
         let zero =
@@ -251,7 +255,7 @@ pub fn random_parameter(s: Symbol, seed: u64) -> f64 {
 
 /// Returns the name of a function whose argument at rest is at a kink, a jump, or a point with an infinite
 /// derivative.
-fn singular_function_at_rest<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
+fn singular_function_at_rest<'g>(e: &[Expr<'g>], rest: &RestValues<'g>) -> Option<&'static str> {
     let graph = e.first()?.graph();
     let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
     for id in nodes_in_order(graph, e) {
@@ -292,12 +296,12 @@ fn singular_function_at_rest<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'st
 /// linearly dependent.
 fn solve_for_multipliers<'g>(
     model: &Model<'g>,
-    rest: &Rest<'g>,
+    rest: &RestValues<'g>,
     balance: &[Expr<'g>],
 ) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
     let g = model.graph;
     let count = model.constraints.len();
-    let without = Rest {
+    let without = RestValues {
         multipliers: vec![g.zero(); count],
         configuration: rest.configuration.clone(),
         inputs: rest.inputs.clone(),

@@ -22,7 +22,7 @@ pub struct Stability {
     pub divided: Vec<Symbol>,
     /// Multiplicity of the root zero of the characteristic polynomial.
     pub zeros: usize,
-    /// The frequency, rad/s, if all nonzero roots belong to one undamped oscillation.
+    /// Frequency of oscillation, rad/s, if all nonzero roots belong to one undamped oscillation.
     pub frequency: Option<Polynomial>,
     /// Stability with respect to the nonzero roots.
     pub verdict: Verdict,
@@ -31,11 +31,12 @@ pub struct Stability {
 /// Stability with respect to the nonzero roots of the characteristic polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// Asymptotically stable if all of these polynomials are positive.
+    /// The equilibrium is asymptotically stable if all of these polynomials are positive.
     Asymptotic(Vec<Polynomial>),
-    /// Stable if all of these polynomials are positive: deviations oscillate and remain bounded.
+    /// The equilibrium is stable if all of these polynomials are positive: deviations oscillate and remain
+    /// bounded.
     Oscillation(Vec<Polynomial>),
-    /// Not asymptotically stable for any values of the parameters.
+    /// The equilibrium is not asymptotically stable for any values of the parameters.
     NotAsymptotic,
     /// The equilibrium is unstable for all values of the parameters.
     Unstable,
@@ -45,7 +46,7 @@ pub enum Verdict {
     Long,
 }
 
-/// Maximum number of terms of all conditions.
+/// Maximum number of terms of all stability conditions together.
 const TERMS: usize = 120;
 
 /// Analyses the stability. `None` if the sign of the leading coefficient depends on the parameters.
@@ -153,7 +154,7 @@ fn hurwitz_determinant(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Op
     expand_minor(&rows, ring)
 }
 
-/// Returns a determinant, expanded along its first row.
+/// Returns a determinant of polynomials, expanded along its first row.
 fn expand_minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
     let Some((first, others)) = rows.split_first() else { return Some(Polynomial::from_number(1.0)) };
     let mut sum = Polynomial::default();
@@ -180,7 +181,7 @@ fn oscillation_conditions(
     let squares: Vec<Polynomial> = rest.iter().step_by(2).cloned().collect();
     let mut conditions = squares[..squares.len() - 1].to_vec();
     if !conservative && squares.len() > 2 {
-        match discriminant(&squares, ring) {
+        match polynomial_discriminant(&squares, ring) {
             Some(discriminant) => conditions.push(discriminant),
             None => return Verdict::Long,
         }
@@ -189,7 +190,7 @@ fn oscillation_conditions(
 }
 
 /// Returns the discriminant of a quadratic or cubic polynomial, `None` for other degrees.
-fn discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
+fn polynomial_discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
     let mut product = |factor: f64, parts: &[usize]| {
         let one = Polynomial::from_number(factor);
         parts.iter().try_fold(one, |product, k| ring.multiply_and_reduce(&product, &c[*k]))

@@ -1,7 +1,7 @@
 //! Formats linear equations as plain text, LaTeX and MathML, with the user's names.
 
 use super::super::written::{
-    marks_of_coordinate_rates, name_and_derivative_order as name_of, names_with, wrap_sentences,
+    marks_of_coordinate_rates, name_and_derivative_order as name_of, typeset_names_with, wrap_sentences,
 };
 use super::Linear;
 use super::parts::{ROOT, multiplier_symbol};
@@ -17,13 +17,13 @@ use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
 
 /// Maximum number of columns of equations in the text.
 const WIDTH: usize = 100;
-/// Names of the roots, in order of preference.
+/// Names for the roots of the characteristic polynomial, in order of preference.
 const ROOTS: [&str; 4] = ["s", "r", "sigma", "root"];
-/// Names of the natural frequency, in order of preference.
+/// Names for the natural frequency, in order of preference.
 const FREQUENCIES: [&str; 3] = ["omega", "omega_n", "frequency"];
 
-/// Names of all symbols of linear equations.
-struct Words<'a, 'g> {
+/// Names of all symbols that occur in linear equations.
+struct SymbolNames<'a, 'g> {
     model: &'a Model<'g>,
     at: &'a Equilibrium<'g>,
     /// Name of the deviation that belongs to each velocity.
@@ -32,8 +32,8 @@ struct Words<'a, 'g> {
     frequency: String,
 }
 
-impl<'a, 'g> Words<'a, 'g> {
-    fn new(model: &'a Model<'g>, at: &'a Equilibrium<'g>) -> Words<'a, 'g> {
+impl<'a, 'g> SymbolNames<'a, 'g> {
+    fn new(model: &'a Model<'g>, at: &'a Equilibrium<'g>) -> SymbolNames<'a, 'g> {
         let first_unused_word = |choices: &[&str]| {
             let is_used_as_name = |word: &str| {
                 let velocities = model.velocities.iter().map(|(name, _)| name);
@@ -45,7 +45,7 @@ impl<'a, 'g> Words<'a, 'g> {
             let found = choices.iter().find(|word| !is_used_as_name(word));
             found.or(choices.last()).map_or_else(String::new, ToString::to_string)
         };
-        Words {
+        SymbolNames {
             model,
             at,
             deviations: deviation_names(model),
@@ -98,24 +98,27 @@ fn deviation_names(model: &Model<'_>) -> Vec<String> {
 }
 
 /// Printed linear equations in one style.
-struct Lines {
-    /// Left and right side of every equation.
+struct LinearLines {
+    /// Left and right side of every linear equation.
     equations: Vec<(String, String)>,
-    /// Names and values of the quantities that are not zero at rest.
+    /// Names and values of the quantities that are not zero at the equilibrium.
     values: Vec<(String, String)>,
     polynomial: Option<String>,
     frequency: Option<String>,
     conditions: Vec<String>,
 }
 
-impl Lines {
-    fn new<S: Style + Copy>(linear: &Linear, style: S) -> Lines {
+impl LinearLines {
+    fn new<S: Style + Copy>(linear: &Linear, style: S) -> LinearLines {
         let writer = Writer::with_style(&linear.ring, style);
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
         let stability = linear.stability.as_ref();
-        let of = |stability: &Stability| {
-            Some(Writer::with_style(&stability.ring, style).format_linear_form(&in_one(stability)?))
+        let format_stability = |stability: &Stability| {
+            Some(
+                Writer::with_style(&stability.ring, style)
+                    .format_linear_form(&merged_characteristic(stability)?),
+            )
         };
         let format_conditions = |stability: &Stability| match &stability.verdict {
             Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
@@ -128,14 +131,14 @@ impl Lines {
             let frequency = stability.frequency.as_ref()?;
             Some(Writer::with_style(&stability.ring, style).format_polynomial(frequency))
         });
-        Lines {
+        LinearLines {
             equations: sides
                 .map(|(a, b)| (writer.format_linear_form(a), writer.format_linear_form(b)))
                 .collect(),
             values: values
                 .map(|(what, p)| (style.symbol(what.symbol(), 1), writer.format_polynomial(p)))
                 .collect(),
-            polynomial: stability.and_then(of),
+            polynomial: stability.and_then(format_stability),
             frequency,
             conditions: stability.map(format_conditions).unwrap_or_default(),
         }
@@ -143,7 +146,7 @@ impl Lines {
 }
 
 /// Returns the characteristic polynomial as one polynomial in its root; `None` if a power of it is too high.
-fn in_one(stability: &Stability) -> Option<Polynomial> {
+fn merged_characteristic(stability: &Stability) -> Option<Polynomial> {
     let root = stability.ring.atoms.iter().position(|atom| *atom == Atom::Symbol(ROOT.symbol()));
     let root = root.map_or(Monomial::ONE, Monomial::first_power_of_atom);
     let mut terms: Vec<Term> = Vec::new();
@@ -161,28 +164,28 @@ fn in_one(stability: &Stability) -> Option<Polynomial> {
 
 /// Formats linear equations as plain text, LaTeX and MathML.
 pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
-    let words = Words::new(model, at);
+    let words = SymbolNames::new(model, at);
     let primed_name = |symbol| name_with_primes(words.name_and_derivative_order(symbol));
-    let plain = plain_text(&words, linear, &Lines::new(linear, Plain { name: &primed_name }));
+    let plain = plain_text(&words, linear, &LinearLines::new(linear, Plain { name: &primed_name }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);
-    let names = names_with(model, &others);
+    let names = typeset_names_with(model, &others);
     let name_with_dots = |symbol| {
         let (name, dots) = words.name_and_derivative_order(symbol);
         (names.get(&name), dots)
     };
-    let lines = Lines::new(linear, Latex { name: &name_with_dots });
+    let lines = LinearLines::new(linear, Latex { name: &name_with_dots });
     let spell_in_latex = |word: &str| crate::equations::print::latex::format_name(&names.get(word), 0);
     let latex = format_aligned(&printed_equations(&lines, &spell_in_latex(&words.frequency)));
     let frequency = crate::equations::print::mathml::format_name(&names.get(&words.frequency), 0, 1);
     let mathml = format_equations_as_html(&printed_equations(
-        &Lines::new(linear, MathMl { name: &name_with_dots }),
+        &LinearLines::new(linear, MathMl { name: &name_with_dots }),
         &frequency,
     ));
     Written { plain, latex, mathml }
 }
 
-fn plain_text(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
+fn plain_text(words: &SymbolNames<'_, '_>, linear: &Linear, lines: &LinearLines) -> String {
     let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
     let values: Vec<String> = lines.values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let header = match values.as_slice() {
@@ -193,7 +196,7 @@ fn plain_text(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
     out.extend(lines.equations.iter().map(|(motion, force)| wrapped_line(&format!("{motion} = {force}"))));
     out.push('\n');
     if let (Some(stability), Some(polynomial)) = (&linear.stability, &lines.polynomial) {
-        out += &(wrap_sentences(&about_roots(words, stability)) + "\n");
+        out += &(wrap_sentences(&roots_sentence(words, stability)) + "\n");
         out += &wrapped_line(&format!("    {polynomial} = 0"));
         if let Some(frequency) = &lines.frequency {
             out += &format!("Natural frequency, rad/s:\n    {} = {frequency}\n", words.frequency);
@@ -201,15 +204,15 @@ fn plain_text(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
         out += &(wrap_sentences(verdict_sentence(stability)) + "\n");
         out.extend(lines.conditions.iter().map(|condition| wrapped_line(&format!("    {condition} > 0"))));
         if stability.zeros > 0 {
-            out += &(wrap_sentences(&about_zeros(words, stability)) + "\n");
+            out += &(wrap_sentences(&zero_roots_sentence(words, stability)) + "\n");
         }
         out.push('\n');
     }
     out + &legend_sentences(words) + "\n"
 }
 
-/// Returns the sentence before the characteristic equation.
-fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
+/// Returns the sentence that introduces the characteristic equation.
+fn roots_sentence(words: &SymbolNames<'_, '_>, stability: &Stability) -> String {
     let root = &words.root;
     let divided: Vec<String> =
         stability.divided.iter().map(|s| words.name_and_derivative_order(*s).0).collect();
@@ -239,8 +242,8 @@ fn verdict_sentence(stability: &Stability) -> &'static str {
     }
 }
 
-/// Returns the sentence about zero roots.
-fn about_zeros(words: &Words<'_, '_>, stability: &Stability) -> String {
+/// Returns the sentence that explains zero roots of the characteristic equation.
+fn zero_roots_sentence(words: &SymbolNames<'_, '_>, stability: &Stability) -> String {
     let root = &words.root;
     match stability.zeros {
         1 => format!("One root is {root} = 0: that is said of the others; there is a deviation that stays."),
@@ -251,8 +254,8 @@ fn about_zeros(words: &Words<'_, '_>, stability: &Stability) -> String {
     }
 }
 
-/// Returns sentences that explain the notation.
-fn legend_sentences(words: &Words<'_, '_>) -> String {
+/// Returns the sentences of the legend that explain the notation of linear equations.
+fn legend_sentences(words: &SymbolNames<'_, '_>) -> String {
     let model = words.model;
     let primes = marks_of_coordinate_rates(model).iter().any(|plain| *plain);
     let mut sentences = Vec::new();
@@ -295,8 +298,8 @@ fn legend_sentences(words: &Words<'_, '_>) -> String {
     wrap_sentences(&sentences.join(" "))
 }
 
-/// Returns all printed equations and conditions, one per string.
-fn printed_equations(lines: &Lines, frequency: &str) -> Vec<String> {
+/// Returns all printed linear equations and stability conditions, one per string.
+fn printed_equations(lines: &LinearLines, frequency: &str) -> Vec<String> {
     let mut all: Vec<String> =
         lines.equations.iter().map(|(motion, force)| format!("{motion} = {force}")).collect();
     all.extend(lines.polynomial.iter().map(|p| format!("{p} = 0")));

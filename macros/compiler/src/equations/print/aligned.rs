@@ -6,9 +6,9 @@ use std::str::Chars;
 
 /// Width of a line, in tenths of a character: about the width of a page.
 const ROOM: usize = 1000;
-/// Maximum width of an equation's side that gets no line of its own.
+/// Maximum width of an equation's side that shares a line with the other side.
 const SHORT: usize = 240;
-/// Start of a continuation line.
+/// LaTeX text at the start of a continuation line.
 const INDENT: &str = "\\quad {} ";
 /// Width of [`INDENT`].
 const INDENTED: usize = 30;
@@ -32,15 +32,15 @@ pub fn format_aligned(lines: &[String]) -> String {
 }
 
 /// A part of a line that begins at a sign.
-struct Part {
+struct LinePart {
     /// End of the part, as an index of characters in the line.
     end: usize,
-    /// Nesting depth of parentheses at its first sign.
+    /// Nesting depth of parentheses at the first sign of the part.
     depth: usize,
     width: usize,
 }
 
-/// Breaks an equation into lines that fit the page.
+/// Breaks a LaTeX equation into lines that fit the width of a page.
 fn break_equation(line: &str) -> Vec<&str> {
     let parts = split_at_outer_signs(line);
     let total: usize = parts.iter().map(|part| part.width).sum();
@@ -51,7 +51,7 @@ fn break_equation(line: &str) -> Vec<&str> {
         if left <= room {
             break;
         }
-        let Some(next) = break_before(&parts, from, room, left) else { break };
+        let Some(next) = next_line_start(&parts, from, room, left) else { break };
         let end = parts[next - 1].end;
         lines.push(line[start..end].trim());
         left -= parts[from..next].iter().map(|part| part.width).sum::<usize>();
@@ -63,7 +63,7 @@ fn break_equation(line: &str) -> Vec<&str> {
 
 /// Returns the index of the part that begins the next line: the last one of minimum depth that fits, or the
 /// next one if none fits.
-fn break_before(parts: &[Part], from: usize, room: usize, left: usize) -> Option<usize> {
+fn next_line_start(parts: &[LinePart], from: usize, room: usize, left: usize) -> Option<usize> {
     let (mut taken, mut best) = (0, None::<usize>);
     for (k, part) in parts.iter().enumerate().skip(from) {
         // A short side gets no line of its own.
@@ -80,12 +80,12 @@ fn break_before(parts: &[Part], from: usize, room: usize, left: usize) -> Option
 }
 
 /// Splits a line before signs that are outside of braces and of `\left` … `\right`.
-fn split_at_outer_signs(line: &str) -> Vec<Part> {
+fn split_at_outer_signs(line: &str) -> Vec<LinePart> {
     let mut parts = Vec::new();
     let (mut braces, mut grown, mut depth, mut start, mut at_depth) = (0_usize, 0_usize, 0_usize, 0, 0);
     let mut push = |start: usize, end: usize, depth: usize| {
         let width = estimate_width(&line[start..end]);
-        parts.push(Part { end, depth, width });
+        parts.push(LinePart { end, depth, width });
     };
     for (at, c) in line.char_indices() {
         match c {
@@ -169,7 +169,7 @@ mod tests {
     use super::{break_equation, estimate_width, format_aligned, split_at_outer_signs};
 
     #[test]
-    fn widths_are_those_of_what_is_seen() {
+    fn latex_widths_count_visible_characters() {
         assert_eq!(estimate_width("a"), 10);
         assert_eq!(estimate_width("\\theta"), 10);
         assert_eq!(estimate_width("\\frac{a\\,b}{c}"), 22);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn long_lines_are_broken_before_outer_signs() {
+    fn long_lines_break_before_outermost_signs() {
         let term = "a_{1}\\,b\\,\\cos\\theta\\,\\left(c + d\\right)";
         let long = [term; 12].join(" + ") + " = \\tau";
         let lines = break_equation(&long);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_begin_with_terms() {
+    fn leading_minus_is_set_in_braces_in_latex() {
         let text = format_aligned(&["-a = 0".to_string(), "b = 1".to_string()]);
         assert_eq!(text, "\\begin{aligned}\n& {-}a = 0 \\\\\n& b = 1\n\\end{aligned}\n");
     }

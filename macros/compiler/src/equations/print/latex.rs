@@ -11,7 +11,7 @@ pub struct Latex<'a> {
     pub name: &'a dyn Fn(Symbol) -> (Name, u8),
 }
 
-/// Space that is printed between factors.
+/// LaTeX space that is printed between factors.
 const SPACE: &str = "\\,";
 
 impl Style for Latex<'_> {

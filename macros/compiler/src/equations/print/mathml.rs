@@ -17,9 +17,9 @@ pub struct MathMl<'a> {
 const BREAKS: [char; 3] = ['\u{1}', '\u{2}', '\u{3}'];
 /// Formulas of more than this number of characters are also broken within parentheses.
 const WIDE: usize = 36;
-/// Operator between two factors.
+/// MathML operator between two factors.
 const TIMES: &str = "<mo rspace=\".17em\">\u{2062}</mo>";
-/// Operator between a function and an argument without parentheses.
+/// MathML operator between a function and an argument without parentheses.
 const OF: &str = "<mo rspace=\".17em\">\u{2061}</mo>";
 
 /// Formats equations and inequalities as HTML in one line of source, a paragraph each with indented
@@ -54,7 +54,7 @@ fn remove_break_marks(text: &str) -> String {
     text.replace(BREAKS, "")
 }
 
-/// Estimates the number of visible characters of a formula.
+/// Estimates the number of visible characters of a MathML formula.
 fn estimate_width(text: &str) -> usize {
     let (mut inside, mut count) = (false, 0);
     for c in text.chars() {
@@ -73,7 +73,7 @@ fn wrap_in_row(text: &str) -> String {
     format!("<mrow>{}</mrow>", remove_break_marks(text))
 }
 
-fn to_power(base: &str, power: u8) -> String {
+fn raised_to_power(base: &str, power: u8) -> String {
     if power == 1 { base.to_string() } else { format!("<msup>{base}<mn>{power}</mn></msup>") }
 }
 
@@ -109,7 +109,7 @@ impl Style for MathMl<'_> {
         match number {
             Number::Fraction(p, q) => fraction_element(number_element(p), q),
             Number::Pi(p, q, power) => {
-                let pi = to_power("<mi>π</mi>", power.unsigned_abs());
+                let pi = raised_to_power("<mi>π</mi>", power.unsigned_abs());
                 match *power > 0 {
                     true => fraction_element(multiple_of_term(p, pi), q),
                     false => format!("<mfrac><mn>{p}</mn>{}</mfrac>", multiple_of_term(q, pi)),
@@ -139,14 +139,16 @@ impl Style for MathMl<'_> {
     }
 
     fn power(&self, sum: &str, power: u8) -> String {
-        to_power(&wrap_in_row(&put_in_parentheses(sum)), power)
+        raised_to_power(&wrap_in_row(&put_in_parentheses(sum)), power)
     }
 
     fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
         let head = match (function, arguments) {
-            ("sqrt", [x]) => return to_power(&format!("<msqrt>{}</msqrt>", wrap_in_row(&x.text)), power),
+            ("sqrt", [x]) => {
+                return raised_to_power(&format!("<msqrt>{}</msqrt>", wrap_in_row(&x.text)), power);
+            }
             ("abs", [x]) => {
-                return to_power(
+                return raised_to_power(
                     &format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", remove_break_marks(&x.text)),
                     power,
                 );
@@ -160,7 +162,7 @@ impl Style for MathMl<'_> {
             ("signum", _) => "sgn".to_string(),
             _ => function.to_string(),
         };
-        let head = to_power(&format!("<mi>{}</mi>", escape_xml(&head)), power);
+        let head = raised_to_power(&format!("<mi>{}</mi>", escape_xml(&head)), power);
         if let [Argument { text, lone: true }] = arguments {
             return format!("{head}{OF}{}", remove_break_marks(text));
         }
@@ -216,7 +218,7 @@ pub fn format_name(name: &Name, dots: u8, power: u8) -> String {
     };
     let indices: Vec<String> = name.indices.iter().map(format_glyph).collect();
     let indices = match indices.as_slice() {
-        [] => return to_power(&base, power),
+        [] => return raised_to_power(&base, power),
         [one] => one.clone(),
         all => format!("<mrow>{}</mrow>", all.join("<mo>,</mo>")),
     };
@@ -234,7 +236,7 @@ fn format_glyph(glyph: &Glyph) -> String {
     }
 }
 
-/// Escapes text for XML.
+/// Escapes the special characters of XML in a text.
 fn escape_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
@@ -244,7 +246,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_sums_are_broken_between_terms() {
+    fn long_sums_in_mathml_break_between_terms() {
         let term = "<mi>alpha</mi><mi>beta</mi>";
         let style = MathMl { name: &|_| (Name::parse("x"), 0) };
         let sum = [term; 8].join(style.sign(false, false));

@@ -6,11 +6,11 @@
 pub struct Name {
     /// Part of the name that is typeset on the line.
     pub base: Glyph,
-    /// Parts of the name that are typeset as subscripts.
+    /// Subscripts of the name.
     pub indices: Vec<Glyph>,
 }
 
-/// Indivisible part of a name.
+/// Indivisible part of a printed name.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it all")]
 pub enum Glyph {
@@ -21,7 +21,7 @@ pub enum Glyph {
     Word(String),
 }
 
-/// Greek letters that differ from Latin ones. Without π, which would be read as the number.
+/// Greek letters that differ from Latin letters, except π, which is reserved for the number.
 const GREEK: [(&str, char); 34] = [
     ("alpha", 'α'),
     ("beta", 'β'),
@@ -74,7 +74,7 @@ impl Glyph {
 }
 
 impl Name {
-    /// Returns a name as a single word.
+    /// Returns a name that is typeset as one word, without subscripts.
     pub fn single_word_name(text: &str) -> Name {
         Name { base: Glyph::Word(text.to_string()), indices: Vec::new() }
     }
@@ -82,7 +82,7 @@ impl Name {
     /// Splits a name into base and subscripts.
     pub fn parse(text: &str) -> Name {
         if let Some((joint, member)) = text.split_once('.') {
-            return Name::of_member(joint, member);
+            return Name::name_of_member(joint, member);
         }
         if text.split('_').any(str::is_empty) {
             return Name::single_word_name(text);
@@ -102,7 +102,7 @@ impl Name {
 
     /// Splits the name of a coordinate of a joint with several coordinates. Angular velocities, velocities
     /// and quaternions have an axis as second subscript.
-    fn of_member(joint: &str, member: &str) -> Name {
+    fn name_of_member(joint: &str, member: &str) -> Name {
         let joint = Glyph::from_word(joint);
         let mut letters = member.chars();
         if let (Some(kind @ ('w' | 'v' | 'q' | 'r' | 'd')), Some(axis @ 'w'..='z'), None) =
@@ -115,7 +115,7 @@ impl Name {
     }
 }
 
-/// Splits a name before its trailing digits.
+/// Splits a word before its trailing digits.
 fn split_trailing_digits(text: &str) -> (&str, &str) {
     text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len())
 }
@@ -125,11 +125,12 @@ pub fn name_with_primes((name, dots): (String, u8)) -> String {
     name + &"'".repeat(usize::from(dots))
 }
 
-/// Names for typesetting. Names that would be indistinguishable after splitting are left whole.
+/// Typeset names of all symbols. Names that would be indistinguishable after splitting into subscripts are
+/// not split.
 pub struct Names(Vec<(String, Name)>);
 
 impl Names {
-    /// Creates the table for all names that occur.
+    /// Creates the table of typeset names for all names that occur.
     pub fn new<'a>(texts: impl Iterator<Item = &'a str>) -> Names {
         let mut names: Vec<(String, Name)> = Vec::new();
         for text in texts {
@@ -145,7 +146,7 @@ impl Names {
         Names(names)
     }
 
-    /// Returns the typeset form of a name.
+    /// Returns the typeset form of a name in the table.
     pub fn get(&self, text: &str) -> Name {
         self.0
             .iter()

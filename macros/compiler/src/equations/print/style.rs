@@ -1,14 +1,14 @@
 //! Styles that format the components of a polynomial, and the plain text style.
 
-use crate::algebra::item::{fraction_of_number, gcd};
+use crate::algebra::item::{fraction_of_number, greatest_common_divisor};
 use crate::expr::node::Symbol;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// A text in all output formats. Empty if there are no equations.
+/// Printed text in all output formats; empty if there are no equations.
 #[derive(Clone, Debug, Default)]
 pub struct Written {
-    /// Equations as text without markup.
+    /// Equations as plain text without markup.
     pub plain: String,
     /// Equations for the math mode of LaTeX.
     pub latex: String,
@@ -16,7 +16,7 @@ pub struct Written {
     pub mathml: String,
 }
 
-/// Output format of polynomials.
+/// Output format in which polynomials are printed: text, LaTeX or MathML.
 pub trait Style {
     /// Formats a symbol raised to a power.
     fn symbol(&self, symbol: Symbol, power: u8) -> String;
@@ -39,7 +39,7 @@ pub trait Style {
     /// Formats a sum in parentheses, raised to a power.
     fn power(&self, sum: &str, power: u8) -> String;
 
-    /// Formats a function raised to a power, given its name in the language.
+    /// Formats a function call raised to a power, given the function's name in the language.
     fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String;
 
     /// Formats the product of a number and factors, divided by `divisors`. `number` is `None` only if there
@@ -47,19 +47,19 @@ pub trait Style {
     fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String;
 }
 
-/// Formatted factor of a product.
+/// Formatted factor of a printed product.
 pub enum Factor {
-    /// Factor that needs no parentheses.
+    /// Factor that is printed without parentheses.
     Single(String),
-    /// A sum that needs parentheses, still without them.
+    /// Sum that is printed in parentheses, here still without them.
     Sum(String),
 }
 
-/// Formatted argument of a function.
+/// Formatted argument of a printed function.
 pub struct Argument {
     /// Text of the argument.
     pub text: String,
-    /// True if the argument is a single symbol.
+    /// True if the argument of the function is a single symbol.
     pub lone: bool,
 }
 
@@ -68,15 +68,15 @@ pub struct Argument {
 /// numbers are printed as decimals.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
-    /// Numerator and denominator of a fraction.
+    /// Fraction, by its numerator and denominator.
     Fraction(u32, u32),
     /// Numerator and denominator of the coefficient of a power of π, and that power: 1, 2, −1 or −2.
     Pi(u32, u32, i8),
     /// Numerator and denominator of the coefficient of the square root of 2 or 3, and 2 or 3.
     Root(u32, u32, u32),
-    /// Decimal digits, with or without a decimal point.
+    /// Decimal number, by its digits with or without a decimal point.
     Decimal(String),
-    /// Decimal number: digits, and the exponent of ten.
+    /// Decimal number in scientific notation, by its digits and its exponent of ten.
     Scientific(String, String),
 }
 
@@ -136,7 +136,7 @@ fn multiple_of_pi(value: f64) -> Option<(u32, u32, i8)> {
         return None;
     }
     let whole = whole as u32;
-    let common = gcd(whole, 180);
+    let common = greatest_common_divisor(whole, 180);
     Some((whole / common, 180 / common, 1)).filter(|(p, ..)| *p <= SIMPLE)
 }
 
@@ -173,7 +173,7 @@ impl fmt::Display for Number {
 /// Plain text style, with names for symbols: `1/3 m l² cos(theta)`.
 #[derive(Clone, Copy)]
 pub struct Plain<'a> {
-    /// Returns the name of a symbol.
+    /// Closure that returns the printed name of a symbol.
     pub name: &'a dyn Fn(Symbol) -> String,
 }
 

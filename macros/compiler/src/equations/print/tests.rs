@@ -26,7 +26,7 @@ fn formatted_text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) 
 }
 
 #[test]
-fn numbers() {
+fn numbers_are_printed_as_integers_fractions_or_decimals() {
     for (value, expected) in [
         (1.0 / 3.0, "1/3"),
         (0.5, "1/2"),
@@ -46,7 +46,7 @@ fn numbers() {
 
 /// Sines of 45° and 60° and their multiples are exact. Numbers close to them are printed as decimals.
 #[test]
-fn multiples_of_roots() {
+fn exact_sines_are_printed_as_square_roots() {
     let (two, three) = (2.0_f64.sqrt(), 3.0_f64.sqrt());
     for (value, expected) in [
         (two, "sqrt(2)"),
@@ -66,7 +66,7 @@ fn multiples_of_roots() {
 
 /// Multiples of powers of π are printed without decimals. Numbers close to them are printed as decimals.
 #[test]
-fn multiples_of_pi() {
+fn multiples_of_pi_are_printed_symbolically() {
     use std::f64::consts::PI;
     for (value, expected) in [
         (PI, "pi"),
@@ -99,7 +99,7 @@ fn multiples_of_pi() {
 }
 
 #[test]
-fn products() {
+fn products_are_printed_with_quotients_and_powers() {
     assert_eq!(formatted_text(|g, _| g.zero()), "0");
     assert_eq!(
         formatted_text(|g, [m, _, l, x, ..]| m * l * l * x.cos() * g.num(-1.0 / 3.0)),
@@ -116,7 +116,7 @@ fn products() {
 }
 
 #[test]
-fn groups() {
+fn parentheses_are_printed_where_precedence_requires() {
     assert_eq!(formatted_text(|_, [m, k, _, _, _, v, w, _]| (m + k) * v + m * w), "(m + k) x' + m y'");
     assert_eq!(
         formatted_text(|_, [m, _, l, x, _, v, ..]| m * v * v * (l + x).square()),
@@ -131,7 +131,7 @@ fn groups() {
 }
 
 #[test]
-fn lines() {
+fn long_equations_are_split_into_lines() {
     let line = wrap_text("alpha + beta (gamma + delta) - epsilon = zeta", 20, "  ");
     assert_eq!(line, "alpha\n  + beta (gamma\n  + delta)\n  - epsilon = zeta");
     assert_eq!(wrap_text("a + b", 20, "  "), "a + b");
@@ -153,7 +153,7 @@ fn formatted_latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>)
 }
 
 #[test]
-fn latex_products() {
+fn latex_products_use_fractions_and_powers() {
     assert_eq!(formatted_latex(|g, _| g.zero()), "0");
     assert_eq!(
         formatted_latex(|g, [m, _, l, x, ..]| m * l * l * x.cos() * g.num(-1.0 / 3.0)),
@@ -176,7 +176,7 @@ fn latex_products() {
 }
 
 #[test]
-fn latex_functions() {
+fn latex_functions_are_typeset_upright() {
     assert_eq!(formatted_latex(|_, [_, _, _, x, ..]| x.cos() * x.cos()), r"\cos^{2}x");
     assert_eq!(
         formatted_latex(|_, [m, k, _, _, _, v, ..]| k * (v / m).apply_function(Function::Tanh)),
@@ -195,7 +195,7 @@ fn latex_functions() {
 }
 
 #[test]
-fn latex_names() {
+fn latex_names_have_subscripts() {
     for (text, expected) in [
         ("m", "m"),
         ("m1", "m_{1}"),
@@ -225,7 +225,7 @@ fn latex_names() {
 
 /// Names that would be indistinguishable in print are not split.
 #[test]
-fn names_are_kept_apart() {
+fn ambiguous_names_are_not_split_in_print() {
     let names = names::Names::new(["m1", "m_1", "table.x", "x_table", "m2"].into_iter());
     let spell_in_latex = |text| super::latex::format_name(&names.get(text), 0);
     assert_eq!(spell_in_latex("m1"), r"\mathrm{m1}");

@@ -14,7 +14,7 @@ const SATELLITE: &str = "struct Satellite { mu: f64, m: f64, a: f64, b: f64, c: 
 /// Checks that the left sides are those of a free body, which other tests compare with two derivations, and
 /// that the right sides are symbols.
 #[test]
-fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
+fn free_body_prints_eulers_equations_under_any_load() {
     let text = with_model("0 * z", SATELLITE, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
@@ -61,7 +61,7 @@ fn equations_constant(arguments: &str, item: &str) -> String {
 }
 
 #[test]
-fn omitted_terms_are_reported() {
+fn omitted_terms_of_equations_are_reported() {
     let text = equations_constant("gravity = -9.81 * z", SKEW);
     for part in
         ["M(q) v' + h(q, v) = tau", "too many terms to be readable", "`equations = lagrange`", "`kane`"]

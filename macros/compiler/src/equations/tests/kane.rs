@@ -72,7 +72,7 @@ fn solve_linear_system(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 
 /// Checks the equations of the printed text at random states, with accelerations from Lagrange's equations
 /// with multipliers. Returns the text.
-pub(super) fn check_printed(model: &Model<'_>) -> String {
+pub(super) fn check_printed_equations(model: &Model<'_>) -> String {
     let joints = crate::kinematics::joints_of_model(model);
     let speeds = InSpeeds::new(model);
     let native = speeds.as_ref().map_or(model, |s| &s.native);
@@ -133,12 +133,12 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 let of_rates: Vec<Expr<'_>> = speeds.of_rates().concat();
                 let y = eval(&of_rates, &value_with_velocities);
                 let w: Vec<f64> = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * v[k]).sum()).collect();
-                let in_speeds = |s: Symbol| match Quantity::from_symbol(s) {
+                let value_in_speeds = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => w[k],
                     _ => at(s),
                 };
                 let still = speeds.without_accelerations(&speeds.accelerations);
-                let change = eval(&still, &in_speeds);
+                let change = eval(&still, &value_in_speeds);
                 let rates = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * (a[k] - change[k])).sum());
                 let rates: Vec<f64> = rates.collect();
                 (w, rates)
@@ -157,7 +157,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 .fold(1.0, f64::max);
             assert!((sides[0] - sides[1]).abs() <= 1e-10 * size, "{sides:?}, state {seed}: {text}");
         }
-        let by_name = by_name(named, &value_with_accelerations);
+        let by_name = values_by_name(named, &value_with_accelerations);
         let lines = sides_of_equations(&text);
         assert!(lines.len() >= nv, "{text}");
         for (left, right) in &lines {
@@ -181,7 +181,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
 }
 
 #[test]
-fn printed_equations_are_those_of_the_motion() {
+fn printed_kane_equations_equal_the_dynamics() {
     for (gravity, item) in [
         ("-9.81 * y", SLEIGH),
         ("-9.81 * z", SLEIGH_IN_SPEEDS),
@@ -191,7 +191,7 @@ fn printed_equations_are_those_of_the_motion() {
         ("-9.81 * y", CAM),
     ] {
         with_model(gravity, item, |model| {
-            let text = check_printed(&model);
+            let text = check_printed_equations(&model);
             assert!(text.len() < 2500, "{text}");
         });
     }
@@ -200,8 +200,8 @@ fn printed_equations_are_those_of_the_motion() {
 /// The equations of the sleigh in the form of textbooks: m v' = m a ω² + push, (J + m a²) ω' = −m a v ω +
 /// steer.
 #[test]
-fn the_sleigh_in_its_own_speeds() {
-    let text = with_model("-9.81 * z", SLEIGH_IN_SPEEDS, |model| check_printed(&model));
+fn sleigh_prints_textbook_equations_in_its_own_speeds() {
+    let text = with_model("-9.81 * z", SLEIGH_IN_SPEEDS, |model| check_printed_equations(&model));
     let expected = "\
 pose.x' = cos(pose.angle) along
 pose.y' = sin(pose.angle) along
@@ -216,8 +216,8 @@ along and pose.angle' are the independent velocities; from them the others follo
 
 /// Upright rolling: 3/2 m r² roll'' = drive, 1/4 m r² heading'' = steer.
 #[test]
-fn an_upright_wheel() {
-    let text = with_model("-9.81 * z", WHEEL, |model| check_printed(&model));
+fn upright_wheel_prints_textbook_equations() {
+    let text = with_model("-9.81 * z", WHEEL, |model| check_printed_equations(&model));
     assert!(text.contains("\n3/2 m r² roll'' = drive\n"), "{text}");
     assert!(text.contains("\n1/4 m r² heading'' = steer\n"), "{text}");
 }

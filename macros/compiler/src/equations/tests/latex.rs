@@ -35,7 +35,7 @@ const COMMANDS: [&str; 27] = [
 /// One-character commands of LaTeX that may occur: thin spaces, an underscore, the end of a line.
 const SIGNS: [char; 4] = [',', '!', '_', '\\'];
 
-fn latex_of(gravity: &str, item: &str) -> String {
+fn equations_latex(gravity: &str, item: &str) -> String {
     with_model(gravity, item, |model| crate::equations_latex(&model))
 }
 
@@ -91,7 +91,7 @@ pub(super) fn latex_errors(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn faults_are_found() {
+fn latex_checker_finds_faults() {
     assert_eq!(latex_errors("\\left(\\tfrac{1}{2}\\,m\\right)^{2} \\\\ x_{1}"), [""; 0]);
     for text in ["{", "}", "\\left(", "(\\right)", "\\foo", "\\%", "x_1", "x^2", "θ", "{(})", "\\"] {
         assert!(!latex_errors(text).is_empty(), "{text}");
@@ -99,12 +99,12 @@ fn faults_are_found() {
 }
 
 #[test]
-fn all_mechanisms_are_well_formed() {
+fn latex_of_all_mechanisms_is_well_formed() {
     let numbers = [CART_POLE, NUMBERS].map(|item| ("-9.81 * z", item));
     let items = [DOUBLE_PENDULUM, GYROSCOPE, SHAFT, SPHERICAL, CHAIN, BALL, TRIPLE, ARM, WAGON];
     for (gravity, item) in numbers.into_iter().chain(items.map(|item| ("-g * z", item))) {
         for gravity in [gravity.to_string(), gravity.replace('z', "y")] {
-            let text = latex_of(&gravity, item);
+            let text = equations_latex(&gravity, item);
             assert_eq!(latex_errors(&text), [""; 0], "{text}");
             assert!(text.starts_with("\\begin{aligned}\n& \\mathcal{L} = "), "{text}");
             assert!(text.ends_with("\n\\end{aligned}\n"), "{text}");
@@ -116,12 +116,12 @@ fn all_mechanisms_are_well_formed() {
             assert_eq!(count_equations(&text, "&"), count_equations(&text, " \\\\\n") + 1, "{text}");
         }
     }
-    assert_eq!(latex_of("-9.81 * z", SKEW), "");
+    assert_eq!(equations_latex("-9.81 * z", SKEW), "");
 }
 
 /// Words are upright with their underscores; rates have dots.
 #[test]
-fn cart_pole() {
+fn latex_of_cart_pole_has_upright_words_and_dots() {
     let expected = r"\begin{aligned}
 & \mathcal{L} = \tfrac{1}{2}\,(\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\dot{\mathrm{rail}}^{2} + \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\bigl(\tfrac{1}{3}\,\mathrm{pole\_length}\,\dot{\mathrm{hinge}}^{2} - \cos(\mathrm{hinge})\,\dot{\mathrm{rail}}\,\dot{\mathrm{hinge}}\bigr) \\
 & \quad {} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge}) \\
@@ -130,12 +130,12 @@ fn cart_pole() {
 & \mathrm{pole\_mass}\,\mathrm{pole\_length}\,\bigl(\tfrac{1}{3}\,\mathrm{pole\_length}\,\ddot{\mathrm{hinge}} - \tfrac{1}{2}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} - 4.905\,\sin(\mathrm{hinge})\bigr) = 0
 \end{aligned}
 ";
-    assert_eq!(latex_of("-9.81 * y", CART_POLE), expected);
+    assert_eq!(equations_latex("-9.81 * y", CART_POLE), expected);
 }
 
 /// Digits become subscripts; single letters are printed unchanged.
 #[test]
-fn double_pendulum() {
+fn latex_of_double_pendulum_has_numeric_subscripts() {
     let item = DOUBLE_PENDULUM.replace("shoulder", "theta1").replace("elbow", "theta2");
     let expected = r"\begin{aligned}
 & \mathcal{L} = \tfrac{1}{2}\,\left(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,\bigl(l_{1}^{2} + \tfrac{1}{3}\,l_{2}^{2} + l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\right)\,\dot{\theta}_{1}^{2} + m_{2}\,l_{2}\,\left(\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}\,\dot{\theta}_{2} + \tfrac{1}{6}\,l_{2}\,\dot{\theta}_{2}^{2}\right) \\
@@ -145,12 +145,12 @@ fn double_pendulum() {
 & m_{2}\,l_{2}\,\left(\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + \tfrac{1}{3}\,l_{2}\,\ddot{\theta}_{2} + \tfrac{1}{2}\,l_{1}\,\sin\theta_{2}\,\dot{\theta}_{1}^{2} + \tfrac{1}{2}\,g\,\sin(\theta_{1} + \theta_{2})\right) = \mathrm{motor}
 \end{aligned}
 ";
-    assert_eq!(latex_of("-g * y", &item), expected);
+    assert_eq!(equations_latex("-g * y", &item), expected);
 }
 
 /// Angular velocities and quaternion components have their joint as subscript.
 #[test]
-fn top() {
+fn latex_of_top_has_joint_names_as_subscripts() {
     let expected = r"\begin{aligned}
 & \mathcal{L} = \tfrac{1}{2}\,(m\,l^{2} + a)\,(\omega_{\mathrm{tip},x}^{2} + \omega_{\mathrm{tip},y}^{2}) + \tfrac{1}{2}\,c\,\omega_{\mathrm{tip},z}^{2} + g\,m\,l\,(2\,q_{\mathrm{tip},x}^{2} + 2\,q_{\mathrm{tip},y}^{2} - 1) \\
 & (m\,l^{2} + a)\,\dot{\omega}_{\mathrm{tip},x} + (c - m\,l^{2} - a)\,\omega_{\mathrm{tip},y}\,\omega_{\mathrm{tip},z} - 2\,g\,m\,l\,(q_{\mathrm{tip},x}\,q_{\mathrm{tip},w} + q_{\mathrm{tip},y}\,q_{\mathrm{tip},z}) = 0 \\
@@ -158,5 +158,5 @@ fn top() {
 & c\,\dot{\omega}_{\mathrm{tip},z} = 0
 \end{aligned}
 ";
-    assert_eq!(latex_of("-g * z", BALL), expected);
+    assert_eq!(equations_latex("-g * z", BALL), expected);
 }

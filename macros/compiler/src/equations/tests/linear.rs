@@ -23,7 +23,7 @@ fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear
 
 /// Compares the rows of the linear equations with finite differences of force balances, constraints and rates
 /// of states.
-fn check_rows(model: &Model<'_>, found: &Linear) {
+fn check_linear_rows(model: &Model<'_>, found: &Linear) {
     let (nv, nu) = (model.nv(), model.nu());
     let at = &model.equilibria[0];
     let states = at.states.len();
@@ -114,11 +114,11 @@ const LAG: &str = "struct Lag { m: f64, k: f64, lag: f64, gain: f64,
     #[equilibrium] still: Equilibrium }";
 
 #[test]
-fn a_pendulum() {
+fn pendulum_linearises_to_its_natural_frequency() {
     let pendulum_at = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
     let assert_lines_contained = |equilibrium: &str, lines: &'static [&'static str]| {
         with_linear("-g * y", &pendulum_at(equilibrium), |model, found, plain, _| {
-            check_rows(model, found);
+            check_linear_rows(model, found);
             for line in lines {
                 assert!(plain.contains(line), "{line} in {plain}");
             }
@@ -151,15 +151,15 @@ fn a_pendulum() {
 }
 
 #[test]
-fn rows_are_derivatives() {
+fn linear_equations_are_derivatives_of_the_dynamics() {
     for (gravity, item) in [("-7 * y", DOUBLE_PENDULUM), ("-7 * y", CART_POLE), ("-7 * z", SPHERICAL)] {
         let item = item.trim_end().trim_end_matches('}').to_string() + "#[equilibrium] rest: Equilibrium }";
         with_linear(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
-            check_rows(model, found);
+            check_linear_rows(model, found);
         });
     }
     with_linear("-9.81 * z", LAG, |model, found, plain, _| {
-        check_rows(model, found);
+        check_linear_rows(model, found);
         assert!(plain.contains("power' + (gain rail + power)/lag = 0\n"), "{plain}");
     });
 }
@@ -167,7 +167,7 @@ fn rows_are_derivatives() {
 /// A particle on a circular wire at its lowest point: the only stiffness is the geometric stiffness of the
 /// multiplier.
 #[test]
-fn a_particle_on_a_wire() {
+fn particle_on_a_wire_has_geometric_stiffness() {
     let item = "struct Wire { m: f64, g: f64, l: f64,
         #[particle(mass = m)] p: Particle,
         #[joint(ground -> p, along = (x, y))] place: Stage,
@@ -194,7 +194,7 @@ fn a_particle_on_a_wire() {
 
 /// Small rotations of a pendulum on a ball joint about body axes. One of them has no restoring moment.
 #[test]
-fn orientations_deviate_by_small_rotations() {
+fn orientation_deviations_are_small_rotations() {
     let item = "struct Tip { m: f64, g: f64, l: f64, a: f64, c: f64,
         #[body(mass = m, com = -l * z, inertia = diagonal(a, a, c))] bob: Body,
         #[joint(ground -> bob)] tip: Ball,
@@ -214,7 +214,7 @@ fn orientations_deviate_by_small_rotations() {
 
 /// A bead on a spinning hoop is at rest relative to the hoop, though it moves in space.
 #[test]
-fn a_bead_on_a_spinning_hoop() {
+fn bead_on_a_spinning_hoop_is_in_relative_equilibrium() {
     let item = "struct Bead { g: f64, m: f64, radius: f64, spin: f64,
         theta: Coordinate,
         #[frame(ground, z(spin * t))] hoop: Frame,
@@ -234,7 +234,7 @@ fn a_bead_on_a_spinning_hoop() {
 
 /// A skate between springs: the edge constrains the lateral velocity, but not the lateral position.
 #[test]
-fn a_skate_keeps_its_place_across() {
+fn skate_edge_leaves_the_lateral_position_free() {
     let item = "struct Skate { m: f64, k: f64, c: f64,
         #[body(mass = m, inertia = diagonal(1, 1, 2))] skate: Body,
         #[joint(ground -> skate, about = z)] pose: Planar,
@@ -259,7 +259,7 @@ fn a_skate_keeps_its_place_across() {
 /// Three oscillators of unit mass with states of first order: the characteristic polynomial is
 /// `(k + s²)³ (s + 1/b)`, of degree 7; with a second state its degree is 8, more than a printed power has.
 #[test]
-fn high_degrees_are_not_printed_as_lower_ones() {
+fn polynomials_of_high_degree_are_printed_completely() {
     let oscillators = ["x", "y", "z"].map(|axis| {
         format!(
             "#[particle(mass = 1)] p{axis}: Particle, #[joint(ground -> p{axis}, along = {axis})] r{axis}: Sleeve,

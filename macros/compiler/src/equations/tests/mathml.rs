@@ -1,10 +1,10 @@
-//! Reads the MathML of the documentation back and compares its values with those of the plain text.
+//! Test that parses the MathML of the documentation and compares its values with those of the plain text.
 
 use super::super::print::mathml::format_name;
 use super::*;
 use roxmltree::{Document, Node};
 
-/// Converts an element to plain text, with simplified names of symbols.
+/// Converts a MathML element to plain text, with simplified names of symbols.
 fn element_to_text(node: Node<'_, '_>) -> String {
     let children: Vec<Node<'_, '_>> = node.children().filter(Node::is_element).collect();
     let own_text = || node.text().unwrap_or("").to_string();
@@ -55,7 +55,7 @@ fn superscript_of_digit(digit: &str) -> String {
     ["", "", "²", "³", "⁴", "⁵", "⁶", "⁷"][digit.parse::<usize>().expect("a power")].to_string()
 }
 
-/// Returns both sides of each equation of a page.
+/// Returns the left and right side of each equation on a MathML page.
 fn equations_of_page(page: &str) -> Vec<(String, String)> {
     let document = Document::parse(page).unwrap_or_else(|e| panic!("{e}: {page}"));
     let paragraphs = document.root_element().children();
@@ -70,8 +70,8 @@ fn equations_of_page(page: &str) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Checks that both texts of a mechanism have the same values.
-fn check_page(model: &Model<'_>) {
+/// Checks that the MathML and the plain text of a mechanism's equations have the same values.
+fn check_mathml_page(model: &Model<'_>) {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
@@ -79,7 +79,7 @@ fn check_page(model: &Model<'_>) {
     let (plain, page) = (sides_of_equations(&written.plain), equations_of_page(&written.mathml));
     assert_eq!(plain.len(), page.len(), "{}", written.mathml);
     let rates = written::marks_of_coordinate_rates(model);
-    let names = written::names_with(model, &[]);
+    let names = written::typeset_names_with(model, &[]);
     let symbols = (0..model.parameters.len())
         .map(Quantity::Parameter)
         .chain((0..model.nq()).map(Quantity::Configuration))
@@ -96,38 +96,42 @@ fn check_page(model: &Model<'_>) {
         .collect();
     for seed in 1..4 {
         let symbol = random_symbol_values(model, seed);
-        let by_glyphs = |word: &str| match spelled.iter().find(|(name, _)| name == word) {
+        let glyphs_of_word = |word: &str| match spelled.iter().find(|(name, _)| name == word) {
             Some((_, s)) => symbol(*s),
             None => panic!("{word}: {spelled:?}"),
         };
-        let names = by_name(model, &symbol);
+        let names = values_by_name(model, &symbol);
         for (k, (plain, page)) in plain.iter().zip(&page).enumerate() {
             if k > 0 {
                 assert_near(
-                    &[evaluate_text(&page.0, &by_glyphs)],
+                    &[evaluate_text(&page.0, &glyphs_of_word)],
                     &[evaluate_text(&plain.0, &names)],
                     &page.0,
                 );
             }
-            assert_near(&[evaluate_text(&page.1, &by_glyphs)], &[evaluate_text(&plain.1, &names)], &page.1);
+            assert_near(
+                &[evaluate_text(&page.1, &glyphs_of_word)],
+                &[evaluate_text(&plain.1, &names)],
+                &page.1,
+            );
         }
     }
 }
 
 #[test]
-fn pages_say_what_the_text_says() {
+fn mathml_pages_state_the_same_equations_as_text() {
     for item in [CART_POLE, NUMBERS] {
-        with_model("-9.81 * z", item, |model| check_page(&model));
+        with_model("-9.81 * z", item, |model| check_mathml_page(&model));
     }
     for item in [DOUBLE_PENDULUM, GYROSCOPE, SHAFT, SPHERICAL, CHAIN, BALL, ARM, WAGON, SPHERE, DISK, FREE] {
-        with_model("-g * z", item, |model| check_page(&model));
-        with_model("-g * y", item, |model| check_page(&model));
+        with_model("-g * z", item, |model| check_mathml_page(&model));
+        with_model("-g * y", item, |model| check_mathml_page(&model));
     }
 }
 
 /// The pages of all other forms are well-formed as well.
 #[test]
-fn all_forms_have_pages() {
+fn mathml_pages_of_all_forms_are_well_formed() {
     for (words, item) in [("hamilton", CART_POLE), ("hamilton", ARM), ("routh", GYROSCOPE), ("kane", SPHERE)]
     {
         let g = if item.contains(" g: f64") { "g" } else { "9.81" };

@@ -138,7 +138,7 @@ struct Wagon {
     #[acts(on = bob.at(-l1 * y), along = ground.x + bob.y)] jet: Force,
 }";
 
-/// A bead with one coordinate. Tests replace its position.
+/// A bead with one coordinate, whose position tests replace by expressions.
 pub const HOOP: &str = "
 struct Hoop {
     g: f64, m: f64, _radius: f64, _speed: f64,

@@ -1,8 +1,8 @@
 //! Compares all forms of the equations of random mechanisms, with and without prescribed motion and
 //! constraints, as polynomials and as texts.
 
-use super::kane::check_printed;
-use super::routh::check_whole;
+use super::kane::check_printed_equations;
+use super::routh::check_against_lagrange;
 use super::*;
 use crate::mechanics::routh;
 
@@ -60,7 +60,7 @@ fn random_chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> 
 }
 
 #[test]
-fn all_forms_agree() {
+fn all_printed_forms_agree_for_random_mechanisms() {
     let mut random = Random(4321);
     (0..20).for_each(|_| _ = random.number_below(2));
     // Number of comparisons: Lagrange's and recursive equations, Hamilton's, Kane's, Routh's.
@@ -76,7 +76,7 @@ fn all_forms_agree() {
                 compared[0] += 1;
             }
             if constrained && super::super::kane::kane_equations(&model, &joints, None).is_ok() {
-                check_printed(&model);
+                check_printed_equations(&model);
                 compared[2] += 1;
             }
             if !constrained && canonical_equations(&model, &joints, &mass).is_some() {
@@ -84,7 +84,7 @@ fn all_forms_agree() {
                 compared[1] += 1;
             }
             if !constrained && !driven && !routh::cyclic_coordinates(&model, &joints).is_empty() {
-                check_whole(&model);
+                check_against_lagrange(&model);
                 compared[3] += 1;
             }
         });

@@ -11,7 +11,7 @@ pub(super) mod text;
 use numbers::{Numbers, assert_same_roots, eigenvalues, roots};
 use text::{Text, Values, evaluate_text};
 
-/// Compares the printed rows with accelerations by finite differences.
+/// Compares the printed linear rows with accelerations by finite differences.
 #[track_caller]
 fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values<'_>) {
     let n = names.len();
@@ -104,7 +104,7 @@ const BALANCE: &str = "struct CartPole {
 }";
 
 #[test]
-fn rows_are_those_of_lagranges_equations() {
+fn linear_equations_linearise_lagranges_equations() {
     let names = ["cart_mass", "pole_mass", "length", "stiffness", "damping"];
     let mut next = random_generator(3, 0.3, 2.3);
     with_linear_equations("-9.81 * y", BALANCE, |numbers, texts| {
@@ -115,8 +115,8 @@ fn rows_are_those_of_lagranges_equations() {
                 let torque = values[3] * angle - 9.81 * values[1] * values[2] / 2.0 * angle.sin();
                 let a = numbers.linear_system_matrix(&[0.0, angle], &[0.0, torque], &values);
                 check_rows_of(text, &["rail", "hinge"], &a, &parameters);
-                let of_input = |name: &str| text.coefficient_column(name, true, &parameters);
-                assert_eq!([of_input("push"), of_input("motor")], [[1.0, 0.0], [0.0, 1.0]]);
+                let column_of_input = |name: &str| text.coefficient_column(name, true, &parameters);
+                assert_eq!([column_of_input("push"), column_of_input("motor")], [[1.0, 0.0], [0.0, 1.0]]);
                 assert_same_roots(&text.characteristic_roots(&parameters), &eigenvalues(&a), 1e-4);
             }
         }
@@ -145,7 +145,7 @@ const CRAFT: &str = "struct Craft {
 }";
 
 #[test]
-fn small_rotations_are_those_of_lagranges_equations() {
+fn small_rotations_linearise_lagranges_equations() {
     let (names, values) = (["m", "a", "c", "arm", "drag"], [1.3, 0.2, 0.35, 0.1, 0.4]);
     let joints = ["pose.dx", "pose.dy", "pose.dz", "pose.rx", "pose.ry", "pose.rz"];
     with_linear_equations("-9.81 * z", CRAFT, |numbers, texts| {
@@ -185,7 +185,7 @@ const ROW: &str = "struct Row {
 
 /// Compares the conditions of Liénard and Chipart with eigenvalues.
 #[test]
-fn conditions_of_three_masses_are_those_of_eigenvalues() {
+fn stability_conditions_of_three_masses_agree_with_eigenvalues() {
     let names = ["k1", "k2", "k3", "d"];
     let mut next = random_generator(5, -0.6, 2.2);
     with_linear_equations("0 * x", ROW, |numbers, texts| {
@@ -240,7 +240,7 @@ const ZIEGLER: &str = "struct Ziegler {
 
 /// Without damping the column flutters from `p l / k = 7/2 − √2`, the closed form of the literature.
 #[test]
-fn a_follower_force_makes_a_column_flutter() {
+fn follower_force_makes_a_column_flutter() {
     let names = ["m", "l", "k", "p"];
     let mut next = random_generator(9, 0.5, 2.5);
     with_linear_equations("0 * x", ZIEGLER, |numbers, texts| {
@@ -279,7 +279,7 @@ const HOOP: &str = "struct Hoop {
 /// Checks the textbook frequencies of a bead on a spinning hoop: `ω² = Ω² − g²/(R² Ω²)` about the equilibrium
 /// at the side, `g/R − Ω²` about the one at the bottom.
 #[test]
-fn a_bead_oscillates_about_both_equilibria() {
+fn bead_on_a_hoop_has_textbook_frequencies() {
     let names = ["g", "m", "radius", "spin"];
     with_linear_equations("-g * z", HOOP, |numbers, texts| {
         for values in
@@ -332,7 +332,7 @@ const LATE: &str = "struct Late {
 
 /// Routh's condition of the cubic `lag m s³ + (m + lag c) s² + (c + lag k) s + k + gain`.
 #[test]
-fn a_lag_makes_control_unstable() {
+fn actuator_lag_destabilises_control() {
     let names = ["m", "c", "k", "lag", "gain"];
     let mut next = random_generator(12, 0.1, 2.1);
     with_linear_equations("0 * x", LATE, |_, texts| {
@@ -370,7 +370,7 @@ const LADDER: &str = "struct Ladder {
 /// A ladder that hangs below the floor is a pendulum with `ω² = 3 g / (2 l)` by energy, `T = m l² θ̇² / 6`,
 /// `U = −m g l cos θ / 2`.
 #[test]
-fn a_constrained_ladder_is_a_pendulum() {
+fn constrained_ladder_oscillates_like_a_pendulum() {
     with_linear_equations("-9.81 * y", LADDER, |_, texts| {
         for values in [[1.0, 2.0], [0.4, 0.7]] {
             let parameters = values_by_name(&["m", "l"], &values);

@@ -59,7 +59,7 @@ fn state_values<'a>(
 
 /// Compares accelerations, velocities and Routhian with Lagrange's equations of the unreduced mechanism.
 /// Returns the names of the cyclic coordinates.
-pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
+pub(super) fn check_against_lagrange(model: &Model<'_>) -> Vec<String> {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let cyclic = routh::cyclic_coordinates(model, &joints);
@@ -90,15 +90,15 @@ pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
 }
 
 #[test]
-fn reduced_motion_is_that_of_the_whole() {
+fn routh_reduced_motion_equals_the_full_motion() {
     for (gravity, item, names) in ROWS {
-        assert_eq!(with_model(gravity, item, |model| check_whole(&model)), names);
+        assert_eq!(with_model(gravity, item, |model| check_against_lagrange(&model)), names);
     }
 }
 
 /// Chains of random links on a column that rotates freely about the direction of gravity.
 #[test]
-fn reduced_motion_of_random_chains_is_that_of_the_whole() {
+fn routh_reduction_of_random_chains_equals_the_full_motion() {
     let mut random = Random(77);
     (0..20).for_each(|_| _ = random.number_below(2));
     for length in [2, 3, 4, 2, 3, 4] {
@@ -119,12 +119,12 @@ fn reduced_motion_of_random_chains_is_that_of_the_whole() {
                 vector()
             );
         }
-        let found = with_model("-9.81 * z", &(item + "}"), |model| check_whole(&model));
+        let found = with_model("-9.81 * z", &(item + "}"), |model| check_against_lagrange(&model));
         assert_eq!(found, ["column"]);
     }
 }
 
-/// Lagrange's equations of the Routhian hold for the other coordinates: `d/dt ∂R/∂v − ∂R/∂q` equals the
+/// Lagrange's equations hold for the Routhian in the noncyclic coordinates: `d/dt ∂R/∂v − ∂R/∂q` equals the
 /// forces without a potential.
 #[test]
 fn lagranges_equations_hold_for_the_routhian() {
@@ -202,7 +202,7 @@ fn lagranges_equations_hold_for_the_routhian() {
 
 /// The printed polynomials have the values of the generated functions.
 #[test]
-fn printed_reduction_is_that_of_the_functions() {
+fn printed_routhian_equals_generated_functions() {
     let mut texts = Vec::new();
     for (gravity, item, _) in ROWS {
         with_model(gravity, item, |model| {

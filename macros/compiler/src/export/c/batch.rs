@@ -5,38 +5,38 @@ use super::function::{Outline, function_documentation, is_passed, public_name};
 use crate::catalogue::{Argument, Shape};
 use crate::derive::Function;
 
-/// Array that a C function reads or writes for one state.
+/// Array argument that a C function reads or writes for one state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Array {
-    /// Name of the array argument.
+    /// Name of the array argument in C.
     pub name: String,
     /// Number of entries of the array.
     pub length: usize,
-    /// Meaning and size of the array, for the documentation.
+    /// Meaning and size of the array, as text for the documentation.
     pub about: String,
     /// Whether the function takes the value of the only entry instead of an array.
     pub is_value: bool,
 }
 
-/// Signature of a function that a program can call.
+/// Signature of a C function that a program can call.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    /// Name of the function without the prefix.
+    /// Name of the C function without the prefix.
     pub name: String,
     /// Arguments after the parameters and the index of the frame.
     pub arguments: Vec<Array>,
-    /// Results, in the order of the arguments that receive them.
+    /// Result arrays, in the order of the arguments that receive them.
     pub results: Vec<Array>,
-    /// Whether the function has a single result and returns it.
+    /// Whether the C function has a single result and returns it by value.
     pub returns: bool,
-    /// Whether the function takes the index of a frame.
+    /// Whether the function takes the index of a named frame.
     pub of_frame: bool,
-    /// Documentation of the function, one paragraph per entry.
+    /// Documentation of the C function, one paragraph per entry.
     pub docs: Vec<String>,
 }
 
 impl Batch {
-    /// Returns the signature of a derived function.
+    /// Returns the C signature of a derived function.
     pub fn from_function(f: &Function, o: &Outline<'_>) -> Batch {
         Batch::new(&public_name(f), &f.arguments, f.shape, &function_documentation(f), o)
     }
@@ -72,7 +72,7 @@ impl Batch {
         Batch { arguments, docs: vec![docs.to_string()], ..Batch::vector_signature(name, &[], results) }
     }
 
-    /// Returns the signature of a function on vectors.
+    /// Returns the C signature of a function whose arguments are vectors.
     pub fn vector_signature(name: &str, arguments: &[(&str, usize)], results: &[(&str, usize)]) -> Batch {
         let arrays_from_names =
             |list: &[(&str, usize)]| list.iter().map(|(name, n)| Array::new(name, *n)).collect();
@@ -88,12 +88,12 @@ impl Batch {
 }
 
 impl Array {
-    /// Returns the description of a vector argument.
+    /// Returns the description of an array argument for a vector.
     pub fn new(name: &str, length: usize) -> Array {
         Array { name: name.to_string(), length, about: docs::count_in_words(length), is_value: false }
     }
 
-    /// Returns a matrix, which is stored by columns.
+    /// Returns the description of an array argument for a matrix stored by columns.
     pub fn matrix_array(name: &str, rows: usize, columns: usize) -> Array {
         let about = match columns {
             1 => docs::count_in_words(rows),
@@ -102,7 +102,7 @@ impl Array {
         Array { about, ..Array::new(name, rows * columns) }
     }
 
-    /// Returns a value that is passed by itself.
+    /// Returns the description of a scalar argument that is passed by value.
     pub fn value_argument(name: &str, about: &str) -> Array {
         Array { about: about.to_string(), is_value: true, ..Array::new(name, 1) }
     }

@@ -21,11 +21,11 @@ pub type Places<'a> = &'a dyn Fn(usize) -> Option<String>;
 
 /// Names that the body of a C function may use.
 pub struct Scope<'a> {
-    /// Arguments of the function, and results of functions that it calls first.
+    /// Arguments of the function, and results of the functions that it calls first.
     pub arguments: &'a [Argument],
-    /// Names of the members of the parameter struct.
+    /// Names of the members of the C parameter struct.
     pub parameters: &'a [String],
-    /// Members of the parameter struct that are tables.
+    /// Members of the C parameter struct that are tables.
     pub tables: &'a [String],
 }
 

@@ -15,15 +15,15 @@ use std::fmt::Write;
 
 /// Data from which the CasADi source file is written.
 pub struct Shapes<'a> {
-    /// Sizes and names of the mechanism.
+    /// Sizes and names of the mechanism's C interface.
     pub o: &'a Outline<'a>,
     /// Functions that are public in the C source.
     pub public: &'a [&'a Function],
-    /// Names of the frames.
+    /// Names of the mechanism's named frames.
     pub frames: &'a [String],
     /// Value of each fixed parameter; `None` for a parameter that is an argument.
     pub fixed: &'a [Option<f64>],
-    /// Whether all coordinates are plain numbers.
+    /// Whether all coordinates are plain numbers, without quaternions.
     pub is_plain: bool,
     /// Whether forces of the mechanism depend on accelerations.
     pub is_accelerating: bool,
@@ -34,13 +34,13 @@ pub struct Shapes<'a> {
 /// Matrix argument or result: name, rows, columns, and whether the sparsity pattern is nonempty.
 type Entry = (String, usize, usize, bool);
 
-/// Function of the CasADi source file.
+/// External function in the CasADi source file.
 struct External {
     name: String,
     inputs: Vec<Entry>,
     outputs: Vec<Entry>,
     body: String,
-    /// Number of workspace entries in addition to those of the results.
+    /// Number of workspace entries in addition to the entries of the results.
     work: usize,
     /// C expression of the parameters that are arguments, or `0`.
     parameters: &'static str,
@@ -51,7 +51,7 @@ fn dense_entry(name: &str, rows: usize, columns: usize) -> Entry {
 }
 
 impl Shapes<'_> {
-    /// Returns the text of the CasADi source file.
+    /// Returns the complete text of the CasADi source file.
     pub fn file_text(&self) -> String {
         let p = &self.o.prefix;
         let mut text = format!(
@@ -110,7 +110,7 @@ impl Shapes<'_> {
         self.is_plain && !self.o.time && self.steps[1]
     }
 
-    /// Returns the names of the parameters that are arguments.
+    /// Returns the names of the parameters that remain arguments of the CasADi functions.
     fn free_parameters(&self) -> Vec<&String> {
         let all = self.o.parameters.iter().zip(self.fixed);
         all.filter(|(_, value)| value.is_none()).map(|(name, _)| name).collect()

@@ -56,7 +56,7 @@ pub fn write_composed_body(
     }
 }
 
-/// Returns the size of an array, which is at least one in C.
+/// Returns the size of a C array, which must be at least one.
 fn at_least_one(n: usize) -> usize {
     n.max(1)
 }

@@ -63,7 +63,7 @@ pub fn wrap_paragraph(text: &str, first: &str, others: &str) -> String {
     out
 }
 
-/// Returns the description of an argument.
+/// Returns the description of a function argument for the C header.
 pub fn argument_description(a: Argument) -> &'static str {
     match a {
         Argument::T => "time, s",
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_comment_ends_where_it_should() {
+    fn comment_terminators_are_escaped_in_c_comments() {
         assert_eq!(comment_safe_text("a */ b /* c ??/ d\n"), "a * / b / * c ? ?/ d ");
         assert_eq!(without_links("of [`x`](Self::x) and [`y`](Self::y)."), "of `x` and `y`.");
         for (text, plain) in [

@@ -14,7 +14,7 @@ use std::fmt::Write;
 
 const PLACED: Argument = Argument::Given("p", Supplied::Parent, 12);
 
-/// Function of frames: name, arguments, result and documentation.
+/// C function of frames: its name, arguments, result and documentation.
 struct Access {
     name: &'static str,
     arguments: &'static [Argument],
@@ -78,7 +78,7 @@ pub fn frame_index_constants(o: &Outline<'_>, frames: &[(String, String)]) -> St
     text
 }
 
-/// Returns the declarations and the indices of the frames.
+/// Returns the C declarations of the frame functions and the indices of the frames.
 pub fn frame_declarations(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     let mut text = frame_index_constants(o, frames);
     for access in ACCESSES.iter().filter(|_| !frames.is_empty()) {
@@ -90,7 +90,7 @@ pub fn frame_declarations(o: &Outline<'_>, frames: &[(String, String)]) -> Strin
     text
 }
 
-/// Returns the signatures of the functions of frames.
+/// Returns the signatures of the C functions of frames.
 pub fn frame_batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
     let accesses = ACCESSES.iter().filter(|_| !output.frames.is_empty());
     let batch_of_access = |access: &Access| {
@@ -108,7 +108,7 @@ pub fn frame_batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
     accesses.map(batch_of_access).collect()
 }
 
-/// Returns the definitions of the functions of frames.
+/// Returns the definitions of the C functions of frames.
 pub fn frame_definitions(output: &Output, o: &Outline<'_>, support: &mut Support) -> String {
     let (links, frames) = (&output.links, &output.frames);
     if frames.is_empty() {

@@ -11,11 +11,11 @@ use crate::lower::Operand;
 use crate::mechanism::Quantity;
 use std::fmt::Write;
 
-/// Sizes and names that all exported functions share.
+/// Sizes and names that all exported C functions share.
 pub struct Outline<'a> {
     /// Prefix of all names of the mechanism in C.
     pub prefix: String,
-    /// Members of the parameter struct; empty if there are no parameters.
+    /// Members of the C parameter struct; empty if the mechanism has no parameters.
     pub parameters: &'a [String],
     /// Members of the parameter struct that are tables.
     pub tables: &'a [String],
@@ -29,9 +29,9 @@ pub struct Outline<'a> {
     pub time: bool,
     /// Number of passive forces that other functions call, and number of their derivatives.
     pub passive: [usize; 2],
-    /// Whether the derivatives of the dynamics are exported.
+    /// Whether functions for the derivatives of the dynamics are exported.
     pub derivatives: bool,
-    /// Whether velocities are declared generalized speeds.
+    /// Whether the velocities are declared generalized speeds.
     pub speeds: bool,
 }
 
@@ -49,12 +49,12 @@ impl Outline<'_> {
         !(self.parameters.is_empty() && self.tables.is_empty())
     }
 
-    /// Returns the arguments, preceded by time if functions take it.
+    /// Returns the arguments of a function, preceded by time if functions take time.
     pub fn with_time_argument(&self, arguments: &[Argument]) -> Vec<Argument> {
         self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }
 
-    /// Returns the number of entries of an argument.
+    /// Returns the number of array entries of a function argument.
     pub fn length(&self, argument: Argument) -> usize {
         argument.length([self.nq, self.nv, self.nu])
     }
@@ -66,7 +66,7 @@ impl Outline<'_> {
         self.signature_with_results(kind, name, arguments, &given)
     }
 
-    /// Returns the signature of a function with any results.
+    /// Returns the C signature of a function with any list of results.
     pub fn signature_with_results(
         &self,
         kind: &str,
@@ -101,7 +101,7 @@ impl Outline<'_> {
         format!("{}_{name}({})", self.prefix, list.join(", "))
     }
 
-    /// Returns a call of a function without time.
+    /// Returns the source text of a call of a function without its time argument.
     pub fn timeless_call(&self, name: &str, arguments: &[&str]) -> String {
         let own = self.has_own().then_some("self");
         let list: Vec<&str> = own.into_iter().chain(arguments.iter().copied()).collect();
@@ -137,10 +137,10 @@ pub fn public_identifier(name: &str) -> String {
     replace_invalid_characters(name.trim_start_matches('_'))
 }
 
-/// Documentation of the function of [`Id::InputDerivatives`].
+/// Documentation of the C function for [`Id::InputDerivatives`].
 const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
 
-/// Documentation of the function of [`Id::ContactLaws`].
+/// Documentation of the C function for [`Id::ContactLaws`].
 const CONTACT_LAWS: &str =
     "Coefficients of friction, restitution and static friction of each contact, in the order of the gaps.";
 
@@ -153,7 +153,7 @@ pub fn function_documentation(f: &Function) -> Vec<String> {
     }
 }
 
-/// Returns the public name of a function.
+/// Returns the public name of a function in C.
 pub fn public_name(f: &Function) -> String {
     if f.id == Id::InputDerivatives {
         "generalized_forces_derivatives".to_string()
@@ -238,7 +238,7 @@ fn write_call(body: &mut String, f: &Function, called: Called, o: &Outline<'_>) 
     );
 }
 
-/// Returns true if an output is always zero.
+/// Returns true if output `k` of a function is always zero.
 pub fn is_zero(f: &Function, k: usize) -> bool {
     f.program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0))
 }

@@ -41,7 +41,7 @@ pub fn list_state_entries(model: &Model<'_>) -> String {
     text
 }
 
-/// Returns the macros for the sizes of the mechanism.
+/// Returns the C macros for the sizes of the mechanism.
 pub fn size_macros(model: &Model<'_>, output: &Output, o: &Outline<'_>) -> String {
     let upper = o.prefix.to_ascii_uppercase();
     let mut text = "/* Numbers of a configuration, of a velocity, and of the inputs. */\n".to_string();
@@ -89,7 +89,7 @@ pub fn reaction_docs(name: &str) -> String {
     )
 }
 
-/// Comment of the header about options of the compiler.
+/// Comment of the C header about recommended compiler options.
 const FLAGS: &str = "
  * Compile with -O2 or -O3, and for the local processor (-march=native): products and sums are then fused to
  * one instruction. -fno-math-errno saves checks after square roots; do not use -ffast-math.

@@ -9,7 +9,7 @@ use super::support::Support;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
-/// Names, arguments and documentation of `integrate`, `difference` and `tangent_rate`.
+/// Names, arguments and documentation of the C functions `integrate`, `difference` and `tangent_rate`.
 const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     (
         "integrate",

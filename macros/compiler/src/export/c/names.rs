@@ -1,4 +1,4 @@
-//! Conversion of the user's names to identifiers of C.
+//! Conversion of the user's names to C identifiers.
 
 /// Keywords of C and C++, and macros of headers and compilers.
 const RESERVED: &[&str] = &[
@@ -283,7 +283,7 @@ pub fn prefix_identifier(name: &str) -> String {
     text
 }
 
-/// Returns unique identifiers for several names in one scope.
+/// Returns C identifiers for several names that are unique in one scope.
 pub fn unique_identifiers<S: AsRef<str>>(names: &[S]) -> Vec<String> {
     make_unique(names.iter().map(|name| identifier_from_name(name.as_ref())))
 }
@@ -330,7 +330,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_c_does_not_have_gets_other_names() {
+    fn reserved_c_names_are_replaced() {
         assert_eq!(
             ["mass", "r#type", "int", "class", "2nd", "_x", "µ", "NAN", "M_PI", "L", "left-arm"]
                 .map(identifier_from_name),

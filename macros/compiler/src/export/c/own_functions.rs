@@ -3,7 +3,8 @@
 
 use super::scalar::replaced;
 
-/// Definitions of the functions, after those that they call. A line `//// name` precedes each of them.
+/// C definitions of mathematical functions, each after those that it calls and preceded by a line
+/// `//// name`.
 const DEFINITIONS: [&str; 2] =
     [include_str!("templates/elementary_angles.c"), include_str!("templates/elementary_powers.c")];
 
@@ -16,7 +17,7 @@ const REPLACED: &[&str] = &[
 /// Returns the headers that the code needs in addition to `math.h`.
 pub const HEADERS: &[&str] = &["float.h", "stdint.h", "string.h"];
 
-/// Replaces functions of the mathematical library by own ones, and inserts their definitions.
+/// Replaces calls of the mathematical library by calls of included functions, and inserts their definitions.
 pub fn with_own_functions(code: &str) -> String {
     let code = replaced(code, &|number| number.to_string(), &|word, after| {
         let is_call = after.starts_with('(') && REPLACED.contains(&word);

@@ -1,4 +1,4 @@
-//! Expressions and statements of a function body, as text.
+//! C expressions and statements of a function body, as text.
 
 /// C expression with the instructions on which it depends.
 #[derive(Clone, Default)]

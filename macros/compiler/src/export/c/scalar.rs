@@ -7,7 +7,7 @@ pub const FUNCTIONS: &[&str] = &[
     "fabs", "copysign", "pow", "fmin", "fmax", "fma",
 ];
 
-/// Other tokens that differ between `double` and `float`.
+/// Tokens other than function names that differ between `double` and `float`.
 const WORDS: &[(&str, &str)] = &[
     ("double", "float"),
     ("FP_FAST_FMA", "FP_FAST_FMAF"),
@@ -20,7 +20,7 @@ pub fn numeric_literal(c: f64) -> String {
     format!("{c:?}")
 }
 
-/// Converts code for `double` to `float`.
+/// Converts C code with `double` to C code with `float`.
 pub fn in_single_precision(code: &str) -> String {
     replaced(code, &single_precision_literal, &word_in_single_precision)
 }
@@ -88,7 +88,7 @@ mod tests {
     use super::in_single_precision;
 
     #[test]
-    fn words_and_numbers_become_single() {
+    fn c_types_and_literals_become_single_precision() {
         let code = "/* 1.5 double */ double x[3] = {1.5, -2e-7, 1e300}; y = sqrt(x[0]) + my_sin(x) + \
                     self->sin + 0.1;";
         assert_eq!(

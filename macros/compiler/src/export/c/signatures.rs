@@ -12,21 +12,21 @@ use crate::catalogue::{Id, REACTION};
 use crate::derive::Output;
 use crate::mechanism::Model;
 
-/// Code in C that kernels for other processors are made from.
+/// Parts of the C code from which kernels for GPUs are made.
 pub struct CodeParts {
     /// Prefix of all names of the mechanism in C.
     pub prefix: String,
-    /// Description of the mechanism: lines of a comment.
+    /// Lines of a comment that describe the mechanism.
     pub about: String,
-    /// Sizes, types of parameters and tables, indices of frames.
+    /// C declarations of sizes, of the types of parameters and tables, and of indices of frames.
     pub types: String,
-    /// Definitions of the helper functions, followed by those of all functions.
+    /// C definitions of the helper functions, followed by those of all exported functions.
     pub definitions: String,
-    /// Functions that a program can call.
+    /// C functions that a program can call.
     pub functions: Vec<Batch>,
-    /// Members of the parameter struct.
+    /// Members of the C parameter struct.
     pub parameters: Vec<String>,
-    /// Members of the parameter struct that are tables.
+    /// Members of the C parameter struct that are tables.
     pub tables: Vec<String>,
     /// Functions that exist in Rust only, with reasons.
     pub left_out: Vec<String>,
@@ -90,17 +90,17 @@ fn function_signatures(
     functions
 }
 
-/// Names and signatures of a mechanism in C.
+/// Names and signatures of a mechanism's C functions.
 pub struct Signatures {
     /// Prefix of all names of the mechanism in C.
     pub prefix: String,
-    /// Functions that a program can call.
+    /// C functions that a program can call.
     pub functions: Vec<Batch>,
-    /// Names of the functions for outputs.
+    /// Names of the C functions for outputs.
     pub outputs: Vec<String>,
-    /// Members of the parameter struct.
+    /// Members of the C parameter struct.
     pub parameters: Vec<String>,
-    /// Members of the parameter struct that are tables.
+    /// Members of the C parameter struct that are tables.
     pub tables: Vec<String>,
 }
 

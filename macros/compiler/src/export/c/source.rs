@@ -22,26 +22,26 @@ use std::fmt::Write;
 pub struct Options {
     /// Prefix of all names. If it is empty, the mechanism's name in lower case is used.
     pub prefix: String,
-    /// Whether numbers have single precision.
+    /// Whether C code computes in single precision.
     pub single: bool,
-    /// Whether results have the same bits with every compiler and mathematical library.
+    /// Whether results must have the same bits with every compiler and mathematical library.
     pub reproducible: bool,
     /// Parameters to fix in an additional source file with CasADi's interface; `None` for no such file.
     pub casadi: Option<Vec<(String, f64)>>,
-    /// Lines that are added to [`Files::left_out`].
+    /// Further lines to be added to [`Files::left_out`].
     pub left_out: Vec<String>,
 }
 
-/// Texts of the exported files, and names of functions that they lack.
+/// Texts of the exported C files, and names of functions that the files lack.
 #[derive(Clone, Debug)]
 pub struct Files {
     /// Prefix of the names in the files and of the file names.
     pub prefix: String,
-    /// Header `PREFIX.h`.
+    /// Text of the header `PREFIX.h`.
     pub header: String,
-    /// Source file `PREFIX.c`.
+    /// Text of the source file `PREFIX.c`.
     pub source: String,
-    /// Source file `PREFIX_casadi.c`, if the options request it.
+    /// Text of the source file `PREFIX_casadi.c`, if the options request it.
     pub casadi: Option<String>,
     /// Functions of the mechanism that exist in Rust but not in C, with reasons.
     pub left_out: Vec<String>,
@@ -54,11 +54,11 @@ pub enum Unfit {
     Irreproducible(&'static str),
     /// The mechanism declares generalized speeds, but CasADi's functions take joint velocities.
     CasadiSpeeds,
-    /// The named program contains vector lanes.
+    /// The named program contains SIMD lanes, which C code does not support.
     Lanes(String),
     /// A program reads a value that its function does not have, or has another number of results.
     Missing,
-    /// The parameter to be fixed does not exist.
+    /// The parameter that the options fix does not exist.
     NoParameter(String),
     /// CasADi is requested with single precision, which it does not support.
     SingleCasadi,
@@ -137,7 +137,7 @@ pub fn export_c_source(
     })
 }
 
-/// Names of a mechanism in C.
+/// Names that a mechanism has in C.
 pub struct Named {
     pub prefix: String,
     pub parameters: Vec<String>,
@@ -157,7 +157,7 @@ impl Named {
         Named { prefix, parameters, tables }
     }
 
-    /// Returns the sizes and names that all functions share.
+    /// Returns the sizes and names that all exported functions share.
     pub fn outline_of_mechanism(&self, model: &Model<'_>, output: &Output) -> Outline<'_> {
         let length =
             |id: Id| output.functions.iter().find(|f| f.id == id).map_or(0, |f| f.program.outputs.len());
@@ -176,7 +176,7 @@ impl Named {
     }
 }
 
-/// Returns the definitions of all functions.
+/// Returns the C definitions of all functions.
 pub fn function_definitions(
     model: &Model<'_>,
     output: &Output,
@@ -241,13 +241,13 @@ pub fn reject_vector_lanes(output: &Output) -> Result<(), Unfit> {
     Ok(())
 }
 
-/// Functions of the mechanism by their use in C.
+/// Functions of the mechanism, grouped by their use in C.
 pub struct Selection<'a> {
-    /// Functions that a program can call.
+    /// Functions that a C program can call.
     pub public: Vec<&'a Function>,
-    /// Functions that only other functions call, in the order of their definitions.
+    /// Functions that only other functions call, in the order of their C definitions.
     hidden: Vec<&'a Function>,
-    /// Outputs that contain reactions.
+    /// Output functions that contain reactions.
     pub reactions: Vec<&'a Function>,
     /// Function that returns the limits of the joints, if there is one.
     pub limits: Option<&'a Function>,
@@ -331,7 +331,7 @@ impl<'a> Selection<'a> {
     }
 }
 
-/// Returns the arguments of the outputs that reactions provide.
+/// Returns the arguments of output functions that are computed reactions.
 pub fn reaction_arguments(model: &Model<'_>) -> Vec<Argument> {
     let time = model.time.then_some(Argument::T);
     let inputs = (model.nu() > 0).then_some(Argument::U);
@@ -381,11 +381,11 @@ fn write_reaction_function(
 pub struct StraightBodies {
     /// Prefix of all names of the mechanism in C.
     pub prefix: String,
-    /// Description of the mechanism: lines of a comment.
+    /// Lines of a comment that describe the mechanism.
     pub about: String,
-    /// Signature and body of each function.
+    /// Signature and C body of each function.
     pub functions: Vec<(Batch, String)>,
-    /// Members of the parameter struct.
+    /// Members of the C parameter struct.
     pub parameters: Vec<String>,
     /// Names of functions that C does not have, with reasons.
     pub left_out: Vec<String>,

@@ -16,7 +16,7 @@ use crate::derive::Output;
 use crate::mechanism::{Chart, Model};
 use std::fmt::Write;
 
-/// Names of the methods, with descriptions for the documentation.
+/// Names of the integration methods, with descriptions for the documentation.
 const METHODS: [(&str, &str); 2] = [
     (
         "semi_implicit_euler",
@@ -34,21 +34,21 @@ const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            b
 const STATE: [Argument; 3] = [Argument::Q, Argument::V, Argument::U];
 const NEXT: [&str; 2] = ["next_q", "next_v"];
 
-/// Integration steps that are exported for a mechanism.
+/// C functions for integration steps of one mechanism.
 pub struct Steps<'a> {
     charts: &'a [Chart],
     /// False for mechanisms with constraints or contacts, whose steps are not supported in C.
     pub has_steps: bool,
     /// Whether the Jacobians of the steps are exported.
     pub has_transitions: bool,
-    /// Arguments of the function for the inputs' forces; `None` without inputs.
+    /// Arguments of the C function for input forces; `None` for a mechanism without inputs.
     inputs: Option<&'static [&'static str]>,
     /// Whether the derivatives of the inputs' forces with respect to `q` and to `v` are nonzero.
     changing: [bool; 2],
 }
 
 impl<'a> Steps<'a> {
-    /// Determines the available steps of a mechanism.
+    /// Determines which integration steps are available for a mechanism.
     pub fn new(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
         let find_function_by_id = |id: Id| output.functions.iter().find(|f| f.id == id);
         let taken = output.functions.iter().any(|f| {
@@ -306,7 +306,7 @@ fn next(o: &Outline<'_>) -> Vec<(&'static str, usize, usize)> {
     vec![(NEXT[0], o.nq, 1), (NEXT[1], o.nv, 1)]
 }
 
-/// Returns the results of a step with its Jacobians.
+/// Returns the results of a C function for a step with its Jacobians.
 fn transition_results(o: &Outline<'_>) -> Vec<(&'static str, usize, usize)> {
     let (n, m) = (o.nv, o.nu);
     let mut results = next(o);

@@ -2,12 +2,12 @@
 //! only if it is called. Helper names begin with `lw_`, which no name of a mechanism does
 //! (`names::prefix_identifier`).
 
-/// Set of the helper functions that a file needs.
+/// Set of C helper functions that a source file needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Support {
-    /// Whether numbers have single precision.
+    /// Whether C code computes in single precision.
     single: bool,
-    /// Whether every operation is rounded by itself.
+    /// Whether every operation is rounded separately, for reproducible results.
     pub is_reproducible: bool,
     /// Whether the target defines fused products and the functions for sines and cosines itself.
     pub is_kernel: bool,
@@ -17,17 +17,17 @@ pub struct Support {
     atmosphere: [bool; 3],
     /// Whether products with the inverse of the mass matrix are needed.
     pub products: bool,
-    /// Whether the low-rank update of the inverse is needed.
+    /// Whether the C helper for the low-rank update of the inverse is needed.
     pub completed: bool,
     /// Whether the blockwise inversion of a mass matrix is needed.
     pub inverted: bool,
-    /// Whether a helper that solves linear systems with such an inverse is needed.
+    /// Whether the C helper that solves linear systems with the blockwise inverse is needed.
     pub solved: bool,
-    /// Whether functions of ball joints are needed.
+    /// Whether C helpers for ball joints are needed.
     pub balls: bool,
-    /// Whether functions of free joints are needed.
+    /// Whether C helpers for free joints are needed.
     pub motions: bool,
-    /// Whether tables are needed.
+    /// Whether C helpers for interpolation tables are needed.
     pub tabulated: bool,
     /// Whether derivatives on the configuration space are needed: of ball joints, of free joints.
     pub jacobians: [bool; 2],
@@ -46,7 +46,7 @@ impl Support {
     /// Name of the function that returns `c - a * b`.
     pub const NEG_MUL_ADD: &'static str = "lw_neg_mul_add";
 
-    /// Creates an empty set of helpers.
+    /// Creates an empty set of C helper functions.
     pub fn new(single: bool) -> Support {
         Support { single, ..Support::default() }
     }
@@ -56,14 +56,14 @@ impl Support {
         Support { is_kernel: true, ..Support::default() }
     }
 
-    /// Returns the helper for sines and cosines of one or four angles, and marks it as needed.
+    /// Returns the name of the C helper for sines and cosines of one or four angles, and marks it as needed.
     pub fn sine_cosine_function(&mut self, count: usize) -> &'static str {
         self.one_angle = true;
         self.four_angles |= count > 1;
         if count > 1 { "lw_sin_cos_4" } else { "lw_sin_cos" }
     }
 
-    /// Returns the helper for signs, and marks it as needed.
+    /// Returns the name of the C helper for signs, and marks it as needed.
     pub fn sign_function(&mut self) -> String {
         self.signum = true;
         "lw_signum".to_string()
@@ -77,7 +77,7 @@ impl Support {
         format!("lw_{name}")
     }
 
-    /// Returns what the results depend on whose bits are not those of Rust.
+    /// Returns the dependencies whose results may differ in bits from those of Rust, if any.
     pub fn irreproducible(&self) -> Option<&'static str> {
         match (self.atmosphere.contains(&true), self.tabulated) {
             (true, _) => Some("the standard atmosphere"),
@@ -86,7 +86,7 @@ impl Support {
         }
     }
 
-    /// Returns the required headers in addition to `math.h`.
+    /// Returns the C standard headers that are needed in addition to `math.h`.
     pub fn required_headers(self) -> &'static [&'static str] {
         let exact = self.one_angle && !self.single;
         match (exact, self.balls || self.motions || exact) {

@@ -1,7 +1,7 @@
 //! Conversion of C code to functions of a CUDA device: function templates, whose arrays are pointers, or the
 //! strided entries of one state.
 
-/// Beginnings of lines that may define a function.
+/// Prefixes of lines of C code that may begin a function definition.
 const KINDS: [&str; 5] = ["static inline ", "static ", "void ", "double ", "int "];
 
 /// Converts definitions in C to device functions. Comments and statements do not change, except declarations
@@ -80,7 +80,7 @@ mod tests {
     use super::device_functions;
 
     #[test]
-    fn functions_become_templates() {
+    fn c_functions_become_cuda_templates() {
         let code = "static const int lw_of[2] = {0, 1};\nstatic void lw_x(int n, const double *a, double \
                     b[3],\n    double *c) {\n    double *d = c + 1;\n    d[2] = 0.0;\n}\nvoid p_y(void) {\n\
                     }\n";

@@ -38,7 +38,7 @@ impl<'a> Products<'a> {
         }
     }
 
-    /// Returns the products that are not available, with reasons.
+    /// Returns the vector–Jacobian products that are not available, with reasons.
     pub fn left_out(&self) -> Vec<String> {
         let reason = self.reason.into_iter();
         reason.map(|why| format!("{}: {why}", NAMES.join(" and "))).collect()

@@ -14,14 +14,14 @@ use crate::derive::Output;
 use crate::mechanism::Model;
 use std::fmt::Write;
 
-/// Texts of the CUDA files, and names of functions that they lack.
+/// Texts of the CUDA files, and names of functions that the files lack.
 #[derive(Clone, Debug)]
 pub struct KernelFiles {
     /// Prefix of the names in the files and of the file names.
     pub prefix: String,
-    /// Kernels, `PREFIX.cu`.
+    /// Source of the CUDA kernels, for the file `PREFIX.cu`.
     pub kernels: String,
-    /// Functions that launch the kernels, for C++: `PREFIX.cuh`.
+    /// C++ functions that launch the kernels, for the file `PREFIX.cuh`.
     pub host: String,
     /// Classes that compile and launch the kernels, for Python: `PREFIX_cuda.py`.
     pub python: String,
@@ -33,7 +33,7 @@ pub struct KernelFiles {
 struct Kernels<'a> {
     parts: &'a CodeParts,
     functions: Vec<Batch>,
-    /// Name of the scalar type.
+    /// Name of the scalar type in CUDA.
     scalar: &'static str,
 }
 
@@ -66,7 +66,7 @@ pub fn export_cuda_kernels(
 }
 
 impl Kernels<'_> {
-    /// Returns the source file of the kernels.
+    /// Returns the source file of the CUDA kernels.
     fn kernel_source(&self, products: &kernels::Products<'_>, single: &dyn Fn(String) -> String) -> String {
         let (p, upper) = (&self.parts.prefix, self.parts.prefix.to_ascii_uppercase());
         let mut text = format!(
@@ -103,7 +103,7 @@ impl Kernels<'_> {
         format!("#if !defined({upper}_SELECTED) || defined({upper}_KERNEL_{})", f.name)
     }
 
-    /// Returns the definition of a kernel.
+    /// Returns the definition of the CUDA kernel for a function.
     fn kernel_definition(&self, f: &Batch) -> String {
         let p = &self.parts.prefix;
         let mut body = String::new();
@@ -145,7 +145,7 @@ impl Kernels<'_> {
         !(self.parts.parameters.is_empty() && self.parts.tables.is_empty())
     }
 
-    /// Returns the parameters of a kernel's definition.
+    /// Returns the parameter list of a CUDA kernel.
     fn kernel_arguments(&self, f: &Batch) -> Vec<String> {
         let p = &self.parts.prefix;
         let array_parameters = |kind: &str, name: &str| {

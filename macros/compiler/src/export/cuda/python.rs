@@ -1,4 +1,4 @@
-//! Module for Python that compiles and launches the kernels.
+//! Python module that compiles and launches the CUDA kernels.
 
 use super::{Array, Kernels};
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! The file `modelDescription.xml`, and the description of the sources.
+//! Texts of `modelDescription.xml` and `buildDescription.xml` of an FMU.
 
 use super::units::{BASES, exponents_of_unit};
 use super::variables::{ScalarVariable, VariableRole, Variables};
@@ -42,7 +42,7 @@ pub fn model_description_text(
         .replace("@VARIABLES@", &list)
 }
 
-/// Writes the definition of every known unit.
+/// Writes the definition of every known unit to `modelDescription.xml`.
 fn write_units(text: &mut String, variables: &Variables) {
     let mut units: Vec<&str> =
         variables.all.iter().map(|v| v.unit.as_str()).filter(|u| is_known(u)).collect();

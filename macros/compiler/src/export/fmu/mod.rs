@@ -27,17 +27,17 @@ const SOURCES: [(&str, &str); 7] = [
     (MAIN, include_str!("templates/lw_fmi3.c")),
 ];
 
-/// Name of the source file that includes all others.
+/// Name of the C source file that includes all others.
 const MAIN: &str = "lw_fmi3.c";
 
 /// Texts of the files of an FMU, and features that it does not have.
 #[derive(Clone, Debug)]
 pub struct FmuFiles {
-    /// Identifier of the model.
+    /// Model identifier of the FMU.
     pub identifier: String,
     /// Paths within the FMU, with the text of each file.
     pub files: Vec<(String, String)>,
-    /// Names of the source files that an importer compiles.
+    /// Names of the C source files that an importer compiles.
     pub sources: [String; 2],
     /// Functions and features that the FMU does not have, with reasons.
     pub left_out: Vec<String>,

@@ -143,7 +143,7 @@ impl HeaderWriter<'_> {
         self.write_function("lw_put_parameters", "lw_mechanism *m", &["x", "p"], &[], &body);
     }
 
-    /// Writes the adapters of functions of the configuration.
+    /// Writes the C adapters of functions of the configuration alone.
     fn write_kinematics(&mut self, model: &Model<'_>) {
         let body = match model.speeds.is_some() {
             true => self.c_function_call("rates_of_speeds", &["w"]),
@@ -154,7 +154,7 @@ impl HeaderWriter<'_> {
         self.write_adapter("lw_integrate", &["q", "dv"], &["result"], &body);
     }
 
-    /// Writes the adapters of functions of forces and accelerations.
+    /// Writes the C adapters of functions of forces and accelerations.
     fn write_dynamics(&mut self, variables: &Variables) {
         let forces = self.c_function_call("generalized_forces", &["tau"]);
         let forces = match forces.is_empty() {
@@ -172,7 +172,7 @@ impl HeaderWriter<'_> {
         }
     }
 
-    /// Writes the adapters of functions of constraints and contacts.
+    /// Writes the C adapters of functions of constraints and contacts.
     fn write_constraint_rows(&mut self, model: &Model<'_>) {
         let results = ["residuals", "velocities", "biases", "jacobian"];
         let kinds = [
@@ -214,7 +214,7 @@ impl HeaderWriter<'_> {
         self.write_adapter("lw_results", &["t", "q", "v", "a", "u"], &["rates", "outputs"], &body);
     }
 
-    /// Writes the adapters of functions for derivatives.
+    /// Writes the C adapters of functions for derivatives.
     fn write_derivatives(&mut self, variables: &Variables) {
         let mut body = self.c_function_call("forward_dynamics_derivatives", &["by_q", "by_v", "by_tau"]);
         body.push_str(&self.c_function_call("forward_dynamics_by_parameters", &["by_constants"]));
@@ -287,7 +287,7 @@ impl HeaderWriter<'_> {
         self.write_function(name, "const lw_mechanism *m", arguments, results, body);
     }
 
-    /// Writes a function. Unused arguments give no warnings.
+    /// Writes a C function. Unused arguments cause no compiler warnings.
     fn write_function(&mut self, name: &str, own: &str, arguments: &[&str], results: &[&str], body: &str) {
         let argument_declaration = |name: &&str| match *name {
             "t" => "double t".to_string(),

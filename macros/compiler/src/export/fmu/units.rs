@@ -1,12 +1,12 @@
-//! Conversion of units to their definition in base units.
+//! Conversion of SI units to exponents of base units for an FMU.
 
 /// Exponents of kilogram, metre, second and radian in a unit.
 pub type Exponents = [i32; 4];
 
-/// Base units, in the order of the exponents.
+/// Base units of FMU variables, in the order of their exponents.
 pub const BASES: [&str; 4] = ["kg", "m", "s", "rad"];
 
-/// Units that have a name, with their exponents.
+/// Named units with their exponents of base units.
 const NAMED: [(&str, Exponents); 11] = [
     ("1", [0, 0, 0, 0]),
     ("kg", [1, 0, 0, 0]),
@@ -46,7 +46,7 @@ pub fn exponents_of_unit(unit: &str) -> Option<Exponents> {
     (!unit.is_empty()).then_some(sum)
 }
 
-/// Splits a unit from its exponent in superscripts.
+/// Splits a unit symbol from its exponent in superscripts.
 fn split_power(word: &str) -> Option<(&str, i32)> {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let Some(at) = word.find(|c: char| DIGITS.contains(&c)) else { return Some((word, 1)) };
@@ -56,7 +56,7 @@ fn split_power(word: &str) -> Option<(&str, i32)> {
     power.chars().try_fold(0, |sum, c| Some(sum * 10 + value_of_superscript(c)?)).map(|power| (name, power))
 }
 
-/// Returns the unit of the rate of a quantity.
+/// Returns the unit of the time derivative of a quantity.
 pub fn unit_of_rate(unit: &str) -> String {
     match unit {
         "any" | "" => "any".to_string(),
@@ -72,7 +72,7 @@ mod tests {
     use super::{exponents_of_unit, unit_of_rate};
 
     #[test]
-    fn products_and_quotients_have_exponents_of_base_units() {
+    fn unit_products_and_quotients_become_base_unit_exponents() {
         for (unit, expected) in [
             ("1", [0, 0, 0, 0]),
             ("kg·m²/s", [1, 2, -1, 0]),

@@ -5,12 +5,12 @@ use super::units;
 use super::values::StartValues;
 use crate::mechanism::Model;
 
-/// Role of a variable in the FMU.
+/// Role of a scalar variable in the FMU.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VariableRole {
     Time,
     State,
-    /// Rate of the state with this value reference.
+    /// Time derivative of the state with this value reference.
     Rate(usize),
     Input,
     Parameter,
@@ -22,47 +22,47 @@ pub enum VariableRole {
 #[derive(Clone, Debug)]
 pub struct ScalarVariable {
     pub name: String,
-    /// Unit of the variable; `any` if it is unknown.
+    /// Unit of the FMU variable; `any` if it is unknown.
     pub unit: String,
     pub role: VariableRole,
-    /// Start value of states, inputs and parameters.
+    /// Start value of the FMU variable, for states, inputs and parameters.
     pub start: f64,
 }
 
-/// Output of the mechanism with the C functions that compute it.
+/// Output variables of the FMU with the C functions that compute them.
 #[derive(Clone, Debug)]
 pub struct OutputFunction {
-    /// Name of the function in C.
+    /// Name of the C function for the output.
     pub name: String,
     /// Number of values of the output.
     pub size: usize,
-    /// Whether there are functions for its derivatives.
+    /// Whether there are C functions for the derivatives of the output.
     pub is_differentiable: bool,
 }
 
-/// All variables of an FMU.
+/// All variables of an FMU, in the order of their value references.
 pub struct Variables {
     /// All variables, in the order of their value references.
     pub all: Vec<ScalarVariable>,
-    /// Functions for the rates of states of first order.
+    /// C functions for the rates of states of first order.
     pub rates: Vec<OutputFunction>,
-    /// Outputs in the order of the variables: those with derivatives first.
+    /// Outputs in the order of the FMU variables: outputs with derivatives first.
     pub outputs: Vec<OutputFunction>,
     /// Indices of the parameters that are not states of first order.
     pub parameters: Vec<usize>,
-    /// Whether derivatives of rates and outputs are provided.
+    /// Whether derivatives of rates and outputs are available.
     pub is_differentiable: bool,
-    /// Whether states may change at events and after initialization.
+    /// Whether constraints or contacts may change states at events and after initialization.
     pub is_projected: bool,
     /// Whether constraints determine some start values.
     pub is_constrained: bool,
 }
 
-/// Names of the energies, which follow the outputs.
+/// Names of the energy variables, which follow the outputs.
 pub const ENERGIES: [&str; 2] = ["kinetic_energy", "potential_energy"];
 
 impl Variables {
-    /// Lists the variables of a mechanism.
+    /// Lists the FMU variables of a mechanism.
     pub fn new(model: &Model<'_>, signatures: &Signatures, start: &StartValues) -> Variables {
         let find_function = |name: &str| signatures.functions.iter().find(|f| f.name == name);
         let is_constrained = find_function("constraint_jacobian").is_some();
@@ -174,7 +174,7 @@ impl Variables {
         self.all.push(ScalarVariable { name: free, unit: unit.to_string(), role, start });
     }
 
-    /// Returns the number of outputs whose derivatives are differences.
+    /// Returns the number of outputs whose derivatives are finite differences.
     pub fn count_differenced_outputs(&self) -> usize {
         let outputs = self.outputs.iter().filter(|output| !output.is_differentiable);
         ENERGIES.len() + outputs.map(|output| output.size).sum::<usize>()

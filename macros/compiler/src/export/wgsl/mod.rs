@@ -8,14 +8,14 @@ use crate::derive::Output;
 use crate::mechanism::Model;
 use std::fmt::Write;
 
-/// Texts of the WGSL files, and names of functions that they lack.
+/// Texts of the WGSL files, and names of functions that the files lack.
 #[derive(Clone, Debug)]
 pub struct ShaderFiles {
     /// Prefix of the names in the files and of the file names.
     pub prefix: String,
-    /// Shaders, `PREFIX.wgsl`.
+    /// Source of the shaders, for the file `PREFIX.wgsl`.
     pub shaders: String,
-    /// Class that runs the shaders, for Python: `PREFIX_wgpu.py`.
+    /// Python class that runs the shaders, for the file `PREFIX_wgpu.py`.
     pub python: String,
     /// Functions of the mechanism that exist in Rust but not in WGSL, with reasons.
     pub left_out: Vec<String>,
@@ -106,7 +106,7 @@ struct Converter<'a> {
 }
 
 impl Converter<'_> {
-    /// Writes a statement in WGSL.
+    /// Writes a C statement in WGSL.
     fn write_statement(&self, out: &mut String, line: &str) -> Result<(), String> {
         let text = line.trim_start();
         // Sine and cosine of an angle: two lines in C, one vector in WGSL.
@@ -135,7 +135,7 @@ impl Converter<'_> {
         Ok(())
     }
 
-    /// Converts the tokens of an expression or assignment.
+    /// Converts the tokens of a C expression or assignment to WGSL.
     fn convert_expression(&self, code: &str) -> Result<String, String> {
         let mut out = String::new();
         let mut rest = code;
@@ -211,7 +211,7 @@ impl Converter<'_> {
     }
 }
 
-/// Returns a WGSL literal of single precision.
+/// Returns a WGSL literal of single precision for a number in C.
 fn single_precision_literal(number: &str) -> Result<String, String> {
     match number.parse::<f64>() {
         Ok(x) if (x as f32).is_finite() => Ok(format!("{:?}f", x as f32)),
@@ -247,7 +247,7 @@ mod tests {
     use super::{Array, Batch, Converter};
 
     #[test]
-    fn statements_are_converted() {
+    fn c_statements_are_converted_to_wgsl() {
         let batch = Batch::vector_signature("f", &[("q", 2), ("v", 2)], &[("by_q", 4), ("by_v", 4)]);
         assert_eq!(batch.arguments[0], Array::new("q", 2));
         let converter = Converter { batch: &batch, parameters: &["mass".to_string()] };

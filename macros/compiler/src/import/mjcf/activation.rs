@@ -10,7 +10,7 @@ use crate::syntax::DriveQuantity;
 pub(super) const OTHER_INPUTS: &str =
     "to ignore the actuators of the file, write `#[mechanism(…, inputs = joints)]`, or `none`";
 
-/// Smallest positive divisor, as in MuJoCo.
+/// Smallest positive divisor in MuJoCo's actuator laws.
 pub(super) const TINY: f64 = 1e-15;
 
 /// Force as an expression of inputs, states, length and rate.
@@ -19,79 +19,79 @@ pub(super) struct ActuatorLaw {
     actuator: String,
     /// Inputs: the word that distinguishes each from the others of this actuator, and its unit.
     pub(super) inputs: Vec<(String, &'static str)>,
-    /// States of first order.
+    /// States of first order of the actuator.
     pub(super) states: Vec<ActuatorState>,
-    /// Force.
+    /// Force of the actuator as an expression.
     pub(super) force: Formula,
-    /// Maximum force.
+    /// Maximum magnitude of the actuator's force, if it is limited.
     pub(super) limit: Option<Placed<f64>>,
 }
 
 /// State of first order of an actuator.
 pub(super) struct ActuatorState {
-    /// Name of the state's field.
+    /// Name of the struct field for the state.
     pub(super) ident: String,
-    /// Documentation.
+    /// Documentation of the state.
     pub(super) about: String,
-    /// Unit of the state.
+    /// Unit of the actuator's state, as text.
     pub(super) unit: &'static str,
-    /// Rate.
+    /// Time derivative of the state as an expression.
     pub(super) rate: Formula,
 }
 
 /// Name of an actuator, of its inputs and of its states.
 pub(super) struct ActuatorNames<'n> {
-    /// Name of the actuator.
+    /// Name of the actuator in the file.
     pub(super) actuator: &'n str,
-    /// Unit of the length of the actuator.
+    /// Unit of the actuator length, as text.
     pub(super) length: &'static str,
-    /// Returns the name of the field for a state.
+    /// Closure that returns the name of the struct field for a state.
     pub(super) field: &'n dyn Fn(&str) -> String,
     /// Returns the name of an input; the word is empty if the actuator has a single input.
     pub(super) input: &'n dyn Fn(&str) -> String,
 }
 
 impl ActuatorLaw {
-    /// Returns a law without force.
+    /// Returns an actuator law without force, inputs and states.
     pub(super) fn new(named: &ActuatorNames<'_>, place: &Place) -> ActuatorLaw {
         ActuatorLaw {
             place: place.clone(),
             actuator: named.actuator.to_string(),
             inputs: Vec::new(),
             states: Vec::new(),
-            force: Formula::number(0.0, place),
+            force: Formula::number_literal(0.0, place),
             limit: None,
         }
     }
 
-    /// Returns a number.
-    pub(super) fn number(&self, value: f64) -> Formula {
-        Formula::number(value, &self.place)
+    /// Returns a constant as an expression of the actuator law.
+    pub(super) fn constant_formula(&self, value: f64) -> Formula {
+        Formula::number_literal(value, &self.place)
     }
 
-    /// Returns the length of the actuator.
+    /// Returns the actuator length as an expression.
     pub(super) fn length(&self) -> Formula {
-        Formula::name(DriveQuantity::Length.name_for(&self.actuator), &self.place)
+        Formula::named_value(DriveQuantity::Length.name_for(&self.actuator), &self.place)
     }
 
-    /// Returns the rate of the length.
-    pub(super) fn rate(&self) -> Formula {
-        Formula::name(DriveQuantity::Rate.name_for(&self.actuator), &self.place)
+    /// Returns the time derivative of the actuator length as an expression.
+    pub(super) fn length_rate(&self) -> Formula {
+        Formula::named_value(DriveQuantity::Rate.name_for(&self.actuator), &self.place)
     }
 
-    /// Adds an input, and returns its value.
-    pub(super) fn input(&mut self, word: &str, unit: &'static str, named: &ActuatorNames<'_>) -> Formula {
+    /// Adds an input to the actuator and returns its value as an expression.
+    pub(super) fn add_input(&mut self, word: &str, unit: &'static str, named: &ActuatorNames<'_>) -> Formula {
         let name = (named.input)(word);
         self.inputs.push((name.clone(), unit));
-        Formula::name(DriveQuantity::Input.name_for(&name), &self.place)
+        Formula::named_value(DriveQuantity::Input.name_for(&name), &self.place)
     }
 
-    /// Returns the value of a state.
-    pub(super) fn state(&self, word: &str, named: &ActuatorNames<'_>) -> Formula {
-        Formula::name((named.field)(word), &self.place)
+    /// Returns the value of an actuator state as an expression.
+    pub(super) fn state_value(&self, word: &str, named: &ActuatorNames<'_>) -> Formula {
+        Formula::named_value((named.field)(word), &self.place)
     }
 
-    /// Adds a state with its rate.
+    /// Adds a state of first order to the actuator, with its time derivative.
     pub(super) fn add_state(
         &mut self,
         word: &str,
@@ -105,10 +105,10 @@ impl ActuatorLaw {
         self.states.push(ActuatorState { ident: (named.field)(word), about, unit, rate });
     }
 
-    /// Returns `b₀ + b₁ length + b₂ rate`.
-    pub(super) fn affine(&self, prm: &[f64; 10]) -> Formula {
+    /// Returns the affine force law `b₀ + b₁ length + b₂ rate` of an actuator.
+    pub(super) fn affine_formula(&self, prm: &[f64; 10]) -> Formula {
         let [b0, b1, b2, ..] = *prm;
-        self.length() * b1 + self.rate() * b2 + b0
+        self.length() * b1 + self.length_rate() * b2 + b0
     }
 }
 
@@ -116,23 +116,24 @@ impl ActuatorLaw {
 pub(super) const CONTROLS: [&str; 4] = ["pos", "vel", "ff", "voltage"];
 
 /// Returns the requested inputs of a controller. The order is MuJoCo's.
-pub(super) fn controls(
+pub(super) fn requested_controls(
     actuator: &Element<'_>,
     usual: &'static str,
     known: &[&'static str],
     cx: &mut Cx<'_>,
 ) -> Option<Vec<&'static str>> {
-    let text = actuator.text("input").filter(|text| !text.is_empty()).unwrap_or(usual);
+    let text = actuator.trimmed_text("input").filter(|text| !text.is_empty()).unwrap_or(usual);
     let mut found: Vec<&'static str> = Vec::new();
     for word in text.split_ascii_whitespace() {
-        let place = |word: &str| CONTROLS.iter().position(|known| *known == word);
-        let in_order = found.last().is_none_or(|last| place(last) < place(word));
+        let position_in_controls = |word: &str| CONTROLS.iter().position(|known| *known == word);
+        let in_order =
+            found.last().is_none_or(|last| position_in_controls(last) < position_in_controls(word));
         match known.iter().find(|known| **known == word) {
             Some(known) if in_order => found.push(known),
             _ => {
                 let message = format!("`input` {} is not a list of inputs", quote_word(text));
                 let help = format!("expected some of `{}`, in this order", known.join("`, `"));
-                cx.report_error(&actuator.place("input", cx), message, |d| d.add_help(help));
+                cx.report_error(&actuator.place_of_value("input", cx), message, |d| d.add_help(help));
                 return None;
             }
         }
@@ -142,7 +143,7 @@ pub(super) fn controls(
 
 /// Reports a nonzero limit of a controller that depends on the length of MuJoCo's time step or is not
 /// continuous.
-pub(super) fn refuse_limit(
+pub(super) fn report_limit(
     actuator: &Element<'_>,
     attribute: &str,
     what: &str,
@@ -153,7 +154,7 @@ pub(super) fn refuse_limit(
         return Some(());
     }
     let message = format!("{what} is not supported: the rate of its state is not continuous");
-    cx.report_error(&actuator.place(attribute, cx), message, |d| {
+    cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| {
         d.add_help("write `0`, and limit the command in your program").add_help(OTHER_INPUTS)
     });
     None

@@ -8,17 +8,17 @@ use super::activation::{ActuatorLaw, ActuatorNames, OTHER_INPUTS};
 use super::defaults::Element;
 use super::formula::Formula;
 use super::law::{Force, read_force};
-use super::reader::Reader;
+use super::reader::MjcfReader;
 use super::tendon::Tendon;
 use crate::import::context::Cx;
 use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
 use crate::import::imported::Placed;
-use crate::import::robot::{identifier, unused_name};
+use crate::import::robot::{identifier_of_names, unused_name};
 use crate::syntax::file_parameters::{FileField, FileFieldKind};
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, InputOption, JointKind, LimitOption, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Actuator types that are not supported, with the reasons.
+/// Actuator types of MuJoCo that are not supported, with the reasons.
 const REFUSED: [(&str, &str); 3] = [
     ("adhesion", "it acts at contacts, whose forces MuJoCo divides among them"),
     (
@@ -28,7 +28,7 @@ const REFUSED: [(&str, &str); 3] = [
     ("plugin", "its force is computed by a program"),
 ];
 
-/// All actuator types of MuJoCo.
+/// Names of all actuator types of MuJoCo.
 pub(super) const ALL: [&str; 13] = [
     "general",
     "motor",
@@ -45,15 +45,15 @@ pub(super) const ALL: [&str; 13] = [
     "dcmotor",
 ];
 
-/// Attributes that select what an actuator acts on.
+/// Attributes that select the joint, tendon or site on which an actuator acts.
 const TARGETS: [&str; 7] = ["joint", "jointinparent", "tendon", "site", "slidersite", "cranksite", "body"];
 
 /// Maximum effort of each joint: the sum over its actuators, or `None` if one of them is unlimited.
 type Efforts = BTreeMap<String, Option<Placed<f64>>>;
 
-impl<'a> Reader<'a> {
-    /// Reads all actuators.
-    pub(super) fn actuators(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+impl<'a> MjcfReader<'a> {
+    /// Reads all actuators of an MJCF file.
+    pub(super) fn read_actuators(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = child_elements(root).filter(|node| node.tag_name().name() == "actuator");
         let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
         let off = self.options.inputs != InputOption::Actuators || !self.settings.actuation;
@@ -65,21 +65,21 @@ impl<'a> Reader<'a> {
         let mut efforts = Efforts::new();
         for node in nodes {
             // Attributes common to all actuators may come from the defaults of any actuator type.
-            let any = self.defaults.element(node, &ALL, 0, cx);
-            self.add_losses(&any, tendons, cx);
-            let group = any.number("group", cx).map_or(0.0, |group| group.value);
+            let any = self.defaults.element_with_defaults(node, &ALL, 0, cx);
+            self.add_rotor_losses(&any, tendons, cx);
+            let group = any.finite_number("group", cx).map_or(0.0, |group| group.value);
             let disabled = self.settings.disabled_groups.contains(&group);
             if disabled && !off {
-                self.count("actuators of disabled groups", 1);
+                self.count_skipped("actuators of disabled groups", 1);
             }
             if !off && !disabled {
-                self.actuator(&any, tendons, (&mut names, &mut efforts), cx);
+                self.read_actuator(&any, tendons, (&mut names, &mut efforts), cx);
             }
         }
-        self.bound_efforts(efforts);
+        self.limit_efforts(efforts);
     }
 
-    fn actuator(
+    fn read_actuator(
         &mut self,
         any: &Element<'a>,
         tendons: &[Tendon],
@@ -99,17 +99,17 @@ impl<'a> Reader<'a> {
             // The schema check reports unknown elements.
             return;
         }
-        let classes = self.defaults.by_class(node, &ALL, 0, cx);
-        if let Some(found) = any.nonzero("delay", cx) {
+        let classes = self.defaults.defaults_by_class(node, &ALL, 0, cx);
+        if let Some(found) = any.nonzero_number("delay", cx) {
             cx.report_error(&found.place, "`delay` of an actuator is not supported", |d| {
                 d.add_help(OTHER_INPUTS)
             });
         }
-        let Some((on, turns)) = self.transmission(any, tendons, false, cx) else { return };
+        let Some((on, turns)) = self.read_transmission(any, tendons, false, cx) else { return };
         let said = node.has_attribute("name").then(|| read_name_attribute(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| {
             let joint = on.weighted_joints().first().map(|(joint, _)| joint.text.as_str());
-            let target = joint.or(any.text("site")).unwrap_or("motor");
+            let target = joint.or(any.trimmed_text("site")).unwrap_or("motor");
             Name {
                 text: unused_name(&format!("{target}_{kind}"), |name| names.contains(name)),
                 place: element_position(node, cx),
@@ -117,37 +117,38 @@ impl<'a> Reader<'a> {
         });
         names.insert(named.text.clone());
         let states = &self.robot.states;
-        let field = |word: &str| {
-            let is_taken = |name: &str| states.iter().any(|(field, _)| field.ident == name);
-            unused_name(&identifier(&named.text, word, "actuator"), is_taken)
+        let unused_state_name = |word: &str| {
+            let is_state_name_taken = |name: &str| states.iter().any(|(field, _)| field.ident == name);
+            unused_name(&identifier_of_names(&named.text, word, "actuator"), is_state_name_taken)
         };
         let input = |word: &str| match word {
             "" => named.text.clone(),
             word => unused_name(&format!("{}_{word}", named.text), |name| names.contains(name)),
         };
         let length = if turns { "rad" } else { "m" };
-        let quantities = ActuatorNames { actuator: &named.text, length, field: &field, input: &input };
+        let quantities =
+            ActuatorNames { actuator: &named.text, length, field: &unused_state_name, input: &input };
         let Some(force) = read_force(any, &classes, &quantities, cx) else { return };
         match force {
             Force::Affine { gain, bias } => {
                 let servo = bias[1] != 0.0;
-                let Some((on, _)) = self.transmission(any, tendons, servo, cx) else { return };
-                self.add_effort(any, &on, ((gain, bias), None), efforts, cx);
-                self.add_affine(&named, on, (gain, bias), unit(kind, turns, (gain, bias)));
+                let Some((on, _)) = self.read_transmission(any, tendons, servo, cx) else { return };
+                self.add_effort_limit(any, &on, ((gain, bias), None), efforts, cx);
+                self.add_affine_actuator(&named, on, (gain, bias), input_unit(kind, turns, (gain, bias)));
             }
             Force::Law(law) => {
-                let Some((on, _)) = self.transmission(any, tendons, true, cx) else { return };
-                self.add_effort(any, &on, ((1.0, [1.0; 3]), law.limit.clone()), efforts, cx);
-                let limited = self.range(any, "actlimited", "actrange", cx).is_some();
-                self.count("ranges of activations", usize::from(limited));
+                let Some((on, _)) = self.read_transmission(any, tendons, true, cx) else { return };
+                self.add_effort_limit(any, &on, ((1.0, [1.0; 3]), law.limit.clone()), efforts, cx);
+                let limited = self.read_range(any, "actlimited", "actrange", cx).is_some();
+                self.count_skipped("ranges of activations", usize::from(limited));
                 names.extend(law.inputs.iter().map(|(input, _)| input.clone()));
-                self.add_law(named, on, *law);
+                self.add_actuator_law(named, on, *law);
             }
         }
     }
 
     /// Adds the input of an actuator, and a spring and a damper for the force that does not depend on it.
-    fn add_affine(
+    fn add_affine_actuator(
         &mut self,
         name: &Name,
         on: DriveOn,
@@ -171,7 +172,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the inputs, the states and the force of an actuator.
-    fn add_law(&mut self, name: Name, on: DriveOn, law: ActuatorLaw) {
+    fn add_actuator_law(&mut self, name: Name, on: DriveOn, law: ActuatorLaw) {
         for (input, unit) in law.inputs {
             let name = Name { text: input, place: name.place.clone() };
             let on = DriveOn::Sum(Vec::new());
@@ -195,7 +196,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns what an actuator acts on, scaled by the gear ratio, and whether its force is a torque.
-    fn transmission(
+    fn read_transmission(
         &self,
         element: &Element<'a>,
         tendons: &[Tendon],
@@ -220,21 +221,25 @@ impl<'a> Reader<'a> {
                 return None;
             }
         }
-        if let Some(site) = element.name("site", cx) {
+        if let Some(site) = element.name_of_attribute("site", cx) {
             return self.site_transmission(&site, element, servo, cx);
         }
-        let gear = element.some("gear", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], cx).map_or(1.0, |gear| gear.value[0]);
-        if let Some(joint) = element.name("joint", cx).or_else(|| element.name("jointinparent", cx)) {
-            if !self.check_joint(&joint, "drive", cx) {
+        let gear = element
+            .numbers_with_defaults("gear", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], cx)
+            .map_or(1.0, |gear| gear.value[0]);
+        if let Some(joint) =
+            element.name_of_attribute("joint", cx).or_else(|| element.name_of_attribute("jointinparent", cx))
+        {
+            if !self.check_coupled_joint(&joint, "drive", cx) {
                 return None;
             }
-            let turns = |known: &crate::import::robot::FileJoint| {
+            let is_pin = |known: &crate::import::robot::FileJoint| {
                 known.name.text == joint.text && known.kind == JointKind::Pin
             };
-            let turns = self.robot.joints.iter().any(turns);
+            let turns = self.robot.joints.iter().any(is_pin);
             return Some((DriveOn::Sum(vec![(joint, gear)]), turns));
         }
-        if let Some(tendon) = element.name("tendon", cx) {
+        if let Some(tendon) = element.name_of_attribute("tendon", cx) {
             return Some((
                 Tendon::drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.scaled_target(gear),
                 false,
@@ -247,15 +252,16 @@ impl<'a> Reader<'a> {
 
     /// Adds the rotor inertia and the viscous damping of an actuator. They act on the joint or tendon even if
     /// the actuator is not used.
-    fn add_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
-        let gear = element.some("gear", [1.0; 6], cx).map_or(1.0, |gear| gear.value[0].abs());
-        let damping = element.polynomial("damping", cx).filter(|_| self.dampers && gear > 0.0);
+    fn add_rotor_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+        let gear =
+            element.numbers_with_defaults("gear", [1.0; 6], cx).map_or(1.0, |gear| gear.value[0].abs());
+        let damping = element.polynomial_coefficients("damping", cx).filter(|_| self.dampers && gear > 0.0);
         // MuJoCo multiplies all coefficients by the square of the gear ratio.
         let damping = damping.map(|Placed { value: [linear, square, cube], place }| Placed {
             value: [linear, square / gear, cube / (gear * gear)],
             place,
         });
-        let rotor = element.nonzero("armature", cx);
+        let rotor = element.nonzero_number("armature", cx);
         let laws = [
             damping.map(|found| (DriveLaw::damper(found.value), found.place)),
             rotor.as_ref().map(|found| (DriveLaw::Inerter(found.value), found.place.clone())),
@@ -270,8 +276,9 @@ impl<'a> Reader<'a> {
         if let Some(rotor) = rotor.filter(|rotor| rotor.value < 0.0) {
             cx.report_error(&rotor.place, format!("negative armature `{}`", rotor.value), |d| d);
         }
-        let Some((on, _)) = self.transmission(element, tendons, false, cx) else { return };
-        let target = ["joint", "jointinparent", "tendon"].into_iter().find_map(|target| element.text(target));
+        let Some((on, _)) = self.read_transmission(element, tendons, false, cx) else { return };
+        let target =
+            ["joint", "jointinparent", "tendon"].into_iter().find_map(|target| element.trimmed_text(target));
         let text = target.unwrap_or("motor");
         for (law, place) in laws {
             let name = Name { text: text.to_string(), place };
@@ -280,7 +287,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the maximum force of an actuator to the maximum efforts of the joints that it acts on.
-    fn add_effort(
+    fn add_effort_limit(
         &mut self,
         element: &Element<'a>,
         on: &DriveOn,
@@ -288,19 +295,19 @@ impl<'a> Reader<'a> {
         efforts: &mut Efforts,
         cx: &mut Cx<'_>,
     ) {
-        let largest = |ends: [Placed<f64>; 2]| {
+        let largest_magnitude = |ends: [Placed<f64>; 2]| {
             let [low, high] = ends;
             Placed { value: low.value.abs().max(high.value.abs()), place: low.place }
         };
-        let by_force = self.range(element, "forcelimited", "forcerange", cx).map(largest);
+        let by_force = self.read_range(element, "forcelimited", "forcerange", cx).map(largest_magnitude);
         let saturation = saturation.filter(|_| self.options.limits != LimitOption::Ignore);
         let by_force = saturation.or(by_force);
-        let by_input = self.range(element, "ctrllimited", "ctrlrange", cx).map(largest);
+        let by_input = self.read_range(element, "ctrllimited", "ctrlrange", cx).map(largest_magnitude);
         let by_input = by_input.filter(|_| self.settings.clamped);
-        let inherits = element.nonzero("inheritrange", cx).is_some();
+        let inherits = element.nonzero_number("inheritrange", cx).is_some();
         let is_servo = bias != [0.0; 3];
         let servos = usize::from((by_input.is_some() || inherits) && is_servo);
-        self.count("ranges of servo commands", servos);
+        self.count_skipped("ranges of servo commands", servos);
         let by_input =
             by_input.filter(|_| !is_servo).map(|found| Placed { value: found.value * gain.abs(), ..found });
         let limit = match (by_force, by_input) {
@@ -326,14 +333,14 @@ impl<'a> Reader<'a> {
             }
             return;
         }
-        self.count("limits of actuators on cables and sites", usize::from(limit.is_some()));
-        for joint in self.joints_below(on) {
+        self.count_skipped("limits of actuators on cables and sites", usize::from(limit.is_some()));
+        for joint in self.joints_to_ground(on) {
             add(joint, None, efforts);
         }
     }
 
     /// Returns the names of all joints between the ground and the bodies that a length or a wrench refers to.
-    fn joints_below(&self, on: &DriveOn) -> Vec<String> {
+    fn joints_to_ground(&self, on: &DriveOn) -> Vec<String> {
         let ends = match on {
             DriveOn::Sum(_) => Vec::new(),
             DriveOn::Length(e) => e.subexpressions(),
@@ -354,7 +361,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Limits the effort of each joint to the sum of its actuators' maximum forces.
-    fn bound_efforts(&mut self, mut efforts: Efforts) {
+    fn limit_efforts(&mut self, mut efforts: Efforts) {
         if self.options.limits == LimitOption::Ignore {
             return;
         }
@@ -368,8 +375,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns the unit of an input.
-fn unit(kind: &str, turns: bool, (gain, bias): (f64, [f64; 3])) -> &'static str {
+/// Returns the unit of an actuator's input, as text.
+fn input_unit(kind: &str, turns: bool, (gain, bias): (f64, [f64; 3])) -> &'static str {
     match (kind, turns) {
         ("motor", true) => "N·m",
         ("motor", false) => "N",

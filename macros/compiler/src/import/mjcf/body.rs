@@ -1,10 +1,10 @@
 //! `<worldbody>` → links and joints, in the order of the file.
 
-use super::defaults::{Element, choice};
+use super::defaults::{Element, boolean_choice};
 use super::frame::read_pose;
 use super::geometry;
-use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint};
-use super::reader::{Reader, give, origin};
+use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint_element};
+use super::reader::{MjcfReader, origin_of_pose, set_mass};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
@@ -12,18 +12,18 @@ use crate::import::element::{
 };
 use crate::import::imported::Placed;
 use crate::import::pose::{Pose, add, axis_rotation, matrix_product, matrix_times_vector, scale_vector};
-use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused_name};
+use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, massless_link, unused_name};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
-/// MuJoCo's name of the fixed body.
+/// MuJoCo's name of the body that is fixed to the ground.
 pub(super) const WORLD: &str = "world";
 
 const WRITTEN_OUT: &str = "MuJoCo can write the expanded model: `mj_saveLastXML`, or its program `compile`";
 
-/// Body that remains to be read.
-struct Open<'a> {
+/// Body of an MJCF file that remains to be read.
+struct OpenBody<'a> {
     node: Node<'a>,
-    /// Parent link.
+    /// Name of the parent link of the body.
     parent: Name,
     /// Pose of the surrounding `<frame>` elements relative to the parent.
     outer: Pose,
@@ -37,7 +37,7 @@ pub(super) type Shaped<'a> = (Element<'a>, Pose);
 
 /// Contents of a body, including the contents of its `<frame>` elements.
 #[derive(Default)]
-struct Inside<'a> {
+struct BodyContents<'a> {
     bodies: Vec<(Node<'a>, Pose, usize)>,
     shapes: Vec<Shaped<'a>>,
     sites: Vec<Shaped<'a>>,
@@ -46,22 +46,22 @@ struct Inside<'a> {
     jointed: Vec<(Node<'a>, Pose, usize)>,
 }
 
-impl<'a> Reader<'a> {
-    /// Reads all bodies.
+impl<'a> MjcfReader<'a> {
+    /// Reads the world and all bodies of an MJCF file.
     pub(super) fn read_world(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Option<()> {
         let world = Name { text: GROUND.to_string(), place: element_position(root, cx) };
-        self.robot.links.push(bare_link(world.clone()));
+        self.robot.links.push(massless_link(world.clone()));
         // Generated names must differ from the names in the file.
-        let names_of = |kind: fn(Node<'_>) -> bool| {
+        let names_of_elements = |kind: fn(Node<'_>) -> bool| {
             let nodes = root.descendants().filter(move |node| node.is_element() && kind(*node));
             nodes.filter_map(|node| node.attribute("name")).map(str::to_string)
         };
-        let of_body = |node: Node<'_>| {
+        let is_inside_body = |node: Node<'_>| {
             let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
-            is_joint(node) && ["body", "frame"].contains(&parent)
+            is_joint_element(node) && ["body", "frame"].contains(&parent)
         };
-        self.joint_names = names_of(of_body).collect();
-        self.link_names = names_of(|node| node.tag_name().name() == "body").collect();
+        self.joint_names = names_of_elements(is_inside_body).collect();
+        self.link_names = names_of_elements(|node| node.tag_name().name() == "body").collect();
         self.link_names.extend([GROUND.to_string(), WORLD.to_string()]);
         let worlds: Vec<Node<'a>> =
             child_elements(root).filter(|node| node.tag_name().name() == "worldbody").collect();
@@ -69,10 +69,10 @@ impl<'a> Reader<'a> {
             cx.report_error(&element_position(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
             return None;
         }
-        let mut open: Vec<Open<'a>> = Vec::new();
+        let mut open: Vec<OpenBody<'a>> = Vec::new();
         for node in worlds.into_iter().rev() {
-            let class = self.defaults.class(node, "childclass", 0, cx);
-            let inside = self.inside(node, class, cx);
+            let class = self.defaults.class_index(node, "childclass", 0, cx);
+            let inside = self.contents_of_body(node, class, cx);
             let fixed = inside.jointed.iter().map(|(node, ..)| *node);
             for node in fixed.chain(inside.inertial.map(|(node, _)| node)) {
                 let message = format!("{} of the world, which does not move", quoted_tag(node));
@@ -80,10 +80,10 @@ impl<'a> Reader<'a> {
                     d.add_help("move it into a `<body>`")
                 });
             }
-            self.add_sites(&inside, GROUND, cx);
-            self.add_planes(&inside.shapes, cx);
-            self.note_shapes(GROUND, &inside.shapes, cx);
-            open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| Open {
+            self.collect_sites(&inside, GROUND, cx);
+            self.add_world_planes(&inside.shapes, cx);
+            self.record_shapes(GROUND, &inside.shapes, cx);
+            open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| OpenBody {
                 node,
                 parent: world.clone(),
                 outer,
@@ -91,7 +91,7 @@ impl<'a> Reader<'a> {
                 class,
             }));
         }
-        self.free_base(&open, cx);
+        self.check_free_base(&open, cx);
         // With an explicit stack, because chains may be long.
         while let Some(next) = open.pop() {
             if self.robot.links.len() > MAX_ELEMENTS {
@@ -105,17 +105,17 @@ impl<'a> Reader<'a> {
             let below = self.read_body(next, cx);
             open.extend(below.into_iter().rev());
         }
-        self.place_sites(cx);
+        self.add_site_frames(cx);
         Some(())
     }
 
-    /// Reports `base = free` unless the file has one outermost body without joints.
-    fn free_base(&self, open: &[Open<'a>], cx: &mut Cx<'_>) {
+    /// Reports the option `base = free` unless the file has exactly one outermost body and it has no joints.
+    fn check_free_base(&self, open: &[OpenBody<'a>], cx: &mut Cx<'_>) {
         if self.options.base != Base::Free {
             return;
         }
         let fits = match open {
-            [one] => !child_elements(one.node).any(is_joint),
+            [one] => !child_elements(one.node).any(is_joint_element),
             _ => false,
         };
         if !fits {
@@ -134,17 +134,17 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn read_body(&mut self, open: Open<'a>, cx: &mut Cx<'_>) -> Vec<Open<'a>> {
+    fn read_body(&mut self, open: OpenBody<'a>, cx: &mut Cx<'_>) -> Vec<OpenBody<'a>> {
         let node = open.node;
         self.bodies += 1;
-        let mocap = choice(node, "mocap", cx) == Some(true);
-        let class = self.defaults.class(node, "childclass", open.class, cx);
+        let mocap = boolean_choice(node, "mocap", cx) == Some(true);
+        let class = self.defaults.class_index(node, "childclass", open.class, cx);
         let said = node.attribute("name").and_then(|_| read_name_attribute(node, "name", cx));
         let body = self.body_name(said, node, cx);
-        let element = self.defaults.element(node, &[], 0, cx);
+        let element = self.defaults.element_with_defaults(node, &[], 0, cx);
         let pose = open.outer.compose_with(&read_pose(&element, &self.settings, cx));
         let world = open.world.compose_with(&pose);
-        let inside = self.inside(node, class, cx);
+        let inside = self.contents_of_body(node, class, cx);
         let mut joints = Vec::new();
         for (child, outer, class) in &inside.jointed {
             joints.extend(self.read_joint((*child, outer, *class), &body, cx));
@@ -155,14 +155,14 @@ impl<'a> Reader<'a> {
                 d.add_help("a mocap body is a child of `<worldbody>` and has no joint")
             });
         }
-        self.refuse_alignment(&inside, cx);
+        self.report_alignment(&inside, cx);
         if self.options.base == Base::Free && open.parent.text == GROUND && joints.is_empty() {
-            joints.extend(self.bare_free(&body));
+            joints.extend(self.plain_free_joint(&body));
         }
-        self.check_compensation(node, cx);
+        self.check_gravity_compensation(node, cx);
         let mass = match self.options.inertias {
             Inertias::None => None,
-            _ => geometry::of_body(
+            _ => geometry::mass_of_body(
                 &inside.inertial,
                 &inside.shapes,
                 &self.defaults,
@@ -171,23 +171,24 @@ impl<'a> Reader<'a> {
                 cx,
             ),
         };
-        self.add_sites(&inside, &body.text, cx);
+        self.collect_sites(&inside, &body.text, cx);
         if mocap {
             self.mocap.insert(body.text.clone());
         }
-        self.chain(&open.parent, &body, &pose, joints, cx);
-        let mut link = bare_link(body.clone());
+        self.add_joint_chain(&open.parent, &body, &pose, joints, cx);
+        let mut link = massless_link(body.clone());
         if let Some(mass) = &mass {
-            give(&mut link, mass, &mass_place(&inside, node, cx));
+            set_mass(&mut link, mass, &place_of_mass(&inside, node, cx));
         }
-        self.add_collisions(self.robot.links.len(), &inside.shapes, cx);
-        self.add_visuals(self.robot.links.len(), &inside.shapes, cx);
-        self.note_shapes(&body.text, &inside.shapes, cx);
+        self.add_collision_shapes(self.robot.links.len(), &inside.shapes, cx);
+        self.add_visual_shapes(self.robot.links.len(), &inside.shapes, cx);
+        self.record_shapes(&body.text, &inside.shapes, cx);
         self.robot.links.push(link);
         self.masses.push(mass);
         self.poses.insert(body.text.clone(), world);
         let next = inside.bodies.into_iter();
-        next.map(|(node, outer, class)| Open { node, parent: body.clone(), outer, world, class }).collect()
+        next.map(|(node, outer, class)| OpenBody { node, parent: body.clone(), outer, world, class })
+            .collect()
     }
 
     fn body_name(&mut self, said: Option<Name>, node: Node<'a>, cx: &mut Cx<'_>) -> Name {
@@ -207,18 +208,18 @@ impl<'a> Reader<'a> {
     }
 
     /// Collects the elements in a body, each with the pose of its surrounding `<frame>` elements.
-    fn inside(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) -> Inside<'a> {
-        let mut found = Inside::default();
-        self.gather(node, &Pose::ZERO, class, &mut found, cx);
+    fn contents_of_body(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) -> BodyContents<'a> {
+        let mut found = BodyContents::default();
+        self.gather_contents(node, &Pose::ZERO, class, &mut found, cx);
         found
     }
 
-    fn gather(
+    fn gather_contents(
         &mut self,
         node: Node<'a>,
         outer: &Pose,
         class: usize,
-        found: &mut Inside<'a>,
+        found: &mut BodyContents<'a>,
         cx: &mut Cx<'_>,
     ) {
         for child in child_elements(node) {
@@ -232,22 +233,26 @@ impl<'a> Reader<'a> {
                             });
                         }
                     }
-                    let class = self.defaults.class(child, "childclass", class, cx);
-                    let element = self.defaults.element(child, &[], 0, cx);
+                    let class = self.defaults.class_index(child, "childclass", class, cx);
+                    let element = self.defaults.element_with_defaults(child, &[], 0, cx);
                     let pose = outer.compose_with(&read_pose(&element, &self.settings, cx));
                     // The recursion depth is that of nested elements, which is limited.
-                    self.gather(child, &pose, class, found, cx);
+                    self.gather_contents(child, &pose, class, found, cx);
                 }
                 "body" => found.bodies.push((child, *outer, class)),
-                "geom" => found.shapes.push((self.defaults.element(child, &["geom"], class, cx), *outer)),
-                "site" => found.sites.push((self.defaults.element(child, &["site"], class, cx), *outer)),
+                "geom" => found
+                    .shapes
+                    .push((self.defaults.element_with_defaults(child, &["geom"], class, cx), *outer)),
+                "site" => found
+                    .sites
+                    .push((self.defaults.element_with_defaults(child, &["site"], class, cx), *outer)),
                 "inertial" if found.inertial.is_some() => {
                     cx.report_error(&element_position(child, cx), "second `<inertial>` of one body", |d| d);
                 }
                 "inertial" => found.inertial = Some((child, *outer)),
                 "joint" | "freejoint" => found.jointed.push((child, *outer, class)),
-                "camera" => self.count("cameras", 1),
-                "light" => self.count("lights", 1),
+                "camera" => self.count_skipped("cameras", 1),
+                "light" => self.count_skipped("lights", 1),
                 "composite" | "flexcomp" | "replicate" | "attach" | "plugin" => {
                     let message = format!("{} is not supported", quoted_tag(child));
                     cx.report_error(&element_position(child, cx), message, |d| d.add_help(WRITTEN_OUT));
@@ -260,10 +265,10 @@ impl<'a> Reader<'a> {
 
     /// Reports a free joint that aligns the axes of its body with the principal axes. Its coordinates would
     /// differ from those of the unaligned body.
-    fn refuse_alignment(&self, inside: &Inside<'a>, cx: &mut Cx<'_>) {
+    fn report_alignment(&self, inside: &BodyContents<'a>, cx: &mut Cx<'_>) {
         for (joint, ..) in &inside.jointed {
             let aligned = joint.tag_name().name() == "freejoint"
-                && choice(*joint, "align", cx).unwrap_or(self.settings.align_free);
+                && boolean_choice(*joint, "align", cx).unwrap_or(self.settings.align_free);
             if aligned && inside.bodies.is_empty() {
                 let message = "a free body in principal axes is not supported";
                 cx.report_error(&element_position(*joint, cx), message, |d| {
@@ -273,7 +278,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn check_compensation(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
+    fn check_gravity_compensation(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
         if let Some(found) =
             read_number_attribute(node, "gravcomp", cx).filter(|found| self.passive && found.value != 0.0)
         {
@@ -283,7 +288,14 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds the joints between a body and its parent as a chain, with massless links between them.
-    fn chain(&mut self, parent: &Name, body: &Name, pose: &Pose, joints: Vec<BodyJoint>, cx: &mut Cx<'_>) {
+    fn add_joint_chain(
+        &mut self,
+        parent: &Name,
+        body: &Name,
+        pose: &Pose,
+        joints: Vec<BodyJoint>,
+        cx: &mut Cx<'_>,
+    ) {
         let number = joints.len();
         let free = joints.iter().find(|joint| joint.kind == JointKind::Free);
         if let Some(free) = free.filter(|_| number > 1 || parent.text != GROUND) {
@@ -297,7 +309,7 @@ impl<'a> Reader<'a> {
             let text = unused_name(&format!("{}_weld", body.text), |name| self.joint_names.contains(name));
             self.joint_names.insert(text.clone());
             let name = Name { text, place: body.place.clone() };
-            self.robot.joints.push(weld(name, parent.clone(), body.clone(), pose));
+            self.robot.joints.push(weld_joint(name, parent.clone(), body.clone(), pose));
             return;
         }
         let mut carrier = parent.clone();
@@ -306,10 +318,10 @@ impl<'a> Reader<'a> {
             // The coordinates of a free joint are the pose of the body in the world.
             let outer = if k == 0 && joint.kind != JointKind::Free { *pose } else { Pose::ZERO };
             if let Some(damping) = &joint.spread {
-                self.spread(&joint, damping, &carrier, &child);
+                self.add_isotropic_damping(&joint, damping, &carrier, &child);
             }
             self.references.insert(joint.name.text.clone(), joint.reference);
-            self.robot.joints.push(placed(joint, &carrier, &child, &outer));
+            self.robot.joints.push(joint_with_ends(joint, &carrier, &child, &outer));
             carrier = child;
         }
     }
@@ -320,29 +332,35 @@ impl<'a> Reader<'a> {
             unused_name(&format!("{}_{}", body.text, joint.name.text), |name| self.link_names.contains(name));
         self.link_names.insert(text.clone());
         let name = Name { text, place: body.place.clone() };
-        self.robot.links.push(bare_link(name.clone()));
+        self.robot.links.push(massless_link(name.clone()));
         self.masses.push(None);
         name
     }
 
     /// Adds isotropic damping of a ball joint or a free body: the Rayleigh dissipation function `½ d (v·v +
     /// ω·ω)`.
-    fn spread(&mut self, joint: &BodyJoint, damping: &Placed<f64>, carrier: &Name, child: &Name) {
+    fn add_isotropic_damping(
+        &mut self,
+        joint: &BodyJoint,
+        damping: &Placed<f64>,
+        carrier: &Name,
+        child: &Name,
+    ) {
         let at = &damping.place;
         let name_expr = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
         let half_square = |e: Expr| {
             let square = Expr::function_call_at("dot", vec![e.clone(), e], at);
             Expr::binary_operation(BinaryOp::Mul, Expr::number_at(damping.value / 2.0, at), square)
         };
-        let slash = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
+        let quotient = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
         let turning = Expr::function_call_at(
             "omega",
-            vec![slash(name_expr(&child.text), name_expr(&carrier.text))],
+            vec![quotient(name_expr(&child.text), name_expr(&carrier.text))],
             at,
         );
         let mut sum = half_square(turning);
         if joint.kind == JointKind::Free {
-            let path = slash(slash(name_expr(&child.text), name_expr(GROUND)), name_expr(GROUND));
+            let path = quotient(quotient(name_expr(&child.text), name_expr(GROUND)), name_expr(GROUND));
             sum = Expr::binary_operation(
                 BinaryOp::Add,
                 sum,
@@ -353,17 +371,17 @@ impl<'a> Reader<'a> {
         self.robot.dissipations.push((Name { text, place: at.clone() }, sum));
     }
 
-    fn bare_free(&mut self, body: &Name) -> Option<BodyJoint> {
+    fn plain_free_joint(&mut self, body: &Name) -> Option<BodyJoint> {
         let text = unused_name(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
         self.joint_names.insert(text.clone());
         let place = body.place.clone();
-        let placed = |value| Placed { value, place: place.clone() };
+        let placed_value = |value| Placed { value, place: place.clone() };
         Some(BodyJoint {
             name: Name { text, place: place.clone() },
             kind: JointKind::Free,
             word: "free",
-            anchor: placed([0.0; 3]),
-            axis: placed([0.0, 0.0, 1.0]),
+            anchor: placed_value([0.0; 3]),
+            axis: placed_value([0.0, 0.0, 1.0]),
             reference: 0.0,
             limits: FileLimits::default(),
             damping: None,
@@ -373,14 +391,14 @@ impl<'a> Reader<'a> {
     }
 
     /// Collects the sites of a body. Sites with names become frames.
-    fn add_sites(&mut self, inside: &Inside<'a>, body: &str, cx: &mut Cx<'_>) {
+    fn collect_sites(&mut self, inside: &BodyContents<'a>, body: &str, cx: &mut Cx<'_>) {
         for (site, outer) in &inside.sites {
             let named =
                 site.node.has_attribute("name").then(|| read_name_attribute(site.node, "name", cx)).flatten();
-            if let Some(mesh) = site.name("mesh", cx) {
+            if let Some(mesh) = site.name_of_attribute("mesh", cx) {
                 cx.report_error(&mesh.place, "a site that is fitted to a mesh is not supported", |d| d);
             }
-            let Some((pose, _)) = geometry::extent(site, &self.settings, cx) else { continue };
+            let Some((pose, _)) = geometry::pose_and_half_length(site, &self.settings, cx) else { continue };
             if let Some(named) = named {
                 self.poses_of_sites.insert(named.text.clone(), (body.to_string(), outer.compose_with(&pose)));
                 self.sites.push((named, body.to_string(), outer.compose_with(&pose)));
@@ -388,7 +406,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn place_sites(&mut self, cx: &mut Cx<'_>) {
+    fn add_site_frames(&mut self, cx: &mut Cx<'_>) {
         for (mut site, body, pose) in std::mem::take(&mut self.sites) {
             if self.robot.links.len() > 2 * MAX_ELEMENTS {
                 cx.report_error(&site.place, format!("more than {MAX_ELEMENTS} bodies and sites"), |d| d);
@@ -403,20 +421,20 @@ impl<'a> Reader<'a> {
             self.joint_names.insert(text.clone());
             let joint = Name { text, place: site.place.clone() };
             let parent = Name { text: body, place: site.place.clone() };
-            self.robot.joints.push(weld(joint, parent, site.clone(), &pose));
-            self.robot.links.push(bare_link(site));
+            self.robot.joints.push(weld_joint(joint, parent, site.clone(), &pose));
+            self.robot.links.push(massless_link(site));
             self.masses.push(None);
         }
     }
 }
 
 /// Returns the source position of the mass properties of a body.
-fn mass_place(inside: &Inside<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
+fn place_of_mass(inside: &BodyContents<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
     element_position(inside.inertial.map_or(node, |(node, _)| node), cx)
 }
 
-/// Returns a fixed joint.
-fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
+/// Returns a joint that fixes one link to another.
+fn weld_joint(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
     let place = name.place.clone();
     FileJoint {
         name,
@@ -424,7 +442,7 @@ fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
         word: "weld",
         parent,
         child,
-        origin: origin(pose, &place),
+        origin: origin_of_pose(pose, &place),
         anchor: [0.0; 3],
         axis: Placed { value: [0.0, 0.0, 1.0], place },
         mimic: None,
@@ -438,7 +456,7 @@ fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
 
 /// Returns the joint with its endpoints. In the configuration of the file, its coordinate equals its
 /// reference instead of zero.
-fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJoint {
+fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJoint {
     let axis = joint.axis.value;
     let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };
     match joint.kind.rotates_about_one_axis() {
@@ -456,7 +474,7 @@ fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJ
         }
     };
     FileJoint {
-        origin: origin(&pose, &joint.anchor.place),
+        origin: origin_of_pose(&pose, &joint.anchor.place),
         name: joint.name,
         kind: joint.kind,
         word: joint.word,

@@ -2,7 +2,7 @@
 
 use super::body::Shaped;
 use super::defaults::Element;
-use super::reader::{Reader, origin};
+use super::reader::{MjcfReader, origin_of_pose};
 use super::touch::{CollisionShape, Law, Plane};
 use crate::import::context::Cx;
 use crate::import::element::element_position;
@@ -12,29 +12,30 @@ use crate::syntax::Shape;
 use crate::syntax::contact::CONTACT_HELP;
 use std::collections::BTreeSet;
 
-impl<'a> Reader<'a> {
+impl<'a> MjcfReader<'a> {
     /// Adds the collision shapes of a link, if the options request them. Shapes with zero masks are only
     /// counted.
-    pub(super) fn add_collisions(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+    pub(super) fn add_collision_shapes(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         if !self.options.collisions {
-            self.count("geometry of bodies", shapes.len());
+            self.count_skipped("geometry of bodies", shapes.len());
             return;
         }
         for (shape, outer) in shapes {
-            let mut bits = |attribute: &str| shape.number(attribute, cx).map_or(1.0, |bits| bits.value);
+            let mut bits =
+                |attribute: &str| shape.finite_number(attribute, cx).map_or(1.0, |bits| bits.value);
             if bits("contype") == 0.0 && bits("conaffinity") == 0.0 {
-                self.count("geometry of bodies", 1);
+                self.count_skipped("geometry of bodies", 1);
                 continue;
             }
-            let Some((kind, pose)) = self.collision(shape, cx) else { continue };
+            let Some((kind, pose)) = self.collision_shape(shape, cx) else { continue };
             let at = element_position(shape.node, cx);
             let mesh = match kind {
-                Shape::Mesh if is_mesh(shape) => self.meshes.vertices(shape, cx),
+                Shape::Mesh if is_mesh(shape) => self.meshes.vertices_of_shape(shape, cx),
                 _ => None,
             };
             let is_known = kind != Shape::Mesh || mesh.is_some();
-            self.add_touching(link, shape, is_known, cx);
-            let origin = origin(&outer.compose_with(&pose), &at);
+            self.record_contact_shape(link, shape, is_known, cx);
+            let origin = origin_of_pose(&outer.compose_with(&pose), &at);
             let part = FileCollision { origin, shape: kind, mesh, place: at };
             self.robot.collisions.push((link, part));
         }
@@ -42,30 +43,30 @@ impl<'a> Reader<'a> {
 
     /// Records a shape for contacts with the planes of the world. Shapes without known contact points are
     /// only counted.
-    fn add_touching(&mut self, link: usize, shape: &Element<'a>, is_known: bool, cx: &mut Cx<'_>) {
+    fn record_contact_shape(&mut self, link: usize, shape: &Element<'a>, is_known: bool, cx: &mut Cx<'_>) {
         if !self.options.contacts {
             return;
         }
         if !is_known {
-            self.count("shapes fitted to meshes and generated meshes, for contact", 1);
+            self.count_skipped("shapes fitted to meshes and generated meshes, for contact", 1);
             return;
         }
         let number = self.robot.collisions.iter().filter(|(known, _)| *known == link).count();
-        let (law, place) = (Law::read(shape, cx), element_position(shape.node, cx));
+        let (law, place) = (Law::read_contact_law(shape, cx), element_position(shape.node, cx));
         let name = shape.node.attribute("name").map(str::to_string);
         self.touching.push(CollisionShape { link, number, name, law, place });
     }
 
     /// Adds the planes of the world for contacts. Other shapes of the world are only counted.
-    pub(super) fn add_planes(&mut self, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+    pub(super) fn add_world_planes(&mut self, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         for (shape, outer) in shapes {
-            if !self.options.contacts || shape.text("type") != Some("plane") {
-                self.count("geometry of the ground", 1);
+            if !self.options.contacts || shape.trimmed_text("type") != Some("plane") {
+                self.count_skipped("geometry of the ground", 1);
                 continue;
             }
-            let law = Law::read(shape, cx);
-            if law.touches_nothing() {
-                self.count("geometry of the ground", 1);
+            let law = Law::read_contact_law(shape, cx);
+            if law.has_no_contacts() {
+                self.count_skipped("geometry of the ground", 1);
                 continue;
             }
             let pose = outer.compose_with(&super::frame::read_pose(shape, &self.settings, cx));
@@ -76,11 +77,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Declares a contact for each pair of a shape and a plane whose masks permit contact.
-    pub(super) fn touch_planes(&mut self, cx: &mut Cx<'_>) {
+    pub(super) fn add_plane_contacts(&mut self, cx: &mut Cx<'_>) {
         if !self.options.contacts {
             return;
         }
-        if !self.settings.contacts() {
+        if !self.settings.has_contacts() {
             self.left_out.push("contacts, which the file disables".to_string());
             return;
         }
@@ -96,11 +97,11 @@ impl<'a> Reader<'a> {
         for touching in &self.touching {
             let link = self.robot.links[touching.link].name.text.clone();
             let shape = touching.name.clone().unwrap_or_else(|| format!("{link}_geom{}", touching.number));
-            for plane in self.planes.iter().filter(|plane| touching.law.meets(&plane.law)) {
+            for plane in self.planes.iter().filter(|plane| touching.law.may_touch(&plane.law)) {
                 let end = if self.planes.len() > 1 { format!("_{}", plane.name) } else { String::new() };
                 let text = unused_name(&format!("{shape}{end}_contact"), |name| names.contains(name));
                 names.insert(text.clone());
-                self.robot.contacts.push(touching.contact(text, &link, plane));
+                self.robot.contacts.push(touching.contact_with_plane(text, &link, plane));
             }
         }
         if self.robot.contacts.is_empty() {
@@ -119,20 +120,20 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns a collision shape and its pose relative to the surrounding `<frame>` elements.
-    pub(super) fn collision(
+    pub(super) fn collision_shape(
         &self,
         shape: &super::defaults::Element<'a>,
         cx: &mut Cx<'_>,
     ) -> Option<(Shape, Pose)> {
-        let kind = shape.text("type").unwrap_or("sphere");
-        if kind == "mesh" || shape.node_with("mesh").is_some() {
+        let kind = shape.trimmed_text("type").unwrap_or("sphere");
+        if kind == "mesh" || shape.node_with_attribute("mesh").is_some() {
             let pose = match is_mesh(shape) {
                 true => super::frame::read_pose(shape, &self.settings, cx),
                 false => Pose::ZERO,
             };
             return Some((Shape::Mesh, pose));
         }
-        let (pose, [x, y, z]) = super::geometry::dimensions(kind, shape, &self.settings, cx)?;
+        let (pose, [x, y, z]) = super::geometry::shape_dimensions(kind, shape, &self.settings, cx)?;
         let shape = match kind {
             "sphere" => Shape::Sphere(x),
             "capsule" => Shape::Capsule(x, 2.0 * z),
@@ -146,5 +147,5 @@ impl<'a> Reader<'a> {
 
 /// Whether a shape is a mesh, and not another shape that is fitted to a mesh.
 fn is_mesh(shape: &Element<'_>) -> bool {
-    shape.text("type") == Some("mesh")
+    shape.trimmed_text("type") == Some("mesh")
 }

@@ -1,7 +1,9 @@
 //! `<dcmotor>`: winding with resistance and inductance, back-EMF, temperature, cogging, friction of bristles,
 //! and the controller of the motor (MuJoCo 4.0, "DC motor technical note").
 
-use super::activation::{ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, controls, refuse_limit};
+use super::activation::{
+    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_limit, requested_controls,
+};
 use super::defaults::Element;
 use super::formula::Formula;
 use super::record::Record;
@@ -9,7 +11,7 @@ use crate::import::context::Cx;
 use crate::import::imported::Placed;
 
 /// Writes the force of a motor with its states: temperature, deflection of the bristles, current.
-pub(super) fn write(
+pub(super) fn write_motor_law(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     record: &Record<'_>,
@@ -17,48 +19,54 @@ pub(super) fn write(
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     let (dynprm, gain, bias) = (&record.dynprm, &record.gain, &record.bias);
-    let none = actuator.text("input") == Some("none");
-    check_winding(actuator, [gain[0], gain[1]], none, cx)?;
-    refuse_limit(actuator, "controller", "the `slewmax` of a controller", dynprm[7], cx)?;
+    let none = actuator.trimmed_text("input") == Some("none");
+    check_winding_constants(actuator, [gain[0], gain[1]], none, cx)?;
+    report_limit(actuator, "controller", "the `slewmax` of a controller", dynprm[7], cx)?;
     if gain[5] > 0.0 {
-        refuse_limit(actuator, "controller", "the `Imax` of a controller", dynprm[8], cx)?;
+        report_limit(actuator, "controller", "the `Imax` of a controller", dynprm[8], cx)?;
     }
     let [constant, lag] = [gain[1], dynprm[0]];
-    let voltage = voltage(law, actuator, gain, none, named, cx)?;
+    let voltage = motor_voltage(law, actuator, gain, none, named, cx)?;
     let heats = dynprm[2] > 0.0;
     let resistance = match heats {
         // Temperature relative to the ambient temperature.
         true => {
-            (law.state("temperature", named) * gain[2] + (1.0 + gain[2] * (dynprm[4] - gain[3]))) * gain[0]
+            (law.state_value("temperature", named) * gain[2] + (1.0 + gain[2] * (dynprm[4] - gain[3])))
+                * gain[0]
         }
-        false => law.number(gain[0]),
+        false => law.constant_formula(gain[0]),
     };
-    let driving = voltage - law.rate() * constant;
+    let driving = voltage - law.length_rate() * constant;
     let current = match lag > 0.0 {
-        true => law.state("current", named),
+        true => law.state_value("current", named),
         false => driving.clone() / resistance.clone(),
     };
     if heats {
         if dynprm[3] <= 0.0 {
-            return refuse(actuator, "thermal", "`thermal` without a capacitance or a time constant", cx);
+            return report_unsupported_attribute(
+                actuator,
+                "thermal",
+                "`thermal` without a capacitance or a time constant",
+                cx,
+            );
         }
-        let cooling = law.state("temperature", named) * (1.0 / dynprm[2]);
+        let cooling = law.state_value("temperature", named) * (1.0 / dynprm[2]);
         let rate = (resistance.clone() * current.clone().square() - cooling) * (1.0 / dynprm[3]);
         law.add_state("temperature", "Temperature above ambient", "K", rate, named);
     }
     law.force = current.clone() * constant;
     if bias[0] != 0.0 {
-        law.force = law.force.clone() + (law.length() * bias[1] + bias[2]).function("sin") * bias[0];
+        law.force = law.force.clone() + (law.length() * bias[1] + bias[2]).apply_function("sin") * bias[0];
     }
     if dynprm[5] > 0.0 {
-        bristles(law, [dynprm[5], dynprm[6]], [bias[3], bias[4], bias[5]], named);
+        add_bristle_friction(law, [dynprm[5], dynprm[6]], [bias[3], bias[4], bias[5]], named);
     }
     if lag > 0.0 {
         let rate = (driving / resistance - current) * (1.0 / lag);
-        let rate = if dynprm[1] > 0.0 { rate.clamp(-dynprm[1], dynprm[1]) } else { rate };
+        let rate = if dynprm[1] > 0.0 { rate.clamp_between(-dynprm[1], dynprm[1]) } else { rate };
         law.add_state("current", "Current", "A", rate, named);
     }
-    let saturation = actuator.some("saturation", [0.0; 3], cx);
+    let saturation = actuator.numbers_with_defaults("saturation", [0.0; 3], cx);
     law.limit = saturation.and_then(|found| {
         let [torque, current, _] = found.value;
         let value = if torque > 0.0 { torque } else { constant * current };
@@ -67,7 +75,7 @@ pub(super) fn write(
     Some(())
 }
 
-fn check_winding(
+fn check_winding_constants(
     actuator: &Element<'_>,
     [resistance, constant]: [f64; 2],
     none: bool,
@@ -75,22 +83,27 @@ fn check_winding(
 ) -> Option<()> {
     if resistance <= 0.0 {
         let message = "a motor needs a positive `resistance`, or `nominal` values from which it follows";
-        return refuse(actuator, "resistance", message, cx);
+        return report_unsupported_attribute(actuator, "resistance", message, cx);
     }
     if constant < 0.0 || (constant == 0.0 && !none) {
         let message = "a motor needs a positive `motorconst`, or `nominal` values from which it follows";
-        return refuse(actuator, "motorconst", message, cx);
+        return report_unsupported_attribute(actuator, "motorconst", message, cx);
     }
     Some(())
 }
 
-fn refuse<T>(actuator: &Element<'_>, attribute: &str, message: &str, cx: &mut Cx<'_>) -> Option<T> {
-    cx.report_error(&actuator.place(attribute, cx), message, |d| d.add_help(OTHER_INPUTS));
+fn report_unsupported_attribute<T>(
+    actuator: &Element<'_>,
+    attribute: &str,
+    message: &str,
+    cx: &mut Cx<'_>,
+) -> Option<T> {
+    cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| d.add_help(OTHER_INPUTS));
     None
 }
 
 /// Adds the inputs, and returns the voltage. The controller commands a torque and compensates the back-EMF.
-fn voltage(
+fn motor_voltage(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     gain: &[f64; 10],
@@ -99,18 +112,23 @@ fn voltage(
     cx: &mut Cx<'_>,
 ) -> Option<Formula> {
     let [resistance, constant, _, _, kp, ki, kd, maximum, ..] = *gain;
-    let controls = if none { Vec::new() } else { controls(actuator, "voltage", &CONTROLS, cx)? };
+    let controls = if none { Vec::new() } else { requested_controls(actuator, "voltage", &CONTROLS, cx)? };
     let has_controller = controls.iter().any(|word| *word != "voltage");
     if !has_controller && [kp, ki, kd].into_iter().any(|gain| gain != 0.0) {
         let message = "the gains of `controller` have no effect without an input that it controls";
-        return refuse(actuator, "controller", message, cx);
+        return report_unsupported_attribute(actuator, "controller", message, cx);
     }
     if ki > 0.0 && !controls.contains(&"pos") {
-        return refuse(actuator, "controller", "the integral gain needs the input `pos`", cx);
+        return report_unsupported_attribute(
+            actuator,
+            "controller",
+            "the integral gain needs the input `pos`",
+            cx,
+        );
     }
-    let mut torque = law.length() * -kp - law.rate() * kd;
-    let mut raw = law.number(0.0);
-    let mut error = law.number(0.0);
+    let mut torque = law.length() * -kp - law.length_rate() * kd;
+    let mut raw = law.constant_formula(0.0);
+    let mut error = law.constant_formula(0.0);
     for word in &controls {
         let unit = match *word {
             "pos" => "rad",
@@ -118,7 +136,7 @@ fn voltage(
             "ff" => "N·m",
             _ => "V",
         };
-        let input = law.input(if controls.len() == 1 { "" } else { word }, unit, named);
+        let input = law.add_input(if controls.len() == 1 { "" } else { word }, unit, named);
         match *word {
             "pos" => {
                 error = input.clone() - law.length();
@@ -133,26 +151,26 @@ fn voltage(
         return Some(raw);
     }
     if ki > 0.0 {
-        torque = torque + law.state("integral", named) * ki;
+        torque = torque + law.state_value("integral", named) * ki;
         law.add_state("integral", "Integral of the error", "rad·s", error, named);
     }
-    let driven = torque * (resistance / constant) + law.rate() * constant;
-    let driven = if maximum > 0.0 { driven.clamp(-maximum, maximum) } else { driven };
+    let driven = torque * (resistance / constant) + law.length_rate() * constant;
+    let driven = if maximum > 0.0 { driven.clamp_between(-maximum, maximum) } else { driven };
     Some(driven + raw)
 }
 
 /// Adds the friction of LuGre's model: stiffness and damping of the bristles, and Coulomb torque, static
 /// torque and Stribeck speed.
-fn bristles(
+fn add_bristle_friction(
     law: &mut ActuatorLaw,
     [stiffness, damping]: [f64; 2],
     [coulomb, held, stribeck]: [f64; 3],
     named: &ActuatorNames<'_>,
 ) {
-    let (rate, state) = (law.rate(), law.state("bristles", named));
-    let decay = (-(rate.clone() * (1.0 / stribeck.max(TINY))).square()).function("exp");
+    let (rate, state) = (law.length_rate(), law.state_value("bristles", named));
+    let decay = (-(rate.clone() * (1.0 / stribeck.max(TINY))).square()).apply_function("exp");
     let level = decay * (held - coulomb) + coulomb;
-    let change = rate.clone() - rate.function("abs") * stiffness / level * state.clone();
+    let change = rate.clone() - rate.apply_function("abs") * stiffness / level * state.clone();
     law.force = law.force.clone() - state * stiffness - change.clone() * damping;
     law.add_state("bristles", "Deflection of the bristles", "rad", change, named);
 }

@@ -1,4 +1,4 @@
-//! `<default>` classes: default values of attributes.
+//! `<default>` classes of MJCF: default values of attributes.
 
 use super::super::context::{Cx, format_position, quote_word};
 use super::super::element::{
@@ -9,7 +9,7 @@ use crate::import::imported::Placed;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
-/// Name of the outermost class.
+/// Name of the outermost default class of MJCF.
 const MAIN: &str = "main";
 
 /// Class of defaults: the elements with default values, and the parent class.
@@ -25,18 +25,18 @@ pub(super) struct Defaults<'a> {
     names: BTreeMap<&'a str, usize>,
 }
 
-/// Element with its defaults. The values of the element itself have priority, then those of its class, then
-/// those of the parent classes.
+/// MJCF element with its defaults: values of the element have priority over those of its class, then of
+/// parent classes.
 #[derive(Clone)]
 pub(super) struct Element<'a> {
-    /// XML element.
+    /// XML element whose attributes are read.
     pub(super) node: Node<'a>,
     layers: Vec<Node<'a>>,
 }
 
 impl<'a> Defaults<'a> {
-    /// Reads the `<default>` elements of the root.
-    pub(super) fn read(root: Node<'a>, cx: &mut Cx<'_>) -> Defaults<'a> {
+    /// Reads the `<default>` elements of an MJCF file.
+    pub(super) fn read_defaults(root: Node<'a>, cx: &mut Cx<'_>) -> Defaults<'a> {
         let mut all = Defaults { classes: vec![Class::default()], names: BTreeMap::new() };
         for node in child_elements(root).filter(|node| node.tag_name().name() == "default") {
             match node.attribute("class") {
@@ -87,7 +87,13 @@ impl<'a> Defaults<'a> {
 
     /// Returns the index of the class that an attribute names. Without the attribute, or if the class is
     /// unknown, returns `inherited`.
-    pub(super) fn class(&self, node: Node<'_>, attribute: &str, inherited: usize, cx: &mut Cx<'_>) -> usize {
+    pub(super) fn class_index(
+        &self,
+        node: Node<'_>,
+        attribute: &str,
+        inherited: usize,
+        cx: &mut Cx<'_>,
+    ) -> usize {
         let Some(Name { text, place }) = read_name_attribute(node, attribute, cx) else { return inherited };
         match self.names.get(text.as_str()) {
             Some(class) => *class,
@@ -102,21 +108,21 @@ impl<'a> Defaults<'a> {
 
     /// Returns an element with the defaults of its class for any of `tags`. The class is `inherited` unless
     /// the element names one.
-    pub(super) fn element(
+    pub(super) fn element_with_defaults(
         &self,
         node: Node<'a>,
         tags: &[&str],
         inherited: usize,
         cx: &mut Cx<'_>,
     ) -> Element<'a> {
-        let classes = self.by_class(node, tags, inherited, cx);
+        let classes = self.defaults_by_class(node, tags, inherited, cx);
         let defaults = classes.into_iter().rev().flat_map(|class| class.into_iter().rev());
         Element { node, layers: std::iter::once(node).chain(defaults).collect() }
     }
 
     /// Returns the defaults for any of `tags` that apply to an element, one list for each class from the
     /// outermost class to the element's own.
-    pub(super) fn by_class(
+    pub(super) fn defaults_by_class(
         &self,
         node: Node<'_>,
         tags: &[&str],
@@ -124,7 +130,7 @@ impl<'a> Defaults<'a> {
         cx: &mut Cx<'_>,
     ) -> Vec<Vec<Node<'a>>> {
         let mut found = Vec::new();
-        let mut at = self.classes.get(self.class(node, "class", inherited, cx));
+        let mut at = self.classes.get(self.class_index(node, "class", inherited, cx));
         while let Some(class) = at {
             let of_tags = class.elements.iter().filter(|node| tags.contains(&node.tag_name().name()));
             found.push(of_tags.copied().collect());
@@ -137,43 +143,52 @@ impl<'a> Defaults<'a> {
 
 impl<'a> Element<'a> {
     /// Returns the node with the effective value of `attribute`: the element itself or a default.
-    pub(super) fn node_with(&self, attribute: &str) -> Option<Node<'a>> {
-        self.with_any(&[attribute])
+    pub(super) fn node_with_attribute(&self, attribute: &str) -> Option<Node<'a>> {
+        self.node_with_any_attribute(&[attribute])
     }
 
-    /// Returns the first node with one of these attributes.
-    pub(super) fn with_any(&self, attributes: &[&str]) -> Option<Node<'a>> {
+    /// Returns the first of element and defaults that has one of these attributes.
+    pub(super) fn node_with_any_attribute(&self, attributes: &[&str]) -> Option<Node<'a>> {
         self.layers.iter().copied().find(|node| attributes.iter().any(|name| node.has_attribute(*name)))
     }
 
-    /// Returns the trimmed text of an attribute.
-    pub(super) fn text(&self, attribute: &str) -> Option<&'a str> {
-        self.node_with(attribute).and_then(|node| node.attribute(attribute)).map(str::trim)
+    /// Returns the text of an attribute without surrounding whitespace.
+    pub(super) fn trimmed_text(&self, attribute: &str) -> Option<&'a str> {
+        self.node_with_attribute(attribute).and_then(|node| node.attribute(attribute)).map(str::trim)
     }
 
     /// Returns the text of an attribute with its source position.
-    pub(super) fn name(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
-        read_name_attribute(self.node_with(attribute)?, attribute, cx)
+    pub(super) fn name_of_attribute(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
+        read_name_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
-    /// Returns a finite number.
-    pub(super) fn number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-        read_number_attribute(self.node_with(attribute)?, attribute, cx)
+    /// Returns the value of an attribute that must be a finite number.
+    pub(super) fn finite_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+        read_number_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
-    /// Returns a finite number, or `None` if it is zero.
-    pub(super) fn nonzero(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-        self.number(attribute, cx).filter(|found| found.value != 0.0)
+    /// Returns the value of an attribute that must be a finite number, or `None` if it is zero.
+    pub(super) fn nonzero_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+        self.finite_number(attribute, cx).filter(|found| found.value != 0.0)
     }
 
     /// Returns the coefficients of a polynomial force from the first order on, or `None` if they are zero.
-    pub(super) fn polynomial(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<[f64; 3]>> {
-        self.some(attribute, [0.0; 3], cx).filter(|found| found.value != [0.0; 3])
+    pub(super) fn polynomial_coefficients(
+        &self,
+        attribute: &str,
+        cx: &mut Cx<'_>,
+    ) -> Option<Placed<[f64; 3]>> {
+        self.numbers_with_defaults(attribute, [0.0; 3], cx).filter(|found| found.value != [0.0; 3])
     }
 
     /// Returns the coefficient of a force on a joint with several coordinates, which must be linear.
-    pub(super) fn linear(&self, attribute: &str, help: &'static str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-        let Placed { value: [linear, square, cube], place } = self.polynomial(attribute, cx)?;
+    pub(super) fn linear_coefficient(
+        &self,
+        attribute: &str,
+        help: &'static str,
+        cx: &mut Cx<'_>,
+    ) -> Option<Placed<f64>> {
+        let Placed { value: [linear, square, cube], place } = self.polynomial_coefficients(attribute, cx)?;
         if square != 0.0 || cube != 0.0 {
             let message = format!("a polynomial `{attribute}` is supported only on a `hinge` or a `slide`");
             cx.report_error(&place, message, |d| {
@@ -183,18 +198,18 @@ impl<'a> Element<'a> {
         (linear != 0.0).then_some(Placed { value: linear, place })
     }
 
-    /// Returns exactly `N` finite numbers.
-    pub(super) fn numbers<const N: usize>(
+    /// Returns the value of an attribute that must be exactly `N` finite numbers.
+    pub(super) fn exact_numbers<const N: usize>(
         &self,
         attribute: &str,
         cx: &mut Cx<'_>,
     ) -> Option<Placed<[f64; N]>> {
-        read_numbers_attribute(self.node_with(attribute)?, attribute, cx)
+        read_numbers_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
-    /// Returns up to `N` finite numbers. Entries that the element does not specify come from its defaults,
+    /// Returns up to `N` finite numbers of an attribute. Missing entries come from the element's defaults,
     /// then from `rest`.
-    pub(super) fn some<const N: usize>(
+    pub(super) fn numbers_with_defaults<const N: usize>(
         &self,
         attribute: &str,
         rest: [f64; N],
@@ -204,19 +219,19 @@ impl<'a> Element<'a> {
         let mut found: Option<Placed<[f64; N]>> = None;
         for node in said {
             let rest = found.map_or(rest, |found| found.value);
-            found = Some(some(*node, attribute, rest, cx)?);
+            found = Some(numbers_with_defaults(*node, attribute, rest, cx)?);
         }
         found
     }
 
     /// Returns the value of a `true`/`false` attribute; `None` for `auto`.
-    pub(super) fn choice(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
-        choice(self.node_with(attribute)?, attribute, cx)
+    pub(super) fn boolean_choice(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
+        boolean_choice(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
     /// Returns the source position of an attribute's value, or of the element if the attribute is missing.
-    pub(super) fn place(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
-        let found = self.node_with(attribute).and_then(|node| node.attribute_node(attribute));
+    pub(super) fn place_of_value(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
+        let found = self.node_with_attribute(attribute).and_then(|node| node.attribute_node(attribute));
         found.map_or_else(
             || element_position(self.node, cx),
             |found| cx.source_position(found.range_value().start),
@@ -224,8 +239,8 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Returns up to `N` finite numbers. Missing entries are taken from `rest`.
-pub(super) fn some<const N: usize>(
+/// Returns up to `N` finite numbers of an attribute. Missing entries are taken from `rest`.
+pub(super) fn numbers_with_defaults<const N: usize>(
     node: Node<'_>,
     attribute: &str,
     mut rest: [f64; N],
@@ -251,7 +266,7 @@ pub(super) fn some<const N: usize>(
 }
 
 /// Returns the value of a `true`/`false` attribute; `None` for `auto` or a missing attribute.
-pub(super) fn choice(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
+pub(super) fn boolean_choice(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
     let found = node.attribute_node(attribute)?;
     match found.value().trim() {
         "true" | "enable" => Some(true),

@@ -1,12 +1,12 @@
 //! `<equality>` → joints that follow others, constraints on coordinates, and loop-closing joints.
 
 use super::defaults::Element;
-use super::reader::{Reader, origin};
+use super::reader::{MjcfReader, origin_of_pose};
 use super::tendon::Tendon;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
-use crate::import::pose::{Pose, of_quaternion};
-use crate::import::robot::{bare_joint, unused_name};
+use crate::import::pose::{Pose, rotation_of_quaternion};
+use crate::import::robot::{plain_joint, unused_name};
 use crate::syntax::{
     BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, Mimic, Name,
     WrittenArguments,
@@ -14,28 +14,29 @@ use crate::syntax::{
 
 const LEAVE_OUT: &str = "to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`";
 
-impl<'a> Reader<'a> {
-    /// Reads all elements of `<equality>`.
-    pub(super) fn equalities(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+impl<'a> MjcfReader<'a> {
+    /// Reads all couplings and loop constraints in the element `<equality>`.
+    pub(super) fn read_equalities(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = child_elements(root).filter(|node| node.tag_name().name() == "equality");
         let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
-        if !self.options.follow_mimic || !self.settings.equality() {
+        if !self.options.follow_mimic || !self.settings.has_equalities() {
             if !nodes.is_empty() {
                 self.left_out.push(format!("{} couplings (`<equality>`)", nodes.len()));
             }
             return;
         }
         for node in nodes {
-            let element = self.defaults.element(node, &["equality", node.tag_name().name()], 0, cx);
-            if element.choice("active", cx) == Some(false) {
-                self.count("couplings that are not active", 1);
+            let element =
+                self.defaults.element_with_defaults(node, &["equality", node.tag_name().name()], 0, cx);
+            if element.boolean_choice("active", cx) == Some(false) {
+                self.count_skipped("couplings that are not active", 1);
                 continue;
             }
             match node.tag_name().name() {
-                "joint" => self.couple(&element, cx),
+                "joint" => self.couple_joints(&element, cx),
                 "tendon" => self.couple_tendons(&element, tendons, cx),
-                "connect" => self.close(&element, JointKind::Ball, cx),
-                "weld" => self.close(&element, JointKind::Weld, cx),
+                "connect" => self.close_loop(&element, JointKind::Ball, cx),
+                "weld" => self.close_loop(&element, JointKind::Weld, cx),
                 kind => {
                     let message = format!("the coupling `<{kind}>` is not supported");
                     cx.report_error(&element_position(node, cx), message, |d| d.add_help(LEAVE_OUT));
@@ -46,9 +47,9 @@ impl<'a> Reader<'a> {
 
     /// Couples two joints: `y − y₀ = a₀ + a₁ (x − x₀) + …`. The coordinates `x₀` and `y₀` are those in the
     /// configuration of the file. A linear relation becomes a `mimic`, any other a constraint.
-    fn couple(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) {
+    fn couple_joints(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) {
         let Some(first) = read_name_attribute(element.node, "joint1", cx)
-            .filter(|joint| self.check_joint(joint, "follow", cx))
+            .filter(|joint| self.check_coupled_joint(joint, "follow", cx))
         else {
             return;
         };
@@ -57,13 +58,14 @@ impl<'a> Reader<'a> {
             .has_attribute("joint2")
             .then(|| read_name_attribute(element.node, "joint2", cx))
             .flatten();
-        if second.as_ref().is_some_and(|joint| !self.check_joint(joint, "be followed by", cx)) {
+        if second.as_ref().is_some_and(|joint| !self.check_coupled_joint(joint, "be followed by", cx)) {
             return;
         }
-        let polynomial = coefficients(element, cx);
+        let polynomial = coupling_coefficients(element, cx);
         let [a0, a1, ..] = polynomial;
-        let reference = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
-        let offset = reference(&first) + a0 - second.as_ref().map_or(0.0, |joint| a1 * reference(joint));
+        let reference_of_joint = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
+        let offset = reference_of_joint(&first) + a0
+            - second.as_ref().map_or(0.0, |joint| a1 * reference_of_joint(joint));
         let is_linear = second.is_none() || polynomial[2..] == [0.0; 3];
         let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == first.text);
         let free = joint.filter(|joint| is_linear && joint.mimic.is_none() && joint.held.is_none());
@@ -74,7 +76,7 @@ impl<'a> Reader<'a> {
             (Some(joint), None) => joint.held = Some(offset),
             (None, second) => {
                 let second = second.map(|joint| vec![(joint, 1.0)]);
-                self.constrain(element, &[(first, 1.0)], second.as_deref(), polynomial, cx);
+                self.add_polynomial_constraint(element, &[(first, 1.0)], second.as_deref(), polynomial, cx);
             }
         }
     }
@@ -82,29 +84,30 @@ impl<'a> Reader<'a> {
     /// Couples the lengths of fixed tendons. If a single tendon of two joints is constrained, the second
     /// joint follows the first.
     fn couple_tendons(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
-        let Some(first) = terms_of("tendon1", element, tendons, cx) else { return };
+        let Some(first) = terms_of_tendon("tendon1", element, tendons, cx) else { return };
         let has_second = element.node.has_attribute("tendon2");
-        let second = if has_second { terms_of("tendon2", element, tendons, cx) } else { None };
+        let second = if has_second { terms_of_tendon("tendon2", element, tendons, cx) } else { None };
         if has_second && second.is_none() {
             return;
         }
-        let polynomial = coefficients(element, cx);
+        let polynomial = coupling_coefficients(element, cx);
         if let ([(leader, weight), (follower, own)], None) = (first.as_slice(), &second) {
-            let reference = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
+            let reference_of_joint = |joint: &Name| self.references.get(&joint.text).copied().unwrap_or(0.0);
             let multiplier = -weight / own;
-            let offset = reference(follower) + polynomial[0] / own - multiplier * reference(leader);
+            let offset =
+                reference_of_joint(follower) + polynomial[0] / own - multiplier * reference_of_joint(leader);
             let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == follower.text);
             if let Some(joint) = joint.filter(|joint| joint.mimic.is_none() && joint.held.is_none()) {
                 joint.mimic = Some(Mimic { joint: leader.clone(), multiplier, offset });
                 return;
             }
         }
-        self.constrain(element, &first, second.as_deref(), polynomial, cx);
+        self.add_polynomial_constraint(element, &first, second.as_deref(), polynomial, cx);
     }
 
     /// Adds the constraint `Σ (y − y₀) = a₀ + a₁ d + … + a₄ d⁴` with `d = Σ (x − x₀)`. The sums are weighted
     /// with the coefficients of the tendons.
-    fn constrain(
+    fn add_polynomial_constraint(
         &mut self,
         element: &Element<'a>,
         first: &[(Name, f64)],
@@ -113,37 +116,37 @@ impl<'a> Reader<'a> {
         cx: &mut Cx<'_>,
     ) {
         let at = element_position(element.node, cx);
-        let number = |x: f64| Expr::number_at(x, &at);
-        let sum = |terms: &[(Name, f64)]| {
+        let number_literal = |x: f64| Expr::number_at(x, &at);
+        let weighted_sum = |terms: &[(Name, f64)]| {
             let zero: f64 = terms
                 .iter()
                 .map(|(joint, weight)| weight * self.references.get(&joint.text).copied().unwrap_or(0.0))
                 .sum();
-            terms.iter().fold(number(-zero), |sum, (joint, weight)| {
+            terms.iter().fold(number_literal(-zero), |sum, (joint, weight)| {
                 let coordinate = Expr { kind: ExprKind::Name(joint.text.clone()), place: at.clone() };
                 Expr::binary_operation(
                     BinaryOp::Add,
                     sum,
-                    Expr::binary_operation(BinaryOp::Mul, number(*weight), coordinate),
+                    Expr::binary_operation(BinaryOp::Mul, number_literal(*weight), coordinate),
                 )
             })
         };
         let other = match second {
             Some(second) => {
-                let d = sum(second);
+                let d = weighted_sum(second);
                 let highest = polynomial.iter().rposition(|factor| *factor != 0.0).unwrap_or(0);
-                let start = number(polynomial.get(highest).copied().unwrap_or(0.0));
+                let start = number_literal(polynomial.get(highest).copied().unwrap_or(0.0));
                 polynomial.iter().take(highest).rev().fold(start, |inner, factor| {
                     Expr::binary_operation(
                         BinaryOp::Add,
-                        number(*factor),
+                        number_literal(*factor),
                         Expr::binary_operation(BinaryOp::Mul, inner, d.clone()),
                     )
                 })
             }
-            None => number(polynomial[0]),
+            None => number_literal(polynomial[0]),
         };
-        let value = sum(first);
+        let value = weighted_sum(first);
         let kind = element.node.tag_name().name();
         let said = element
             .node
@@ -166,8 +169,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Closes a loop with a ball joint or a weld.
-    fn close(&mut self, element: &Element<'a>, kind: JointKind, cx: &mut Cx<'_>) {
-        let Some([first, second]) = self.ends(element, kind, cx) else { return };
+    fn close_loop(&mut self, element: &Element<'a>, kind: JointKind, cx: &mut Cx<'_>) {
+        let Some([first, second]) = self.ends_of_loop(element, kind, cx) else { return };
         for (body, _) in [&first, &second] {
             if self.mocap.contains(&body.text) {
                 let message = format!("{} is a mocap body, which does not move here", quote_word(&body.text));
@@ -193,14 +196,19 @@ impl<'a> Reader<'a> {
         named.text = unused_name(&named.text, |name| self.joint_names.contains(name));
         self.joint_names.insert(named.text.clone());
         let [parent, child] = [first, second].map(|(body, pose)| {
-            let origin = origin(&pose, &body.place);
+            let origin = origin_of_pose(&pose, &body.place);
             Endpoint { at: origin.nonzero_position(), rotated: origin.nonzero_rotations(), body }
         });
-        self.robot.closing.push(bare_joint(named, kind, parent, child));
+        self.robot.closing.push(plain_joint(named, kind, parent, child));
     }
 
     /// Returns the bodies and the poses of the two ends of a loop-closing joint.
-    fn ends(&self, element: &Element<'a>, kind: JointKind, cx: &mut Cx<'_>) -> Option<[(Name, Pose); 2]> {
+    fn ends_of_loop(
+        &self,
+        element: &Element<'a>,
+        kind: JointKind,
+        cx: &mut Cx<'_>,
+    ) -> Option<[(Name, Pose); 2]> {
         if element.node.has_attribute("site1") {
             let mut end = |attribute: &str| {
                 let site = read_name_attribute(element.node, attribute, cx)?;
@@ -234,18 +242,18 @@ impl<'a> Reader<'a> {
         let [(first, outer), (second, inner)] = [end("body1")?, end("body2")?];
         // Pose of the first body relative to the second, in the configuration of the file.
         let between = inner.inverse_pose().compose_with(&outer);
-        let anchor = element.numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
+        let anchor = element.exact_numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
         if kind == JointKind::Ball {
             let at = Pose { at: anchor, ..Pose::ZERO };
             return Some([(first, at), (second, Pose { at: between.compose_with(&at).at, ..Pose::ZERO })]);
         }
-        let said = element.numbers::<7>("relpose", cx).map(|said| said.value);
+        let said = element.exact_numbers::<7>("relpose", cx).map(|said| said.value);
         // `relpose` is the pose of the second body's anchor relative to the first body. Without it, the
         // relative pose is that in the configuration of the file.
         let (pose, own) = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {
             Some([x, y, z, quat @ ..]) => {
                 let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let pose = Pose { at: [x, y, z], axes: of_quaternion(quat.map(|x| x / size)) };
+                let pose = Pose { at: [x, y, z], axes: rotation_of_quaternion(quat.map(|x| x / size)) };
                 (pose, Pose { at: anchor, ..Pose::ZERO })
             }
             None => (between.inverse_pose(), Pose::ZERO),
@@ -254,19 +262,19 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Returns `polycoef`. Without the attribute it is the identity; missing entries come from the defaults.
-fn coefficients(element: &Element<'_>, cx: &mut Cx<'_>) -> [f64; 5] {
+/// Returns the coefficients `polycoef` of a joint coupling. The default is the identity.
+fn coupling_coefficients(element: &Element<'_>, cx: &mut Cx<'_>) -> [f64; 5] {
     let usual = [0.0, 1.0, 0.0, 0.0, 0.0];
-    element.some("polycoef", usual, cx).map_or(usual, |found| found.value)
+    element.numbers_with_defaults("polycoef", usual, cx).map_or(usual, |found| found.value)
 }
 
 /// Returns the joints and weights of the fixed tendon that a coupling names.
-fn terms_of(
+fn terms_of_tendon(
     attribute: &str,
     element: &Element<'_>,
     tendons: &[Tendon],
     cx: &mut Cx<'_>,
 ) -> Option<Vec<(Name, f64)>> {
     let tendon = read_name_attribute(element.node, attribute, cx)?;
-    Tendon::terms_of(&tendon, tendons, LEAVE_OUT, cx).filter(|terms| !terms.is_empty())
+    Tendon::terms_of_tendon(&tendon, tendons, LEAVE_OUT, cx).filter(|terms| !terms.is_empty())
 }

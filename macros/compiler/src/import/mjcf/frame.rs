@@ -1,4 +1,4 @@
-//! Positions and orientations of elements.
+//! Positions and orientations of MJCF elements.
 
 use super::defaults::Element;
 use super::settings::Settings;
@@ -7,57 +7,66 @@ use crate::import::context::Cx;
 use crate::import::element::check_radians;
 use crate::import::imported::Placed;
 use crate::import::pose::{
-    IDENTITY, Matrix, Pose, add, axis_rotation, cross, dot, length, matrix_product, of_quaternion, of_z,
-    scale_vector,
+    IDENTITY, Matrix, Pose, add, axis_rotation, cross, dot, length, matrix_product, rotation_from_z,
+    rotation_of_quaternion, scale_vector,
 };
 
 /// Attributes that specify an orientation. An element may have at most one of them.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// Returns the pose of an element.
+/// Returns the pose of an MJCF element relative to its parent.
 pub(super) fn read_pose(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Pose {
-    let at = element.numbers("pos", cx).map_or([0.0; 3], |at| at.value);
+    let at = element.exact_numbers("pos", cx).map_or([0.0; 3], |at| at.value);
     Pose { at, axes: read_axes(element, settings, cx) }
 }
 
-/// Returns the orientation of an element.
+/// Returns the orientation of an MJCF element as a rotation matrix.
 pub(super) fn read_axes(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Matrix {
-    let Some(node) = element.with_any(&ORIENTATIONS) else { return IDENTITY };
+    let Some(node) = element.node_with_any_attribute(&ORIENTATIONS) else { return IDENTITY };
     let said: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| node.has_attribute(*name)).collect();
     let [one] = said.as_slice() else {
         let message = format!("an orientation is given once, but here are `{}`", said.join("` and `"));
-        cx.report_error(&element.place(said.first().copied().unwrap_or_default(), cx), message, |d| d);
+        cx.report_error(
+            &element.place_of_value(said.first().copied().unwrap_or_default(), cx),
+            message,
+            |d| d,
+        );
         return IDENTITY;
     };
-    read_one(one, element, settings, cx).unwrap_or(IDENTITY)
+    read_one_orientation(one, element, settings, cx).unwrap_or(IDENTITY)
 }
 
-fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option<Matrix> {
+fn read_one_orientation(
+    which: &str,
+    element: &Element<'_>,
+    settings: &Settings,
+    cx: &mut Cx<'_>,
+) -> Option<Matrix> {
     match which {
         "quat" => {
-            let quat = element.numbers::<4>("quat", cx)?;
+            let quat = element.exact_numbers::<4>("quat", cx)?;
             let size = quat.value.iter().map(|x| x * x).sum::<f64>().sqrt();
-            check_length(size, "a quaternion", &quat, cx)?;
-            Some(of_quaternion(quat.value.map(|x| x / size)))
+            check_nonzero_length(size, "a quaternion", &quat, cx)?;
+            Some(rotation_of_quaternion(quat.value.map(|x| x / size)))
         }
         "axisangle" => {
-            let found = element.numbers::<4>("axisangle", cx)?;
+            let found = element.exact_numbers::<4>("axisangle", cx)?;
             let [x, y, z, angle] = found.value;
             let size = length([x, y, z]);
-            check_length(size, "an axis", &found, cx)?;
-            check_turns(&[angle], &found.place, settings, cx);
-            Some(axis_rotation(scale_vector([x, y, z], 1.0 / size), settings.angle(angle)))
+            check_nonzero_length(size, "an axis", &found, cx)?;
+            check_file_angles(&[angle], &found.place, settings, cx);
+            Some(axis_rotation(scale_vector([x, y, z], 1.0 / size), settings.angle_in_radians(angle)))
         }
         "euler" => {
-            let found = element.numbers::<3>("euler", cx)?;
-            check_turns(&found.value, &found.place, settings, cx);
+            let found = element.exact_numbers::<3>("euler", cx)?;
+            check_file_angles(&found.value, &found.place, settings, cx);
             Some(settings.euler.iter().zip(found.value).fold(IDENTITY, |whole, (axis, angle)| {
                 let unit = match axis.to_ascii_lowercase() {
                     'x' => [1.0, 0.0, 0.0],
                     'y' => [0.0, 1.0, 0.0],
                     _ => [0.0, 0.0, 1.0],
                 };
-                let turn = axis_rotation(unit, settings.angle(angle));
+                let turn = axis_rotation(unit, settings.angle_in_radians(angle));
                 // Rotations about moving axes are multiplied from the right, those about
                 // fixed axes from the left.
                 if axis.is_ascii_lowercase() {
@@ -68,28 +77,28 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
             }))
         }
         "xyaxes" => {
-            let found = element.numbers::<6>("xyaxes", cx)?;
+            let found = element.exact_numbers::<6>("xyaxes", cx)?;
             let [a, b, c, d, e, f] = found.value;
             let size = length([a, b, c]);
-            check_length(size, "the x axis", &found, cx)?;
+            check_nonzero_length(size, "the x axis", &found, cx)?;
             let x = scale_vector([a, b, c], 1.0 / size);
             let y = add([d, e, f], scale_vector(x, -dot(x, [d, e, f])));
             let size = length(y);
-            check_length(size, "the y axis, orthogonalised against x,", &found, cx)?;
+            check_nonzero_length(size, "the y axis, orthogonalised against x,", &found, cx)?;
             let y = scale_vector(y, 1.0 / size);
             Some(crate::import::pose::transpose(&[x, y, cross(x, y)]))
         }
         _ => {
-            let z = element.numbers::<3>("zaxis", cx)?;
+            let z = element.exact_numbers::<3>("zaxis", cx)?;
             let size = length(z.value);
-            check_length(size, "the z axis", &z, cx)?;
-            Some(of_z(scale_vector(z.value, 1.0 / size)))
+            check_nonzero_length(size, "the z axis", &z, cx)?;
+            Some(rotation_from_z(scale_vector(z.value, 1.0 / size)))
         }
     }
 }
 
-/// Reports angles in radians that are most likely degrees.
-fn check_turns(angles: &[f64], place: &Place, settings: &Settings, cx: &mut Cx<'_>) {
+/// Reports angles of an MJCF file in radians that are most likely meant in degrees.
+fn check_file_angles(angles: &[f64], place: &Place, settings: &Settings, cx: &mut Cx<'_>) {
     if !settings.degrees {
         check_radians(angles, place, RADIANS, cx);
     }
@@ -99,7 +108,7 @@ const RADIANS: &str = "`angle=\"radian\"` makes angles of the file radians: writ
                        or `angle=\"degree\"`";
 
 /// Reports vectors whose length is zero or not finite.
-fn check_length<const N: usize>(
+fn check_nonzero_length<const N: usize>(
     size: f64,
     what: &str,
     found: &Placed<[f64; N]>,

@@ -7,14 +7,15 @@ use super::settings::{Settings, Source};
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, check_attributes, element_position, quoted_tag, read_numbers_attribute};
 use crate::import::pose::{
-    IDENTITY, Matrix, Pose, Vector, add, dot, eigen_decomposition, length, of_z, rotated_tensor, scale_vector,
+    IDENTITY, Matrix, Pose, Vector, add, dot, eigen_decomposition, length, rotated_tensor, rotation_from_z,
+    scale_vector,
 };
 use std::f64::consts::PI;
 
-/// Mass properties of a body.
+/// Numeric mass properties of a body: mass, centre of mass and inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mass {
-    /// Mass, kg.
+    /// Mass of the body, kg.
     pub(super) mass: f64,
     /// Centre of mass in body axes, m.
     pub(super) com: Vector,
@@ -27,13 +28,13 @@ const NOTHING: f64 = 1e-15;
 
 const DENSITY: f64 = 1000.0;
 
-/// Shapes without volume.
+/// MJCF shapes without volume.
 const FLAT: [&str; 2] = ["plane", "hfield"];
 
 impl Mass {
     /// Transforms the mass properties from a frame to its reference frame. `pose` is the pose of the frame
     /// relative to the reference frame.
-    pub(super) fn placed(&self, pose: &Pose) -> Mass {
+    pub(super) fn mass_in_outer_frame(&self, pose: &Pose) -> Mass {
         Mass {
             com: add(pose.at, crate::import::pose::matrix_times_vector(&pose.axes, self.com)),
             inertia: rotated_tensor(&pose.axes, &self.inertia),
@@ -43,7 +44,7 @@ impl Mass {
 }
 
 /// Returns the mass properties of the rigid union of several bodies; `None` for zero mass.
-pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
+pub(super) fn rigid_union(parts: &[Mass]) -> Option<Mass> {
     if let [one] = parts {
         return Some(*one);
     }
@@ -70,7 +71,7 @@ pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
 
 /// Returns the mass properties of a body from `<inertial>` or from its shapes. Each comes with the pose of
 /// its surrounding `<frame>` elements relative to the body.
-pub(super) fn of_body<'a>(
+pub(super) fn mass_of_body<'a>(
     inertial: &Option<(Node<'a>, Pose)>,
     shapes: &[(Element<'a>, Pose)],
     defaults: &Defaults<'a>,
@@ -81,23 +82,25 @@ pub(super) fn of_body<'a>(
     let said = inertial.as_ref().filter(|_| settings.source != Source::Geometry || shapes.is_empty());
     let found = match said {
         Some((node, outer)) => read_inertial(*node, defaults, settings, cx)
-            .map(|mass| if *outer == Pose::ZERO { mass } else { mass.placed(outer) }),
+            .map(|mass| if *outer == Pose::ZERO { mass } else { mass.mass_in_outer_frame(outer) }),
         None if settings.source == Source::Inertial => None,
         None => {
             let parts: Vec<Mass> = shapes
                 .iter()
-                .filter_map(|(shape, outer)| Some(of_shape(shape, meshes, settings, cx)?.placed(outer)))
+                .filter_map(|(shape, outer)| {
+                    Some(mass_of_shape(shape, meshes, settings, cx)?.mass_in_outer_frame(outer))
+                })
                 .filter(|part| part.mass > NOTHING)
                 .collect();
-            sum(&parts)
+            rigid_union(&parts)
         }
     };
-    bounded(found, pose, settings)
+    raised_to_minimum(found, pose, settings)
 }
 
 /// Raises mass and principal moments to the minimum values of the file. With `balance`, principal moments
 /// that violate the triangle inequality are replaced by their mean.
-fn bounded(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass> {
+fn raised_to_minimum(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass> {
     if settings.least_mass == 0.0 && settings.least_inertia == 0.0 && !settings.balance {
         return found;
     }
@@ -113,18 +116,18 @@ fn bounded(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass
     let bounded = Mass { mass: found.mass.max(settings.least_mass), ..found };
     Some(match moments == [a, b, c] && moments == eigen_decomposition(&found.inertia).0 {
         true => bounded,
-        false => Mass { inertia: rotated_tensor(&axes, &diagonal(moments)), ..bounded },
+        false => Mass { inertia: rotated_tensor(&axes, &diagonal_matrix(moments)), ..bounded },
     })
 }
 
-fn diagonal(moments: Vector) -> Matrix {
+fn diagonal_matrix(moments: Vector) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { moments[i] } else { 0.0 }))
 }
 
 const INERTIAL: [&str; 9] =
     ["pos", "mass", "diaginertia", "fullinertia", "quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// Reads `<inertial>`.
+/// Reads the mass properties in the MJCF element `<inertial>`.
 fn read_inertial(
     node: Node<'_>,
     defaults: &Defaults<'_>,
@@ -132,8 +135,8 @@ fn read_inertial(
     cx: &mut Cx<'_>,
 ) -> Option<Mass> {
     check_attributes(node, &["pos", "mass"], &INERTIAL, cx);
-    let element = defaults.element(node, &[], 0, cx);
-    let mass = element.number("mass", cx)?.value;
+    let element = defaults.element_with_defaults(node, &[], 0, cx);
+    let mass = element.finite_number("mass", cx)?.value;
     let Pose { at: com, axes } = read_pose(&element, settings, cx);
     if let Some(full) = read_numbers_attribute::<6>(node, "fullinertia", cx) {
         if node.has_attribute("diaginertia") {
@@ -148,54 +151,54 @@ fn read_inertial(
         return Some(Mass { mass, com, inertia: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] });
     }
     let moments = read_numbers_attribute(node, "diaginertia", cx).map_or([0.0; 3], |found| found.value);
-    Some(Mass { mass, com, inertia: rotated_tensor(&axes, &diagonal(moments)) })
+    Some(Mass { mass, com, inertia: rotated_tensor(&axes, &diagonal_matrix(moments)) })
 }
 
 /// Returns the mass properties of a shape in body axes; `None` for a shape without mass.
-fn of_shape<'a>(
+fn mass_of_shape<'a>(
     shape: &Element<'a>,
     meshes: &mut Meshes<'a>,
     settings: &Settings,
     cx: &mut Cx<'_>,
 ) -> Option<Mass> {
-    let group = shape.number("group", cx).map_or(0.0, |group| group.value);
+    let group = shape.finite_number("group", cx).map_or(0.0, |group| group.value);
     if group < settings.groups[0] || group > settings.groups[1] {
         return None;
     }
-    let said = shape.number("mass", cx).map(|mass| mass.value);
-    let density = shape.number("density", cx).map_or(DENSITY, |density| density.value);
-    let kind = shape.text("type").unwrap_or("sphere");
+    let said = shape.finite_number("mass", cx).map(|mass| mass.value);
+    let density = shape.finite_number("density", cx).map_or(DENSITY, |density| density.value);
+    let kind = shape.trimmed_text("type").unwrap_or("sphere");
     if said == Some(0.0) || (said.is_none() && density == 0.0) || FLAT.contains(&kind) {
         return None;
     }
-    if shape.choice("shellinertia", cx) == Some(true) {
-        return refuse(shape, "`shellinertia`", cx);
+    if shape.boolean_choice("shellinertia", cx) == Some(true) {
+        return report_unsupported_shape(shape, "`shellinertia`", cx);
     }
     if kind == "mesh" {
-        let found = meshes.of_shape(shape, cx)?;
-        let found = found.of_mass(said.unwrap_or(density * found.mass));
-        return Some(found.placed(&read_pose(shape, settings, cx)));
+        let found = meshes.mass_of_mesh_shape(shape, cx)?;
+        let found = found.scaled_to_mass(said.unwrap_or(density * found.mass));
+        return Some(found.mass_in_outer_frame(&read_pose(shape, settings, cx)));
     }
-    if shape.node_with("mesh").is_some() || kind == "sdf" {
-        return refuse(shape, "a shape that is fitted to a mesh", cx);
+    if shape.node_with_attribute("mesh").is_some() || kind == "sdf" {
+        return report_unsupported_shape(shape, "a shape that is fitted to a mesh", cx);
     }
-    let (pose, size) = dimensions(kind, shape, settings, cx)?;
-    let (volume, moments) = solid(kind, size);
+    let (pose, size) = shape_dimensions(kind, shape, settings, cx)?;
+    let (volume, moments) = solid_properties(kind, size);
     let mass = said.unwrap_or(density * volume);
-    let inertia = diagonal(scale_vector(moments, mass));
-    Some(Mass { mass, com: [0.0; 3], inertia }.placed(&pose))
+    let inertia = diagonal_matrix(scale_vector(moments, mass));
+    Some(Mass { mass, com: [0.0; 3], inertia }.mass_in_outer_frame(&pose))
 }
 
 /// Returns pose and half lengths of a shape. The first entry is the radius of a round shape and the last
 /// entry its half length; unused entries are ignored.
-pub(super) fn dimensions(
+pub(super) fn shape_dimensions(
     kind: &str,
     shape: &Element<'_>,
     settings: &Settings,
     cx: &mut Cx<'_>,
 ) -> Option<(Pose, Vector)> {
-    let (pose, half) = extent(shape, settings, cx)?;
-    let size = shape.some("size", [0.0; 3], cx);
+    let (pose, half) = pose_and_half_length(shape, settings, cx)?;
+    let size = shape.numbers_with_defaults("size", [0.0; 3], cx);
     let [x, y, z] = size.as_ref().map_or([0.0; 3], |size| size.value);
     // The cross section of a box between two points is a square.
     let y = if half.is_some() { x } else { y };
@@ -211,7 +214,7 @@ pub(super) fn dimensions(
         _ => {
             let known = ["sphere", "capsule", "cylinder", "ellipsoid", "box", "mesh", "plane", "hfield"];
             let message = format!("unknown shape {}", quote_word(kind));
-            cx.report_error(&shape.place("type", cx), message, |d| d.suggest_name(kind, known));
+            cx.report_error(&shape.place_of_value("type", cx), message, |d| d.suggest_name(kind, known));
             return None;
         }
     };
@@ -220,7 +223,7 @@ pub(super) fn dimensions(
             "a `{kind}` of size `{}` has no volume",
             used.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
         );
-        cx.report_error(&shape.place("size", cx), message, |d| {
+        cx.report_error(&shape.place_of_value("size", cx), message, |d| {
             d.add_help("expected half lengths and radii above zero")
         });
         return None;
@@ -228,21 +231,21 @@ pub(super) fn dimensions(
     Some((pose, [x, y, z]))
 }
 
-/// Returns pose and half length of a shape. The half length is known only if `fromto` gives two end points.
-pub(super) fn extent(
+/// Returns pose and half length of a shape. The half length is `None` unless `fromto` gives two end points.
+pub(super) fn pose_and_half_length(
     shape: &Element<'_>,
     settings: &Settings,
     cx: &mut Cx<'_>,
 ) -> Option<(Pose, Option<f64>)> {
-    let Some(ends) = shape.numbers::<6>("fromto", cx) else {
+    let Some(ends) = shape.exact_numbers::<6>("fromto", cx) else {
         return Some((read_pose(shape, settings, cx), None));
     };
-    if let Some(node) = shape.node_with("pos") {
+    if let Some(node) = shape.node_with_attribute("pos") {
         let message = format!("`fromto` and `pos` of one {}", quoted_tag(shape.node));
         let at = node.attribute_node("pos").map_or(node.range().start, |pos| pos.range_value().start);
         cx.report_error(&cx.source_position(at), message, |d| d.add_help("remove one of the two"));
     }
-    let kind = shape.text("type").unwrap_or("sphere");
+    let kind = shape.trimmed_text("type").unwrap_or("sphere");
     if !["capsule", "cylinder", "ellipsoid", "box"].contains(&kind) {
         let message = format!("`fromto` of a `{kind}`, which has no length");
         cx.report_error(&ends.place, message, |d| {
@@ -259,12 +262,12 @@ pub(super) fn extent(
         return None;
     }
     let at = scale_vector(add([a, b, c], [d, e, f]), 0.5);
-    Some((Pose { at, axes: of_z(scale_vector(along, 1.0 / size)) }, Some(size / 2.0)))
+    Some((Pose { at, axes: rotation_from_z(scale_vector(along, 1.0 / size)) }, Some(size / 2.0)))
 }
 
 /// Returns the volume and the moments of inertia per unit mass of a solid with these half lengths.
-fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
-    let round = |xx: f64, zz: f64| [xx, xx, zz];
+fn solid_properties(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
+    let round_moments = |xx: f64, zz: f64| [xx, xx, zz];
     match kind {
         "sphere" => (4.0 / 3.0 * PI * x * x * x, [0.4 * x * x; 3]),
         "capsule" => {
@@ -274,11 +277,11 @@ fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
             let (ball, tube) = (ball / volume, tube / volume);
             let across = tube * (3.0 * x * x + height * height) / 12.0;
             let caps = ball * (0.4 * x * x + height * (3.0 * x + 2.0 * height) / 8.0);
-            (volume, round(across + caps, tube * x * x / 2.0 + ball * 0.4 * x * x))
+            (volume, round_moments(across + caps, tube * x * x / 2.0 + ball * 0.4 * x * x))
         }
         "cylinder" => {
             let height = 2.0 * z;
-            (PI * x * x * height, round((3.0 * x * x + height * height) / 12.0, x * x / 2.0))
+            (PI * x * x * height, round_moments((3.0 * x * x + height * height) / 12.0, x * x / 2.0))
         }
         "ellipsoid" => {
             let moments = [y * y + z * z, x * x + z * z, x * x + y * y];
@@ -292,7 +295,7 @@ fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
 }
 
 /// Reports a shape whose mass properties cannot be computed.
-fn refuse(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
+fn report_unsupported_shape(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
     let message = format!("the mass properties of {what} are not computed");
     cx.report_error(&element_position(shape.node, cx), message, |d| d.add_help(NEEDS_INERTIAL));
     None

@@ -7,15 +7,18 @@
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, format_position, quote_word};
 use crate::import::element::{Node, check_attributes, read_name_attribute};
-use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, canonical_path, report_circle, report_many};
+use crate::import::whole::{
+    ComposedText, MAX_DEPTH, MAX_FILES, ReadFile, canonical_path, report_include_cycle,
+    report_too_many_includes,
+};
 use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
 use std::path::Path;
 
 /// Step of the expansion. The list of steps is a stack: the last step is executed first.
-enum Step {
-    /// Copy of bytes of a file with this index.
+enum ExpansionStep {
+    /// Expansion step that copies a range of bytes of the file with this index.
     Copy { file: usize, from: usize, to: usize },
     /// Contents of the root of an included file, with the nesting depth.
     Include { by: usize, at: Name, depth: usize },
@@ -23,50 +26,55 @@ enum Step {
     Leave,
 }
 
-/// Reads a file with all included files.
-pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
-    let mut whole = Whole::new(text, path, name);
+/// Reads an MJCF file together with all files that it includes.
+pub(super) fn read_with_includes(
+    text: &str,
+    path: &Path,
+    name: &Name,
+    cx: &mut Diagnostics,
+) -> Option<ComposedText> {
+    let mut whole = ComposedText::new(text, path, name);
     let mut places = vec![name.clone()];
     let mut open = vec![0];
-    let mut steps = scan(&whole.files, 0, name, true, 0, cx)?;
+    let mut steps = expansion_steps(&whole.files, 0, name, true, 0, cx)?;
     while let Some(step) = steps.pop() {
         match step {
-            Step::Copy { file, from, to } => whole.append_file_bytes(file, from, to, name, cx)?,
-            Step::Leave => {
+            ExpansionStep::Copy { file, from, to } => whole.append_file_bytes(file, from, to, name, cx)?,
+            ExpansionStep::Leave => {
                 open.pop();
             }
-            Step::Include { by, at, depth } => {
-                let found = find(&whole.files, by, &at, cx)?;
+            ExpansionStep::Include { by, at, depth } => {
+                let found = find_included_file(&whole.files, by, &at, cx)?;
                 if let Some(known) = whole.files.iter().position(|read| read.path == found.path) {
-                    report_again(known, &open, &whole.files, &places, &at, cx);
+                    report_repeated_include(known, &open, &whole.files, &places, &at, cx);
                     return None;
                 }
                 if depth > MAX_DEPTH || whole.files.len() >= MAX_FILES {
-                    report_many(depth, &at, cx);
+                    report_too_many_includes(depth, &at, cx);
                     return None;
                 }
                 let file = whole.files.len();
                 whole.files.push(found);
                 places.push(at.clone());
                 open.push(file);
-                steps.push(Step::Leave);
-                steps.extend(scan(&whole.files, file, &at, false, depth, cx)?);
+                steps.push(ExpansionStep::Leave);
+                steps.extend(expansion_steps(&whole.files, file, &at, false, depth, cx)?);
             }
         }
     }
     Some(whole)
 }
 
-fn report_again(
+fn report_repeated_include(
     known: usize,
     open: &[usize],
-    files: &[Read],
+    files: &[ReadFile],
     places: &[Name],
     at: &Name,
     cx: &mut Diagnostics,
 ) {
     if open.contains(&known) {
-        report_circle(known, open, files, places, at, cx);
+        report_include_cycle(known, open, files, places, at, cx);
         return;
     }
     let shown = files.get(known).map_or("", |read| read.shown.as_str());
@@ -78,19 +86,19 @@ fn report_again(
 
 /// Returns the steps that expand a file, last first: the whole file if `entire`, otherwise the contents of
 /// its root.
-fn scan(
-    files: &[Read],
+fn expansion_steps(
+    files: &[ReadFile],
     file: usize,
     name: &Name,
     entire: bool,
     depth: usize,
     cx: &mut Diagnostics,
-) -> Option<Vec<Step>> {
+) -> Option<Vec<ExpansionStep>> {
     let read = files.get(file)?;
     let shown = Name { text: read.shown.clone(), place: name.place.clone() };
     let cx = &mut Cx::new(&read.text, &shown, cx);
     let declared = OnceCell::new();
-    let document = xml::parse(&read.text, &declared, FileFormat::Mjcf, cx)?;
+    let document = xml::parse_document(&read.text, &declared, FileFormat::Mjcf, cx)?;
     let root = document.root_element();
     if declared.get().is_some() {
         let message = "prefixes of names are not declared";
@@ -103,37 +111,37 @@ fn scan(
         false => root.last_child().map_or(0, |child| child.range().end),
     };
     let mut steps = Vec::new();
-    for node in root.descendants().filter(|node| is_include(*node)) {
+    for node in root.descendants().filter(|node| is_include_element(*node)) {
         check_attributes(node, &["file"], &[], cx);
         let written = read_name_attribute(node, "file", cx)?;
-        steps.push(Step::Copy { file, from: at, to: node.range().start });
-        steps.push(Step::Include { by: file, at: written, depth: depth + 1 });
+        steps.push(ExpansionStep::Copy { file, from: at, to: node.range().start });
+        steps.push(ExpansionStep::Include { by: file, at: written, depth: depth + 1 });
         at = node.range().end;
     }
-    steps.push(Step::Copy { file, from: at, to: end });
+    steps.push(ExpansionStep::Copy { file, from: at, to: end });
     steps.reverse();
     (!cx.has_errors()).then_some(steps)
 }
 
-fn is_include(node: Node<'_>) -> bool {
+fn is_include_element(node: Node<'_>) -> bool {
     node.is_element() && node.tag_name().name() == "include"
 }
 
 /// Finds and reads an included file: in the folder of the user's file, or else in the folder of the including
 /// file.
-fn find(files: &[Read], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<Read> {
-    let sibling = |file: usize| {
+fn find_included_file(files: &[ReadFile], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<ReadFile> {
+    let read_sibling = |file: usize| {
         let read = files.get(file)?;
         let shown = Path::new(&read.shown).with_file_name(&at.text);
         Some((read.path.with_file_name(&at.text), shown.to_string_lossy().into_owned()))
     };
-    let first = sibling(0)?;
-    let (path, shown) = match sibling(by).filter(|(path, _)| !first.0.is_file() && path.is_file()) {
+    let first = read_sibling(0)?;
+    let (path, shown) = match read_sibling(by).filter(|(path, _)| !first.0.is_file() && path.is_file()) {
         Some(other) => other,
         None => first,
     };
     let name = Name { text: shown.clone(), place: at.place.clone() };
-    let text = file::read_named(&path, &name, FileFormat::Mjcf, cx)?;
+    let text = file::read_named_file(&path, &name, FileFormat::Mjcf, cx)?;
     let text = xml::clean_xml_text(&text).into_owned();
-    Some(Read { text, shown, path: canonical_path(&path) })
+    Some(ReadFile { text, shown, path: canonical_path(&path) })
 }

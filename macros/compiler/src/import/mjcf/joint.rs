@@ -1,7 +1,7 @@
 //! `<joint>` and `<freejoint>` → joints with one degree of freedom, ball joints and free joints.
 
 use super::defaults::Element;
-use super::reader::Reader;
+use super::reader::MjcfReader;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, element_position, read_name_attribute};
 use crate::import::imported::Placed;
@@ -20,16 +20,16 @@ const TYPES: [(&str, JointKind); 4] = [
 pub(super) const IGNORE_PASSIVE: &str =
     "to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`";
 
-/// Joint of a body.
+/// Joint of a body as an MJCF file describes it.
 pub(super) struct BodyJoint {
     pub(super) name: Name,
     pub(super) kind: JointKind,
     pub(super) word: &'static str,
-    /// Position relative to the body, m.
+    /// Position of the joint relative to its body, m.
     pub(super) anchor: Placed<Vector>,
-    /// Unit vector of the axis in body axes.
+    /// Unit vector of the joint's axis in body axes.
     pub(super) axis: Placed<Vector>,
-    /// Coordinate in the configuration of the file.
+    /// Joint coordinate in the configuration of the file (`ref`).
     pub(super) reference: f64,
     pub(super) limits: FileLimits,
     pub(super) damping: Option<Expr>,
@@ -38,7 +38,7 @@ pub(super) struct BodyJoint {
     pub(super) spread: Option<Placed<f64>>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> MjcfReader<'a> {
     /// Reads a joint of a body. `outer` is the pose of the surrounding `<frame>` elements relative to the
     /// body.
     pub(super) fn read_joint(
@@ -49,25 +49,25 @@ impl<'a> Reader<'a> {
     ) -> Option<BodyJoint> {
         let free = node.tag_name().name() == "freejoint";
         let tags: &[&str] = if free { &[] } else { &["joint"] };
-        let element = self.defaults.element(node, tags, class, cx);
-        self.joint((&element, outer), free, body, cx)
+        let element = self.defaults.element_with_defaults(node, tags, class, cx);
+        self.joint_of_element((&element, outer), free, body, cx)
     }
 
-    fn joint(
+    fn joint_of_element(
         &mut self,
         (element, outer): (&Element<'a>, &Pose),
         free: bool,
         body: &Name,
         cx: &mut Cx<'_>,
     ) -> Option<BodyJoint> {
-        let (word, kind) = if free { ("free", JointKind::Free) } else { read_type(element, cx)? };
+        let (word, kind) = if free { ("free", JointKind::Free) } else { read_joint_type(element, cx)? };
         let name = self.joint_name(element.node, word, body, cx);
         let alone = kind.rotates_about_one_axis().is_some();
-        let zero = |at: &str, cx: &Cx<'_>| Placed { value: [0.0; 3], place: element.place(at, cx) };
-        let mut anchor = element.numbers("pos", cx).unwrap_or(zero("pos", cx));
+        let zero = |at: &str, cx: &Cx<'_>| Placed { value: [0.0; 3], place: element.place_of_value(at, cx) };
+        let mut anchor = element.exact_numbers("pos", cx).unwrap_or(zero("pos", cx));
         anchor.value = add(outer.at, matrix_times_vector(&outer.axes, anchor.value));
-        let mut axis = element.numbers("axis", cx).unwrap_or(zero("axis", cx));
-        if element.node_with("axis").is_none() {
+        let mut axis = element.exact_numbers("axis", cx).unwrap_or(zero("axis", cx));
+        if element.node_with_attribute("axis").is_none() {
             axis.value = [0.0, 0.0, 1.0];
         }
         let size = length(axis.value);
@@ -78,14 +78,18 @@ impl<'a> Reader<'a> {
         axis.value =
             matrix_times_vector(&outer.axes, scale_vector(axis.value, if alone { 1.0 / size } else { 1.0 }));
         let turns = kind == JointKind::Pin;
-        let angle = |reader: &Self, value: f64| if turns { reader.settings.angle(value) } else { value };
-        let value = |reader: &Self, attribute: &str, cx: &mut Cx<'_>| {
-            element.number(attribute, cx).map_or(0.0, |found| angle(reader, found.value))
+        let angle_or_length =
+            |reader: &Self, value: f64| if turns { reader.settings.angle_in_radians(value) } else { value };
+        let angle_of_attribute = |reader: &Self, attribute: &str, cx: &mut Cx<'_>| {
+            element.finite_number(attribute, cx).map_or(0.0, |found| angle_or_length(reader, found.value))
         };
-        let reference = if alone { value(self, "ref", cx) } else { 0.0 };
-        let rest = value(self, "springref", cx);
-        let limits =
-            if alone { self.joint_limits(element, turns, cx) } else { self.no_limits(element, &name, cx) };
+        let reference = if alone { angle_of_attribute(self, "ref", cx) } else { 0.0 };
+        let rest = angle_of_attribute(self, "springref", cx);
+        let limits = if alone {
+            self.joint_limits(element, turns, cx)
+        } else {
+            self.report_ignored_limits(element, &name, cx)
+        };
         let mut joint = BodyJoint {
             name,
             kind,
@@ -99,14 +103,14 @@ impl<'a> Reader<'a> {
             spread: None,
         };
         self.rests.insert(joint.name.text.clone(), rest);
-        self.armature(element, &joint, cx);
+        self.read_armature(element, &joint, cx);
         if self.springs || self.dampers {
             self.refuse_time_constants(element, cx);
         }
         if self.springs {
-            self.spring(element, &joint, rest, cx);
+            self.read_spring(element, &joint, rest, cx);
         }
-        self.dissipation(element, &mut joint, cx);
+        self.read_dissipation(element, &mut joint, cx);
         Some(joint)
     }
 
@@ -123,24 +127,24 @@ impl<'a> Reader<'a> {
 
     fn joint_limits(&self, element: &Element<'a>, turns: bool, cx: &mut Cx<'_>) -> FileLimits {
         let mut limits = FileLimits::default();
-        if let Some([low, high]) = self.range(element, "limited", "range", cx)
-            && self.settings.limits()
+        if let Some([low, high]) = self.read_range(element, "limited", "range", cx)
+            && self.settings.has_limits()
         {
-            let placed = |end: Placed<f64>| Placed {
-                value: if turns { self.settings.angle(end.value) } else { end.value },
+            let converted_end = |end: Placed<f64>| Placed {
+                value: if turns { self.settings.angle_in_radians(end.value) } else { end.value },
                 place: end.place,
             };
-            (limits.lower, limits.upper) = (Some(placed(low)), Some(placed(high)));
+            (limits.lower, limits.upper) = (Some(converted_end(low)), Some(converted_end(high)));
         }
-        if let Some([low, high]) = self.range(element, "actuatorfrclimited", "actuatorfrcrange", cx) {
+        if let Some([low, high]) = self.read_range(element, "actuatorfrclimited", "actuatorfrcrange", cx) {
             let value = low.value.abs().max(high.value.abs());
             limits.effort = Some(Placed { value, place: low.place });
         }
         limits
     }
 
-    /// Returns the ends of a range, if it is active.
-    pub(super) fn range(
+    /// Returns the lower and upper end of a range attribute, if the range is active.
+    pub(super) fn read_range(
         &self,
         element: &Element<'a>,
         limited: &str,
@@ -150,9 +154,13 @@ impl<'a> Reader<'a> {
         if self.options.limits == LimitOption::Ignore {
             return None;
         }
-        let said = element.node_with(limited).is_some().then(|| element.choice(limited, cx)).flatten();
-        let found = element.numbers::<2>(range, cx);
-        if found.is_none() && element.node_with(range).is_some() {
+        let said = element
+            .node_with_attribute(limited)
+            .is_some()
+            .then(|| element.boolean_choice(limited, cx))
+            .flatten();
+        let found = element.exact_numbers::<2>(range, cx);
+        if found.is_none() && element.node_with_attribute(range).is_some() {
             return None;
         }
         // A range of two zeros means no range.
@@ -172,7 +180,7 @@ impl<'a> Reader<'a> {
         }
         let Some(Placed { value: [low, high], place }) = found else {
             let message = format!("`{limited}=\"true\"` without `{range}`");
-            cx.report_error(&element.place(limited, cx), message, |d| d);
+            cx.report_error(&element.place_of_value(limited, cx), message, |d| d);
             return None;
         };
         if low >= high {
@@ -183,25 +191,25 @@ impl<'a> Reader<'a> {
         Some([low, high].map(|value| Placed { value, place: place.clone() }))
     }
 
-    fn no_limits(&mut self, element: &Element<'a>, name: &Name, cx: &mut Cx<'_>) -> FileLimits {
-        let kind = element.text("type").filter(|kind| *kind == "ball").unwrap_or("free");
+    fn report_ignored_limits(&mut self, element: &Element<'a>, name: &Name, cx: &mut Cx<'_>) -> FileLimits {
+        let kind = element.trimmed_text("type").filter(|kind| *kind == "ball").unwrap_or("free");
         for (limited, range, what) in
             [("limited", "range", "limit"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
         {
-            if self.range(element, limited, range, cx).is_some() {
+            if self.read_range(element, limited, range, cx).is_some() {
                 self.left_out.push(format!("the {what} of the {kind} joint `{}`", name.text));
             }
         }
         FileLimits::default()
     }
 
-    fn armature(&mut self, element: &Element<'a>, joint: &BodyJoint, cx: &mut Cx<'_>) {
-        let Some(armature) = element.nonzero("armature", cx) else { return };
+    fn read_armature(&mut self, element: &Element<'a>, joint: &BodyJoint, cx: &mut Cx<'_>) {
+        let Some(armature) = element.nonzero_number("armature", cx) else { return };
         if joint.kind.rotates_about_one_axis().is_some() {
             if armature.value < 0.0 {
                 cx.report_error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
             }
-            self.drive(joint, DriveLaw::Inerter(armature.value));
+            self.add_drive(joint, DriveLaw::Inerter(armature.value));
             return;
         }
         let message = format!("`armature` of a `{}` joint is not supported", joint.word);
@@ -211,7 +219,9 @@ impl<'a> Reader<'a> {
     }
 
     fn refuse_time_constants(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
-        if let Some(pair) = element.numbers::<2>("springdamper", cx).filter(|pair| pair.value != [0.0; 2]) {
+        if let Some(pair) =
+            element.exact_numbers::<2>("springdamper", cx).filter(|pair| pair.value != [0.0; 2])
+        {
             let message = "`springdamper` is not supported";
             cx.report_error(&pair.place, message, |d| {
                 d.add_help("write `stiffness` and `damping`").add_help(IGNORE_PASSIVE)
@@ -219,19 +229,19 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
-        refuse_yield(element, cx);
+    fn read_spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
+        report_spring_yield(element, cx);
         if joint.kind.rotates_about_one_axis().is_some() {
-            if let Some(stiffness) = element.polynomial("stiffness", cx) {
-                self.drive(joint, DriveLaw::spring(stiffness.value, rest));
+            if let Some(stiffness) = element.polynomial_coefficients("stiffness", cx) {
+                self.add_drive(joint, DriveLaw::spring(stiffness.value, rest));
             }
-        } else if let Some(stiffness) = element.linear("stiffness", IGNORE_PASSIVE, cx) {
+        } else if let Some(stiffness) = element.linear_coefficient("stiffness", IGNORE_PASSIVE, cx) {
             let message = format!("`stiffness` of a `{}` joint is not supported", joint.word);
             cx.report_error(&stiffness.place, message, |d| d.add_help(IGNORE_PASSIVE));
         }
     }
 
-    fn dissipation(&mut self, element: &Element<'a>, joint: &mut BodyJoint, cx: &mut Cx<'_>) {
+    fn read_dissipation(&mut self, element: &Element<'a>, joint: &mut BodyJoint, cx: &mut Cx<'_>) {
         for (which, is_damping, acts) in
             [("damping", true, self.dampers), ("frictionloss", false, self.friction)]
         {
@@ -240,25 +250,25 @@ impl<'a> Reader<'a> {
             }
             if is_damping
                 && joint.kind.rotates_about_one_axis().is_some()
-                && let Some(found) = element.polynomial(which, cx)
+                && let Some(found) = element.polynomial_coefficients(which, cx)
                 && found.value[1..] != [0.0; 2]
             {
-                self.drive(joint, DriveLaw::damper(found.value));
+                self.add_drive(joint, DriveLaw::damper(found.value));
                 continue;
             }
             let found = match is_damping {
-                true => element.linear(which, IGNORE_PASSIVE, cx),
-                false => element.nonzero(which, cx),
+                true => element.linear_coefficient(which, IGNORE_PASSIVE, cx),
+                false => element.nonzero_number(which, cx),
             };
             let Some(found) = found else { continue };
             if found.value < 0.0 {
                 let message = format!("negative {which} `{}`", found.value);
                 cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
             }
-            let value = || Some(Expr::number_at(found.value, &found.place));
+            let coefficient_expression = || Some(Expr::number_at(found.value, &found.place));
             match (joint.kind.rotates_about_one_axis(), is_damping) {
-                (Some(_), true) => joint.damping = value(),
-                (Some(_), false) => joint.friction = value(),
+                (Some(_), true) => joint.damping = coefficient_expression(),
+                (Some(_), false) => joint.friction = coefficient_expression(),
                 (None, true) => joint.spread = Some(found),
                 (None, false) => {
                     let message = format!("`{which}` of a `{}` joint is not supported", joint.word);
@@ -268,31 +278,31 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn drive(&mut self, joint: &BodyJoint, law: DriveLaw) {
+    fn add_drive(&mut self, joint: &BodyJoint, law: DriveLaw) {
         let on = DriveOn::Sum(vec![(joint.name.clone(), 1.0)]);
         self.robot.drives.push(Drive { name: joint.name.clone(), on, law });
     }
 }
 
-/// Reports a nonzero `springyield`.
-pub(super) fn refuse_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
-    if let Some(found) = element.nonzero("springyield", cx) {
+/// Reports a nonzero attribute `springyield`, which is not supported.
+pub(super) fn report_spring_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
+    if let Some(found) = element.nonzero_number("springyield", cx) {
         let message = "`springyield` is not supported: a spring that yields has a state of its own";
         cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
     }
 }
 
 /// Returns true for `<joint>` and `<freejoint>` elements.
-pub(super) fn is_joint(node: Node<'_>) -> bool {
+pub(super) fn is_joint_element(node: Node<'_>) -> bool {
     matches!(node.tag_name().name(), "joint" | "freejoint")
 }
 
-fn read_type(element: &Element<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
-    let word = element.text("type").unwrap_or("hinge");
+fn read_joint_type(element: &Element<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
+    let word = element.trimmed_text("type").unwrap_or("hinge");
     let known = TYPES.iter().find(|(known, _)| *known == word);
     if known.is_none() {
         let message = format!("unknown joint type {}", quote_word(word));
-        cx.report_error(&element.place("type", cx), message, |d| {
+        cx.report_error(&element.place_of_value("type", cx), message, |d| {
             d.suggest_name(word, TYPES.map(|(word, _)| word))
         });
     }

@@ -1,6 +1,8 @@
 //! Parameters of an actuator → its force, with the states of its activation.
 
-use super::activation::{ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, controls, refuse_limit};
+use super::activation::{
+    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_limit, requested_controls,
+};
 use super::dc_motor;
 use super::defaults::Element;
 use super::muscle;
@@ -8,16 +10,16 @@ use super::record::{Record, read_record};
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, element_position};
 
-/// Force of an actuator.
+/// Force law of an MJCF actuator.
 pub(super) enum Force {
     /// Force `gain · u + bias · (1, length, rate)`.
     Affine {
-        /// Factor of the input.
+        /// Factor of the input in the actuator's force.
         gain: f64,
-        /// Constant, and factors of length and rate.
+        /// Constant term of the force, and factors of actuator length and rate.
         bias: [f64; 3],
     },
-    /// Any other force.
+    /// Any other force law, as expressions.
     Law(Box<ActuatorLaw>),
 }
 
@@ -30,7 +32,7 @@ pub(super) fn read_force<'a>(
     cx: &mut Cx<'_>,
 ) -> Option<Force> {
     let record = read_record(actuator, classes, cx);
-    if !check(actuator, &record, cx) {
+    if !check_actuator_type(actuator, &record, cx) {
         return None;
     }
     let [g0, g1, g2, ..] = record.gain;
@@ -42,21 +44,21 @@ pub(super) fn read_force<'a>(
     }
     let mut law = ActuatorLaw::new(named, &element_position(actuator.node, cx));
     match record.gain_kind {
-        "dcmotor" => dc_motor::write(&mut law, actuator, &record, named, cx)?,
-        "pid" => pid(&mut law, actuator, &record, named, cx)?,
-        _ => general(&mut law, actuator, &record, named, cx)?,
+        "dcmotor" => dc_motor::write_motor_law(&mut law, actuator, &record, named, cx)?,
+        "pid" => write_pid_law(&mut law, actuator, &record, named, cx)?,
+        _ => write_general_law(&mut law, actuator, &record, named, cx)?,
     }
     Some(Force::Law(Box::new(law)))
 }
 
 /// Reports types that are not supported, and damping that depends on the inertia.
-fn check(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> bool {
+fn check_actuator_type(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> bool {
     let mut good = true;
     let mut refuse = |attribute: &str, message: String, help: &'static str| {
-        cx.report_error(&actuator.place(attribute, cx), message, |d| d.add_help(help));
+        cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| d.add_help(help));
         good = false;
     };
-    let unknown =
+    let unsupported_message =
         |attribute: &str, word: &str| format!("`{attribute}` {} is not supported", quote_word(word));
     for (attribute, word, known) in [
         (
@@ -68,7 +70,7 @@ fn check(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> bool {
         ("biastype", record.bias_kind, &["none", "affine", "muscle", "dcmotor"][..]),
     ] {
         if !known.contains(&word) {
-            refuse(attribute, unknown(attribute, word), OTHER_INPUTS);
+            refuse(attribute, unsupported_message(attribute, word), OTHER_INPUTS);
         }
     }
     for (word, three) in [("dcmotor", true), ("pid", false)] {
@@ -97,7 +99,7 @@ fn check(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> bool {
 }
 
 /// Writes the force `gain · w + bias` with an optional state `w` in the place of the input.
-fn general(
+fn write_general_law(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     record: &Record<'_>,
@@ -105,7 +107,7 @@ fn general(
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     let muscle = match [record.dynamics, record.gain_kind, record.bias_kind].contains(&"muscle") {
-        true => Some(muscle::Muscle::read(actuator, record, cx)?),
+        true => Some(muscle::Muscle::read_muscle(actuator, record, cx)?),
         false => None,
     };
     let servo = record.gain[0] == -record.bias[1];
@@ -116,12 +118,12 @@ fn general(
         _ if servo => named.length,
         _ => "any",
     };
-    let input = law.input("", unit, named);
-    let state = law.state("activation", named);
+    let input = law.add_input("", unit, named);
+    let state = law.state_value("activation", named);
     let lag = record.dynprm[0].max(TINY);
     let rate = match record.dynamics {
         "integrator" => Some(input.clone()),
-        "filter" | "filterexact" => Some((input.clone() - state.clone()) / law.number(lag)),
+        "filter" | "filterexact" => Some((input.clone() - state.clone()) / law.constant_formula(lag)),
         "muscle" => Some(muscle::activation_rate(law, input.clone(), state.clone(), record)),
         _ => None,
     };
@@ -135,14 +137,14 @@ fn general(
         law.add_state("activation", "Activation", unit, rate, named);
     }
     let gain = match (record.gain_kind, &muscle) {
-        ("muscle", Some(muscle)) => muscle.gain(law),
-        ("affine", _) => law.affine(&record.gain),
-        _ => law.number(record.gain[0]),
+        ("muscle", Some(muscle)) => muscle.active_force(law),
+        ("affine", _) => law.affine_formula(&record.gain),
+        _ => law.constant_formula(record.gain[0]),
     };
     law.force = gain * value;
     match (record.bias_kind, &muscle) {
-        ("muscle", Some(muscle)) => law.force = law.force.clone() + muscle.bias(law),
-        ("affine", _) => law.force = law.force.clone() + law.affine(&record.bias),
+        ("muscle", Some(muscle)) => law.force = law.force.clone() + muscle.passive_force(law),
+        ("affine", _) => law.force = law.force.clone() + law.affine_formula(&record.bias),
         _ => {}
     }
     Some(())
@@ -150,7 +152,7 @@ fn general(
 
 /// Writes the force of a PID controller: `kp (pos − length) + kv (vel − rate) + ff + ki z` with
 /// `ż = pos − length`.
-fn pid(
+fn write_pid_law(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     record: &Record<'_>,
@@ -160,14 +162,14 @@ fn pid(
     let has_states = record.dynamics == "pid";
     let integral = if has_states { record.gain[0] } else { 0.0 };
     if has_states {
-        refuse_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
+        report_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
     }
     if integral > 0.0 {
-        refuse_limit(actuator, "imax", "`imax`", record.dynprm[0], cx)?;
+        report_limit(actuator, "imax", "`imax`", record.dynprm[0], cx)?;
     }
-    let controls = controls(actuator, "pos vel", &CONTROLS[..3], cx)?;
+    let controls = requested_controls(actuator, "pos vel", &CONTROLS[..3], cx)?;
     let [_, proportional, damping, ..] = record.bias;
-    let mut force = law.affine(&record.bias);
+    let mut force = law.affine_formula(&record.bias);
     let mut error = -law.length();
     let single = controls.len() == 1;
     for word in &controls {
@@ -179,7 +181,7 @@ fn pid(
             _ if rad => "N·m",
             _ => "N",
         };
-        let input = law.input(if single { "" } else { word }, unit, named);
+        let input = law.add_input(if single { "" } else { word }, unit, named);
         match *word {
             "pos" => {
                 error = input.clone() - law.length();
@@ -192,10 +194,12 @@ fn pid(
     if integral > 0.0 {
         if !controls.contains(&"pos") {
             let message = "`ki` without the input `pos`";
-            cx.report_error(&actuator.place("ki", cx), message, |d| d.add_help("write `input=\"pos vel\"`"));
+            cx.report_error(&actuator.place_of_value("ki", cx), message, |d| {
+                d.add_help("write `input=\"pos vel\"`")
+            });
             return None;
         }
-        force = force + law.state("integral", named) * integral;
+        force = force + law.state_value("integral", named) * integral;
         let unit = if named.length == "rad" { "rad·s" } else { "m·s" };
         law.add_state("integral", "Integral of the error", unit, error, named);
     }

@@ -8,8 +8,8 @@
 
 use super::geometry::Mass;
 use super::joint::IGNORE_PASSIVE;
-use super::reader::Reader;
-use super::spatial::Spot;
+use super::reader::MjcfReader;
+use super::spatial::BodyFrame;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::element_position;
@@ -17,9 +17,9 @@ use crate::import::pose::{Pose, eigen_decomposition, transpose};
 use crate::syntax::{BinaryOp, Expr, ExprKind, GROUND, Name};
 use std::f64::consts::PI;
 
-impl Reader<'_> {
+impl MjcfReader<'_> {
     /// Adds the drag of the fluid to all bodies, if the file has a fluid.
-    pub(super) fn drag(&mut self, cx: &mut Cx<'_>) {
+    pub(super) fn add_fluid_drag(&mut self, cx: &mut Cx<'_>) {
         if !self.passive || self.settings.medium.is_empty() {
             return;
         }
@@ -55,7 +55,7 @@ impl Reader<'_> {
             .filter_map(|(link, mass)| {
                 let mass = mass.as_ref().filter(|mass| mass.mass > 0.0)?;
                 let text = format!("{}_medium", link.name.text);
-                let function = braked(&link.name.text, mass, [density, viscosity], &at);
+                let function = fluid_dissipation(&link.name.text, mass, [density, viscosity], &at);
                 Some((Name { text, place: at.clone() }, function))
             })
             .collect();
@@ -63,8 +63,8 @@ impl Reader<'_> {
     }
 
     /// Records a shape with an individual fluid model, which is not supported.
-    pub(super) fn note_shaped(&mut self, shape: &super::defaults::Element<'_>, cx: &Cx<'_>) {
-        if shape.text("fluidshape").is_some_and(|word| word != "none") {
+    pub(super) fn note_fluid_shape(&mut self, shape: &super::defaults::Element<'_>, cx: &Cx<'_>) {
+        if shape.trimmed_text("fluidshape").is_some_and(|word| word != "none") {
             self.shaped.get_or_insert(element_position(shape.node, cx));
         }
     }
@@ -72,22 +72,25 @@ impl Reader<'_> {
 
 /// Returns the Rayleigh dissipation function of the drag on a body: half of the dissipated power of linear
 /// terms plus a third of that of quadratic terms.
-fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
+fn fluid_dissipation(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
     let (moments, axes) = eigen_decomposition(&mass.inertia);
     let sum: f64 = moments.iter().sum();
     let edges = moments.map(|moment| ((sum - 2.0 * moment).max(0.0) / mass.mass * 6.0).sqrt());
     let mean = edges.iter().sum::<f64>() / 3.0;
-    let name = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-    let spot = Spot { body: link.to_string(), pose: Pose { at: mass.com, ..Pose::ZERO } };
-    let slash = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
-    let path = slash(slash(spot.expression(at), name(GROUND)), name(GROUND));
+    let name_expression = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
+    let spot = BodyFrame { body: link.to_string(), pose: Pose { at: mass.com, ..Pose::ZERO } };
+    let quotient = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
+    let path =
+        quotient(quotient(spot.position_of_spot(at), name_expression(GROUND)), name_expression(GROUND));
     let v = Expr::function_call_at("v", vec![path], at);
-    let omega = Expr::function_call_at("omega", vec![slash(name(link), name(GROUND))], at);
-    let times = |factor: f64, e: Expr| Expr::binary_operation(BinaryOp::Mul, Expr::number_at(factor, at), e);
+    let omega =
+        Expr::function_call_at("omega", vec![quotient(name_expression(link), name_expression(GROUND))], at);
+    let scaled_expression =
+        |factor: f64, e: Expr| Expr::binary_operation(BinaryOp::Mul, Expr::number_at(factor, at), e);
     let mut terms = Vec::new();
     if viscosity > 0.0 {
         for (factor, of) in [(1.5 * PI * mean, &v), (0.5 * PI * mean * mean * mean, &omega)] {
-            terms.push(times(
+            terms.push(scaled_expression(
                 factor * viscosity,
                 Expr::function_call_at("dot", vec![of.clone(), of.clone()], at),
             ));
@@ -101,7 +104,7 @@ fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -
                 let square = Expr::binary_operation(BinaryOp::Mul, x.clone(), x.clone());
                 let cube =
                     Expr::binary_operation(BinaryOp::Mul, Expr::function_call_at("abs", vec![x], at), square);
-                terms.push(times(factor * density, cube));
+                terms.push(scaled_expression(factor * density, cube));
             }
         }
     }

@@ -12,7 +12,8 @@ use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
 use crate::import::mesh::{self, Triangle};
 use crate::import::pose::{
-    Matrix, Vector, add, cross, dot, length, matrix_times_vector, of_quaternion, scale_vector, transpose,
+    Matrix, Vector, add, cross, dot, length, matrix_times_vector, rotation_of_quaternion, scale_vector,
+    transpose,
 };
 use crate::syntax::{Mesh, MeshVertices, Name};
 use std::collections::BTreeMap;
@@ -24,18 +25,18 @@ const NOTHING: f64 = 1e-15;
 /// Meshes of a file. A mesh is read only if its mass properties are needed.
 pub(super) struct Meshes<'a> {
     folder: PathBuf,
-    /// Whether the folders in file names are ignored.
+    /// Whether the folders in names of mesh files are ignored.
     strips: bool,
     known: BTreeMap<String, Element<'a>>,
     /// Mass properties at density 1 of the meshes that were read.
     read: BTreeMap<String, Option<Mass>>,
-    /// Paths of the files that were read.
+    /// Paths of the mesh files that were read.
     pub(super) files: Vec<PathBuf>,
 }
 
 impl<'a> Meshes<'a> {
     /// Lists the meshes of the root element. Paths are relative to `folder`.
-    pub(super) fn list(
+    pub(super) fn list_meshes(
         root: Node<'a>,
         folder: &Path,
         settings: &Settings,
@@ -46,7 +47,7 @@ impl<'a> Meshes<'a> {
             child_elements(root).filter(|node| node.tag_name().name() == "asset").flat_map(child_elements);
         let mut known = BTreeMap::new();
         for node in assets.filter(|node| node.tag_name().name() == "mesh") {
-            let element = defaults.element(node, &["mesh"], 0, cx);
+            let element = defaults.element_with_defaults(node, &["mesh"], 0, cx);
             let stem = node.attribute("file").map(|file| {
                 Path::new(file)
                     .file_stem()
@@ -62,19 +63,19 @@ impl<'a> Meshes<'a> {
     }
 
     /// Returns the mass properties at density 1 of a mesh shape, in the axes of the mesh file.
-    pub(super) fn of_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
-        let (mesh, element) = self.element(shape, cx)?;
+    pub(super) fn mass_of_mesh_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
+        let (mesh, element) = self.mesh_of_shape(shape, cx)?;
         if let Some(known) = self.read.get(&mesh) {
             return *known;
         }
-        let found = self.mass(&element, cx);
+        let found = self.mass_of_mesh(&element, cx);
         self.read.insert(mesh, found);
         found
     }
 
     /// Returns the name of a shape's mesh, and the mesh.
-    fn element(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(String, Element<'a>)> {
-        let Some(mesh) = shape.name("mesh", cx) else {
+    fn mesh_of_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(String, Element<'a>)> {
+        let Some(mesh) = shape.name_of_attribute("mesh", cx) else {
             cx.report_error(
                 &element_position(shape.node, cx),
                 "a shape of type `mesh` without `mesh`",
@@ -94,26 +95,26 @@ impl<'a> Meshes<'a> {
 
     /// Returns the source of the vertices of a mesh shape, for its convex hull; `None` for a mesh that MuJoCo
     /// generates.
-    pub(super) fn vertices(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<MeshVertices> {
-        let (mesh, element) = self.element(shape, cx)?;
-        let (linear, offset) = placement(&element, cx);
+    pub(super) fn vertices_of_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<MeshVertices> {
+        let (mesh, element) = self.mesh_of_shape(shape, cx)?;
+        let (linear, offset) = vertex_transformation(&element, cx);
         let place = element_position(element.node, cx);
         if element.node.has_attribute("file") {
             let name = read_name_attribute(element.node, "file", cx)?;
             return Some(MeshVertices {
-                paths: vec![self.path(&name)],
+                paths: vec![self.mesh_path(&name)],
                 name,
                 written: Vec::new(),
                 linear,
                 offset,
             });
         }
-        let place = match element.node_with("vertex") {
-            Some(_) => element.place("vertex", cx),
+        let place = match element.node_with_attribute("vertex") {
+            Some(_) => element.place_of_value("vertex", cx),
             None => place,
         };
         let numbers: Option<Vec<f64>> =
-            element.text("vertex")?.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
+            element.trimmed_text("vertex")?.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
         let Some(numbers) = numbers.filter(|numbers| numbers.len() % 3 == 0) else {
             cx.report_error(&place, "expected three numbers for each vertex", |d| d);
             return None;
@@ -123,31 +124,31 @@ impl<'a> Meshes<'a> {
     }
 
     /// Returns the path of a mesh file.
-    fn path(&self, file: &Name) -> PathBuf {
+    fn mesh_path(&self, file: &Name) -> PathBuf {
         let stripped = Path::new(&file.text).file_name().filter(|_| self.strips);
         self.folder.join(stripped.unwrap_or(file.text.as_ref()))
     }
 
     /// Returns the mesh to draw for a shape, in the axes of the mesh file; `None` for a mesh with reference
     /// axes of its own.
-    pub(super) fn drawn(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mesh> {
-        let element = self.known.get(shape.text("mesh")?)?;
-        if element.with_any(&["refpos", "refquat"]).is_some() {
+    pub(super) fn mesh_to_draw(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mesh> {
+        let element = self.known.get(shape.trimmed_text("mesh")?)?;
+        if element.node_with_any_attribute(&["refpos", "refquat"]).is_some() {
             return None;
         }
-        let scale = element.numbers("scale", cx).map_or([1.0; 3], |found| found.value);
-        Some(Mesh { path: element.text("file")?.to_string(), scale })
+        let scale = element.exact_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
+        Some(Mesh { path: element.trimmed_text("file")?.to_string(), scale })
     }
 
-    fn mass(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
-        let exact = match element.text("inertia") {
+    fn mass_of_mesh(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
+        let exact = match element.trimmed_text("inertia") {
             None | Some("legacy") => false,
             Some("exact") => true,
             Some(other) => {
                 let message = format!("`inertia` {} of a mesh is not supported", quote_word(other));
                 let help =
                     "expected `legacy` or `exact`, or an `<inertial>` in the bodies that have the mesh";
-                cx.report_error(&element.place("inertia", cx), message, |d| d.add_help(help));
+                cx.report_error(&element.place_of_value("inertia", cx), message, |d| d.add_help(help));
                 return None;
             }
         };
@@ -159,11 +160,11 @@ impl<'a> Meshes<'a> {
             return None;
         }
         let file = read_name_attribute(element.node, "file", cx)?;
-        let path = self.path(&file);
-        let mut triangles = read(&path, &file, cx)?;
+        let path = self.mesh_path(&file);
+        let mut triangles = read_mesh(&path, &file, cx)?;
         self.files.push(path);
-        transform(element, &mut triangles, cx);
-        let found = solid(&triangles, exact);
+        transform_triangles(element, &mut triangles, cx);
+        let found = solid_mass(&triangles, exact);
         if found.is_none() {
             let message = format!("mesh {} has no volume", quote_word(&file.text));
             cx.report_error(&file.place, message, |d| d.add_help(super::geometry::NEEDS_INERTIAL));
@@ -173,19 +174,19 @@ impl<'a> Meshes<'a> {
 }
 
 /// Returns the map of vertices by `refpos`, `refquat` and `scale`, in this order: a matrix and an offset.
-fn placement(element: &Element<'_>, cx: &mut Cx<'_>) -> (Matrix, Vector) {
-    let from = element.numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
-    let factors = element.numbers("scale", cx).map_or([1.0; 3], |found| found.value);
-    let quat = element.numbers::<4>("refquat", cx).map_or([1.0, 0.0, 0.0, 0.0], |found| found.value);
+fn vertex_transformation(element: &Element<'_>, cx: &mut Cx<'_>) -> (Matrix, Vector) {
+    let from = element.exact_numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
+    let factors = element.exact_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
+    let quat = element.exact_numbers::<4>("refquat", cx).map_or([1.0, 0.0, 0.0, 0.0], |found| found.value);
     let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let axes: Matrix = transpose(&of_quaternion(quat.map(|x| x / size)));
+    let axes: Matrix = transpose(&rotation_of_quaternion(quat.map(|x| x / size)));
     let linear: Matrix = std::array::from_fn(|k| scale_vector(axes[k], factors[k]));
     (linear, scale_vector(matrix_times_vector(&linear, from), -1.0))
 }
 
-/// Applies `refpos`, `refquat` and `scale`.
-fn transform(element: &Element<'_>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
-    let (linear, offset) = placement(element, cx);
+/// Transforms the vertices of a mesh by its `refpos`, `refquat` and `scale`.
+fn transform_triangles(element: &Element<'_>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
+    let (linear, offset) = vertex_transformation(element, cx);
     for corner in triangles.iter_mut().flatten() {
         *corner = add(matrix_times_vector(&linear, *corner), offset);
     }
@@ -196,8 +197,8 @@ fn transform(element: &Element<'_>, triangles: &mut [Triangle], cx: &mut Cx<'_>)
 }
 
 /// Returns the mass properties at density 1 of a triangulated solid; `None` if its volume is zero.
-fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
-    let count = |volume: f64| if exact { volume } else { volume.abs() };
+fn solid_mass(triangles: &[Triangle], exact: bool) -> Option<Mass> {
+    let counted_volume = |volume: f64| if exact { volume } else { volume.abs() };
     let (mut area, mut middle) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {
         let one = length(cross(add(*b, scale_vector(*a, -1.0)), add(*c, scale_vector(*a, -1.0)))) / 2.0;
@@ -211,7 +212,7 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
     let (mut volume, mut com) = (0.0, [0.0; 3]);
     for triangle in triangles {
         let [a, b, c] = triangle.map(|corner| add(corner, scale_vector(middle, -1.0)));
-        let one = count(dot(a, cross(b, c)) / 6.0);
+        let one = counted_volume(dot(a, cross(b, c)) / 6.0);
         volume += one;
         com = add(com, scale_vector(add(add(a, b), c), one / 4.0));
     }
@@ -223,7 +224,7 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
     for triangle in triangles {
         let corners = triangle.map(|corner| add(corner, scale_vector(com, -1.0)));
         let [a, b, c] = corners;
-        let one = count(dot(a, cross(b, c)) / 6.0);
+        let one = counted_volume(dot(a, cross(b, c)) / 6.0);
         mass += one;
         let sum = add(add(a, b), c);
         for (i, row) in products.iter_mut().enumerate() {
@@ -242,15 +243,15 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
 }
 
 impl Mass {
-    /// Rescales the body to another mass.
-    pub(super) fn of_mass(&self, mass: f64) -> Mass {
+    /// Scales the mass properties to another total mass.
+    pub(super) fn scaled_to_mass(&self, mass: f64) -> Mass {
         Mass { mass, com: self.com, inertia: self.inertia.map(|row| scale_vector(row, mass / self.mass)) }
     }
 }
 
 /// Reads a mesh. Errors are reported at the name of the mesh.
-fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
-    match mesh::read(path, &name.text) {
+fn read_mesh(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
+    match mesh::read_triangles(path, &name.text) {
         Ok(triangles) => Some(triangles),
         Err(message) => {
             cx.report_error(&name.place, message, |d| match path.is_file() {
@@ -272,7 +273,7 @@ mod tests {
     const BOX: &str = "v 1 1 1\nv 3 1 1\nv 3 5 1\nv 1 5 1\nv 1 1 7\nv 3 1 7\nv 3 5 7\nv 1 5 7\n\
         f 4 3 2 1\nf 5/1 6/2 7/3 8/4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf -8 -4 -1 -5\n";
 
-    fn check(found: &Mass, at: f64) {
+    fn check_box_mass(found: &Mass, at: f64) {
         assert!((found.mass - 48.0).abs() < 1e-12);
         let expected: Vector = [2.0 + at, 3.0, 4.0];
         assert!((0..3).all(|k| (found.com[k] - expected[k]).abs() < 1e-12), "{:?}", found.com);
@@ -286,10 +287,10 @@ mod tests {
     }
 
     #[test]
-    fn a_box_of_triangles_is_a_box() {
-        let triangles = mesh::obj(BOX.as_bytes()).expect("a mesh");
+    fn triangulated_box_has_the_inertia_of_a_box() {
+        let triangles = mesh::read_obj(BOX.as_bytes()).expect("a mesh");
         assert_eq!(triangles.len(), 12);
-        check(&solid(&triangles, true).expect("a solid"), 0.0);
-        check(&solid(&triangles, false).expect("a solid"), 0.0);
+        check_box_mass(&solid_mass(&triangles, true).expect("a solid"), 0.0);
+        check_box_mass(&solid_mass(&triangles, false).expect("a solid"), 0.0);
     }
 }

@@ -1,4 +1,4 @@
-//! `<mujoco>` → bodies and joints in coordinate order.
+//! Import of MJCF: `<mujoco>` → bodies and joints in coordinate order.
 //!
 //! Contents of the file that affect the equations of motion without contacts are imported or reported as
 //! errors. Other contents are skipped and listed in the generated documentation.
@@ -12,7 +12,7 @@ use crate::import::robot::{self, Order};
 use crate::syntax::{DriveLaw, DriveOn, Expr, FileFormat, FileOptions, GROUND, JointKind};
 use defaults::Defaults;
 use mesh::Meshes;
-use reader::Reader;
+use reader::MjcfReader;
 use settings::Settings;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -49,25 +49,25 @@ mod winding;
 const ASIDE: [(&str, &str); 3] =
     [("contact", "pairs and exceptions of contact"), ("sensor", "sensors"), ("keyframe", "keyframes")];
 
-/// Reads the text of the file at `path`.
-pub(super) fn import(
+/// Imports the text of the MJCF file at `path`.
+pub(super) fn import_file(
     text: &str,
     path: &Path,
     options: &FileOptions,
     cx: &mut Diagnostics,
 ) -> Option<Imported> {
-    let whole = include::read_whole(text, path, &options.path, cx)?;
+    let whole = include::read_with_includes(text, path, &options.path, cx)?;
     let folder = path.parent().unwrap_or(path);
     import_composed_text(whole, &options.path, FileFormat::Mjcf, cx, |root, cx| {
-        read(root, folder, options, cx)
+        read_root(root, folder, options, cx)
     })
 }
 
-fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
-    if !check_root(root, cx) {
+fn read_root(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+    if !check_root_element(root, cx) {
         return None;
     }
-    schema::check(root, cx);
+    schema::check_schema(root, cx);
     if let Some(node) = child_elements(root).find(|node| node.tag_name().name() == "deformable")
         && child_elements(node).next().is_some()
     {
@@ -75,33 +75,33 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
             d.add_help("remove `<deformable>`")
         });
     }
-    let settings = Settings::read(root, cx);
-    let defaults = Defaults::read(root, cx);
-    let meshes = Meshes::list(root, folder, &settings, &defaults, cx);
-    let mut reader = Reader::new(options, settings, defaults, meshes);
+    let settings = Settings::read_settings(root, cx);
+    let defaults = Defaults::read_defaults(root, cx);
+    let meshes = Meshes::list_meshes(root, folder, &settings, &defaults, cx);
+    let mut reader = MjcfReader::new(options, settings, defaults, meshes);
     reader.read_world(root, cx)?;
     reader.scale_masses();
-    reader.drag(cx);
+    reader.add_fluid_drag(cx);
     robot::check_names(&reader.robot, options.format, cx);
-    reader.touch_planes(cx);
-    let tendons = reader.tendons(root, cx);
-    reader.equalities(root, &tendons, cx);
-    reader.actuators(root, &tendons, cx);
+    reader.add_plane_contacts(cx);
+    let tendons = reader.read_tendons(root, cx);
+    reader.read_equalities(root, &tendons, cx);
+    reader.read_actuators(root, &tendons, cx);
     for (section, what) in ASIDE {
         let nodes = child_elements(root).filter(|node| node.tag_name().name() == section);
-        reader.count(what, nodes.map(|node| child_elements(node).count()).sum());
+        reader.count_skipped(what, nodes.map(|node| child_elements(node).count()).sum());
     }
     let gravity = &reader.settings.gravity;
     reader.robot.gravity = Some(Expr::vector_at(gravity.value, &gravity.place));
-    reader.robot.left_out = left_out(&reader);
-    finish(reader, options, cx)
+    reader.robot.left_out = ignored_contents(&reader);
+    finish_import(reader, options, cx)
 }
 
-/// Assembles the mechanism from the contents of the file.
-fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+/// Assembles the imported mechanism from the contents that the reader collected.
+fn finish_import(reader: MjcfReader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     let mut robot = reader.robot;
-    robot::check_locks(&robot.joints, &options.lock, cx);
-    check_finite(&robot, cx);
+    robot::check_locked_names(&robot.joints, &options.lock, cx);
+    check_finite_values(&robot, cx);
     if cx.has_errors() {
         return None;
     }
@@ -116,22 +116,22 @@ fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
     let joints =
         children.filter_map(|(k, joint)| Some((k, *links.get(joint.child.text.as_str())?))).collect();
     let order = Order { root: 0, joints };
-    let standing = standing(&robot, options);
+    let standing = fixed_links(&robot, options);
     let closing = std::mem::take(&mut robot.closing);
     let files = reader.meshes.files;
-    let mut imported = robot::assemble(robot, &order, motions, options, cx);
-    robot::make_fields(&mut imported, &standing, options, cx);
+    let mut imported = robot::assemble_mechanism(robot, &order, motions, options, cx);
+    robot::make_value_fields(&mut imported, &standing, options, cx);
     imported.joints.extend(closing);
     imported.files = files;
     (!cx.has_errors()).then_some(imported)
 }
 
-/// Reports overflow of products whose factors are finite.
-fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
-    let literals =
+/// Reports values of an MJCF file that overflow as products of finite numbers.
+fn check_finite_values(robot: &robot::Robot, cx: &mut Cx<'_>) {
+    let has_finite_literals =
         |e: &Expr| e.subexpressions().into_iter().filter_map(Expr::literal_number).all(f64::is_finite);
     for link in &robot.links {
-        if ![&link.mass, &link.com, &link.inertia].into_iter().flatten().all(literals) {
+        if ![&link.mass, &link.com, &link.inertia].into_iter().flatten().all(has_finite_literals) {
             let message = format!(
                 "body {} is too large, too heavy or too far away for floating-point numbers",
                 quote_word(&link.name.text)
@@ -157,7 +157,11 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
         }
     }
     for constraint in &robot.constraints {
-        if ![Some(&constraint.value), constraint.other.as_ref()].into_iter().flatten().all(literals) {
+        if ![Some(&constraint.value), constraint.other.as_ref()]
+            .into_iter()
+            .flatten()
+            .all(has_finite_literals)
+        {
             let message = format!(
                 "the coupling {} is too large for floating-point numbers",
                 quote_word(&constraint.name.text)
@@ -170,7 +174,7 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
             DriveLaw::Spring { stiffness, free } => stiffness.is_finite() && free.is_finite(),
             DriveLaw::Slack { stiffness, range } => stiffness.into_iter().chain(range).all(f64::is_finite),
             DriveLaw::PolynomialDamper(damping) => damping.into_iter().all(f64::is_finite),
-            DriveLaw::Expression { ref force, .. } => literals(force),
+            DriveLaw::Expression { ref force, .. } => has_finite_literals(force),
             DriveLaw::Damper(x) | DriveLaw::Friction(x) | DriveLaw::Inerter(x) | DriveLaw::Push(x) => {
                 x.is_finite()
             }
@@ -178,7 +182,7 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
         };
         let on = match &drive.on {
             DriveOn::Sum(terms) => terms.iter().all(|(_, weight)| weight.is_finite()),
-            DriveOn::Length(e) => literals(e),
+            DriveOn::Length(e) => has_finite_literals(e),
             DriveOn::Wrench(wrench) => wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite),
         };
         if !law || !on {
@@ -192,7 +196,7 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
 }
 
 /// Returns the names of the links that are fixed to the ground.
-fn standing(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
+fn fixed_links(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
     let mut standing = BTreeSet::from([GROUND]);
     for joint in &robot.joints {
         let held =
@@ -205,7 +209,7 @@ fn standing(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
 }
 
 /// Returns true if the root element is `<mujoco>`; otherwise reports an error.
-fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
+fn check_root_element(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     let name = node.tag_name().name();
     if name == "mujoco" {
         return true;
@@ -221,7 +225,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
 }
 
 /// Returns the contents of the file that the mechanism does not represent, for the generated documentation.
-fn left_out(reader: &Reader<'_>) -> Vec<String> {
+fn ignored_contents(reader: &MjcfReader<'_>) -> Vec<String> {
     let mut lines: Vec<String> = reader
         .counts
         .iter()

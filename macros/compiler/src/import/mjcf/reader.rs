@@ -13,11 +13,11 @@ use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// State of the reader of an MJCF file.
-pub(super) struct Reader<'a> {
+pub(super) struct MjcfReader<'a> {
     pub(super) options: &'a FileOptions,
     pub(super) settings: Settings,
     pub(super) defaults: Defaults<'a>,
-    /// Meshes of the file.
+    /// Meshes of the MJCF file.
     pub(super) meshes: Meshes<'a>,
     /// Whether forces of a fluid are imported.
     pub(super) passive: bool,
@@ -45,31 +45,32 @@ pub(super) struct Reader<'a> {
     pub(super) named_shapes: BTreeMap<String, (String, Element<'a>, Pose)>,
     /// Source position of the first shape with an individual fluid model.
     pub(super) shaped: Option<Place>,
-    /// Mocap bodies, whose poses programs prescribe.
+    /// Names of mocap bodies, whose poses programs prescribe.
     pub(super) mocap: BTreeSet<String>,
-    /// Mass properties of each link.
+    /// Mass properties of each link of the robot.
     pub(super) masses: Vec<Option<Mass>>,
     /// Number of bodies read so far, which is MuJoCo's index of the last one.
     pub(super) bodies: usize,
     pub(super) sites: Vec<(Name, String, Pose)>,
-    /// Planes of the world.
+    /// Planes of the world with which shapes can collide.
     pub(super) planes: Vec<Plane>,
-    /// Collision shapes of bodies.
+    /// Collision shapes of bodies that can touch planes of the world.
     pub(super) touching: Vec<CollisionShape>,
 }
 
-impl<'a> Reader<'a> {
-    /// Creates a reader without contents.
+impl<'a> MjcfReader<'a> {
+    /// Creates the reader of an MJCF file before any element is read.
     pub(super) fn new(
         options: &'a FileOptions,
         settings: Settings,
         defaults: Defaults<'a>,
         meshes: Meshes<'a>,
-    ) -> Reader<'a> {
+    ) -> MjcfReader<'a> {
         let honour = options.honour_passive;
-        let (passive, friction) = (honour && settings.passive(), honour && settings.friction());
+        let (passive, friction) =
+            (honour && settings.has_passive_forces(), honour && settings.has_dry_friction());
         let (springs, dampers) = (honour && settings.springs, honour && settings.dampers);
-        Reader {
+        MjcfReader {
             options,
             settings,
             defaults,
@@ -99,7 +100,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds `more` to the count of skipped contents of this kind.
-    pub(super) fn count(&mut self, what: &'static str, more: usize) {
+    pub(super) fn count_skipped(&mut self, what: &'static str, more: usize) {
         *self.counts.entry(what).or_default() += more;
     }
 
@@ -115,29 +116,29 @@ impl<'a> Reader<'a> {
             if let Some(mass) = mass {
                 let place = link.mass.as_ref().map_or(link.name.place.clone(), |mass| mass.place.clone());
                 let inertia = mass.inertia.map(|row| scale_vector(row, factor));
-                give(link, &Mass { mass: mass.mass * factor, inertia, ..*mass }, &place);
+                set_mass(link, &Mass { mass: mass.mass * factor, inertia, ..*mass }, &place);
             }
         }
     }
 }
 
-/// Sets the mass properties of a link.
-pub(super) fn give(link: &mut Body, mass: &Mass, place: &Place) {
+/// Sets the mass properties of a link from numbers.
+pub(super) fn set_mass(link: &mut Body, mass: &Mass, place: &Place) {
     link.mass = Some(Expr::number_at(mass.mass, place));
     link.com = (mass.com != [0.0; 3]).then(|| Expr::vector_at(mass.com, place));
     let rows: Vec<Expr> = (0..3)
         .map(|i| {
             // The two triangles of the matrix may differ by rounding errors.
-            let entry = |j: usize| if i <= j { mass.inertia[i][j] } else { mass.inertia[j][i] };
-            Expr::vector_at(std::array::from_fn(entry), place)
+            let symmetric_entry = |j: usize| if i <= j { mass.inertia[i][j] } else { mass.inertia[j][i] };
+            Expr::vector_at(std::array::from_fn(symmetric_entry), place)
         })
         .collect();
     let zero = mass.inertia.iter().flatten().all(|entry| *entry == 0.0);
     link.inertia = (!zero).then(|| Expr { kind: ExprKind::Array(rows), place: place.clone() });
 }
 
-/// Converts a pose to an [`Origin`].
-pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
-    let placed = |value| Placed { value, place: place.clone() };
-    Origin { xyz: placed(pose.at.map(|x| x + 0.0)), rpy: placed(roll_pitch_yaw(&pose.axes)) }
+/// Converts a numeric pose to an [`Origin`] with a source position.
+pub(super) fn origin_of_pose(pose: &Pose, place: &Place) -> Origin {
+    let placed_value = |value| Placed { value, place: place.clone() };
+    Origin { xyz: placed_value(pose.at.map(|x| x + 0.0)), rpy: placed_value(roll_pitch_yaw(&pose.axes)) }
 }

@@ -5,7 +5,7 @@
 //! those of the nearest class whose record it can interpret: a record last written by the same shortcut, or
 //! by `<general>` with a constant gain. `<general>` modifies the record of its class.
 
-use super::defaults::{Element, some};
+use super::defaults::{Element, numbers_with_defaults};
 use super::winding;
 use crate::import::context::Cx;
 use crate::import::element::{Node, read_number_attribute};
@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 /// Parameters of an actuator as MuJoCo stores them.
 #[derive(Clone, Copy)]
 pub(super) struct Record<'a> {
-    /// Name of the element that wrote the record last.
+    /// Type of the element whose attributes were read last.
     written: &'a str,
     pub(super) dynamics: &'a str,
     pub(super) gain_kind: &'a str,
@@ -25,22 +25,22 @@ pub(super) struct Record<'a> {
     pub(super) bias: [f64; 10],
 }
 
-/// Parameters of an actuator without attributes.
+/// Actuator parameters of MuJoCo without any attribute.
 const PLAIN: Record<'static> = Record {
     written: "general",
     dynamics: "none",
     gain_kind: "fixed",
     bias_kind: "none",
-    dynprm: list(&[1.0]),
-    gain: list(&[1.0]),
+    dynprm: padded_parameters(&[1.0]),
+    gain: padded_parameters(&[1.0]),
     bias: [0.0; 10],
 };
 
-/// Gain parameters of a muscle without attributes.
-const MUSCLE: [f64; 10] = list(&[0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2]);
+/// Gain parameters of a MuJoCo muscle without any attribute.
+const MUSCLE: [f64; 10] = padded_parameters(&[0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2]);
 
-/// Returns ten parameters of which the first are given and the others zero.
-pub(super) const fn list(first: &[f64]) -> [f64; 10] {
+/// Returns ten actuator parameters: the given first ones, followed by zeros.
+pub(super) const fn padded_parameters(first: &[f64]) -> [f64; 10] {
     let (mut all, mut k) = ([0.0; 10], 0);
     while k < first.len() && k < 10 {
         all[k] = first[k];
@@ -60,41 +60,41 @@ pub(super) fn read_record<'a>(
     for class in classes {
         records.extend(records.last().copied());
         for node in class {
-            write(&mut records, *node, cx);
+            write_last_record(&mut records, *node, cx);
         }
     }
     records.extend(records.last().copied());
-    write(&mut records, actuator.node, cx);
+    write_last_record(&mut records, actuator.node, cx);
     records.last().copied().unwrap_or(PLAIN)
 }
 
 /// Writes the attributes of an actuator or of its defaults to the last record. The preceding records belong
 /// to the parent classes.
-fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
+fn write_last_record<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
     let kind = node.tag_name().name();
-    let readable = |record: &&Record<'a>| {
+    let is_readable = |record: &&Record<'a>| {
         record.written == kind || (record.written == "general" && record.gain_kind == "fixed")
     };
-    let usual = records.iter().rev().find(readable).copied().unwrap_or(PLAIN);
+    let usual = records.iter().rev().find(is_readable).copied().unwrap_or(PLAIN);
     // The parameters of these are not those of `<general>`.
     let own = if usual.written == kind { usual } else { PLAIN };
     let Some(record) = records.last_mut() else { return };
     let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
-    let law = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| Record {
+    let shortcut_record = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| Record {
         written: kind,
         dynamics,
         gain_kind,
         bias_kind,
         dynprm: PLAIN.dynprm,
-        gain: list(&[gain]),
-        bias: list(&bias),
+        gain: padded_parameters(&[gain]),
+        bias: padded_parameters(&bias),
     };
     *record = match kind {
         "general" => {
-            record.write_general(node, cx);
+            record.write_general_actuator(node, cx);
             return;
         }
-        "motor" => law("none", "fixed", 1.0, "none", [0.0; 3]),
+        "motor" => shortcut_record("none", "fixed", 1.0, "none", [0.0; 3]),
         "position" | "intvelocity" => {
             let stiffness = said("kp").unwrap_or(usual.gain[0]);
             let damping = said("kv").map(|kv| -kv).or_else(|| said("dampratio")).unwrap_or(usual.bias[2]);
@@ -108,15 +108,15 @@ fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
                 (_, true) => "filterexact",
                 _ => "none",
             };
-            let written = law(dynamics, "fixed", stiffness, "affine", [0.0, -stiffness, damping]);
-            Record { dynprm: list(&[lag]), ..written }
+            let written = shortcut_record(dynamics, "fixed", stiffness, "affine", [0.0, -stiffness, damping]);
+            Record { dynprm: padded_parameters(&[lag]), ..written }
         }
         "velocity" => {
             let gain = said("kv").unwrap_or(usual.gain[0]);
-            law("none", "fixed", gain, "affine", [0.0, 0.0, -gain])
+            shortcut_record("none", "fixed", gain, "affine", [0.0, 0.0, -gain])
         }
         "damper" => {
-            let mut record = law("none", "affine", 0.0, "none", [0.0; 3]);
+            let mut record = shortcut_record("none", "affine", 0.0, "none", [0.0; 3]);
             record.gain[2] = said("kv").map_or(usual.gain[2], |kv| -kv);
             record
         }
@@ -124,19 +124,21 @@ fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
             let lag = said("timeconst").unwrap_or(usual.dynprm[0]);
             let area = said("area").unwrap_or(usual.gain[0]);
             let area = said("diameter").map_or(area, |diameter| PI / 4.0 * diameter * diameter);
-            let bias = some(node, "bias", [0.0; 3], cx).map(|found| found.value);
+            let bias = numbers_with_defaults(node, "bias", [0.0; 3], cx).map(|found| found.value);
             let [b0, b1, b2, ..] = usual.bias;
-            let written = law("filter", "fixed", area, "affine", bias.unwrap_or([b0, b1, b2]));
-            Record { dynprm: list(&[lag]), ..written }
+            let written = shortcut_record("filter", "fixed", area, "affine", bias.unwrap_or([b0, b1, b2]));
+            Record { dynprm: padded_parameters(&[lag]), ..written }
         }
         "muscle" => write_muscle(own, node, cx),
-        "adhesion" => law("none", "fixed", said("gain").unwrap_or(usual.gain[0]), "none", [0.0; 3]),
-        "orientation" => law("none", "so3", 1.0, "affine", [0.0; 3]),
+        "adhesion" => {
+            shortcut_record("none", "fixed", said("gain").unwrap_or(usual.gain[0]), "none", [0.0; 3])
+        }
+        "orientation" => shortcut_record("none", "so3", 1.0, "affine", [0.0; 3]),
         "dcmotor" => {
             let known = own.gain_kind == "dcmotor";
             let [dynprm, gain, bias] = if known { [own.dynprm, own.gain, own.bias] } else { [[0.0; 10]; 3] };
-            let [dynprm, gain, bias] = winding::parameters([dynprm, gain, bias], node, cx);
-            Record { dynprm, gain, bias, ..law("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3]) }
+            let [dynprm, gain, bias] = winding::motor_parameters([dynprm, gain, bias], node, cx);
+            Record { dynprm, gain, bias, ..shortcut_record("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3]) }
         }
         "pid" => {
             let known = own.gain_kind == "pid";
@@ -147,22 +149,25 @@ fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
             let limits = [("imax", limits[0]), ("slewmax", limits[1])];
             let [imax, slew] = limits.map(|(attribute, usual)| said(attribute).unwrap_or(usual));
             let dynamics = if integral != 0.0 || slew != 0.0 { "pid" } else { "none" };
-            let written = law(dynamics, "pid", integral, "affine", [0.0, -stiffness, damping]);
-            Record { dynprm: list(&[imax, slew]), ..written }
+            let written = shortcut_record(dynamics, "pid", integral, "affine", [0.0, -stiffness, damping]);
+            Record { dynprm: padded_parameters(&[imax, slew]), ..written }
         }
-        _ => law("none", kind, 1.0, "affine", [0.0; 3]),
+        _ => shortcut_record("none", kind, 1.0, "affine", [0.0; 3]),
     };
 }
 
-/// Returns the record of a muscle. `own` is that of its defaults.
+/// Returns the parameters of a muscle. `own` are those of its defaults.
 fn write_muscle<'a>(own: Record<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> Record<'a> {
     let known = own.gain_kind == "muscle";
-    let (times, mut gain) = if known { (own.dynprm, own.gain) } else { (list(&[0.01, 0.04]), MUSCLE) };
+    let (times, mut gain) =
+        if known { (own.dynprm, own.gain) } else { (padded_parameters(&[0.01, 0.04]), MUSCLE) };
     let [rise, fall, width, ..] = times;
     // Negative values leave those of the defaults.
     let nonnegative_or = |found: f64, usual: f64| if found >= 0.0 { found } else { usual };
-    let times = some(node, "timeconst", [rise, fall], cx).map_or([rise, fall], |found| found.value);
-    let range = some(node, "range", [gain[0], gain[1]], cx).map_or([gain[0], gain[1]], |found| found.value);
+    let times =
+        numbers_with_defaults(node, "timeconst", [rise, fall], cx).map_or([rise, fall], |found| found.value);
+    let range = numbers_with_defaults(node, "range", [gain[0], gain[1]], cx)
+        .map_or([gain[0], gain[1]], |found| found.value);
     gain[0] = nonnegative_or(range[0], gain[0]);
     gain[1] = nonnegative_or(range[1], gain[1]);
     let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
@@ -171,7 +176,7 @@ fn write_muscle<'a>(own: Record<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> Record<
         gain[k + 2] = nonnegative_or(said(attribute).unwrap_or(-1.0), gain[k + 2]);
     }
     let width = said("tausmooth").unwrap_or(width);
-    let dynprm = list(&[nonnegative_or(times[0], rise), nonnegative_or(times[1], fall), width]);
+    let dynprm = padded_parameters(&[nonnegative_or(times[0], rise), nonnegative_or(times[1], fall), width]);
     Record {
         written: "muscle",
         dynamics: "muscle",
@@ -184,14 +189,16 @@ fn write_muscle<'a>(own: Record<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> Record<
 }
 
 impl<'a> Record<'a> {
-    fn write_general(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
-        let word = |attribute: &str, usual: &'a str| node.attribute(attribute).map_or(usual, str::trim);
-        (self.written, self.dynamics) = ("general", word("dyntype", self.dynamics));
+    fn write_general_actuator(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
+        let trimmed_or_default =
+            |attribute: &str, usual: &'a str| node.attribute(attribute).map_or(usual, str::trim);
+        (self.written, self.dynamics) = ("general", trimmed_or_default("dyntype", self.dynamics));
         (self.gain_kind, self.bias_kind) =
-            (word("gaintype", self.gain_kind), word("biastype", self.bias_kind));
-        let value = |found: Option<Placed<[f64; 10]>>, usual| found.map_or(usual, |found| found.value);
-        self.dynprm = value(some(node, "dynprm", self.dynprm, cx), self.dynprm);
-        self.gain = value(some(node, "gainprm", self.gain, cx), self.gain);
-        self.bias = value(some(node, "biasprm", self.bias, cx), self.bias);
+            (trimmed_or_default("gaintype", self.gain_kind), trimmed_or_default("biastype", self.bias_kind));
+        let value_or_default =
+            |found: Option<Placed<[f64; 10]>>, usual| found.map_or(usual, |found| found.value);
+        self.dynprm = value_or_default(numbers_with_defaults(node, "dynprm", self.dynprm, cx), self.dynprm);
+        self.gain = value_or_default(numbers_with_defaults(node, "gainprm", self.gain, cx), self.gain);
+        self.bias = value_or_default(numbers_with_defaults(node, "biasprm", self.bias, cx), self.bias);
     }
 }

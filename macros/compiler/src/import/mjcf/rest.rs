@@ -1,13 +1,13 @@
 //! Poses of bodies in the configuration in which the springs of all joints are relaxed. By default the
 //! springs of tendons are relaxed in it, too.
 
-use super::reader::Reader;
+use super::reader::MjcfReader;
 use super::spatial::Poses;
 use crate::import::pose::{Pose, axis_rotation, matrix_product, scale_vector};
 use crate::import::robot::Origin;
 use crate::syntax::{GROUND, JointKind};
 
-impl Reader<'_> {
+impl MjcfReader<'_> {
     /// Returns the pose of each body relative to the world with all joint springs relaxed. Ball and free
     /// joints are as in the configuration of the file.
     pub(super) fn poses_at_rest(&self) -> Poses {
@@ -26,7 +26,7 @@ impl Reader<'_> {
             let pose = if joint.kind == JointKind::Free {
                 self.poses.get(&joint.child.text).copied().unwrap_or(Pose::ZERO)
             } else {
-                parent.compose_with(&pose_of(&joint.origin)).compose_with(&motion).compose_with(&back)
+                parent.compose_with(&pose_of_origin(&joint.origin)).compose_with(&motion).compose_with(&back)
             };
             poses.insert(joint.child.text.clone(), pose);
         }
@@ -34,10 +34,13 @@ impl Reader<'_> {
     }
 }
 
-fn pose_of(origin: &Origin) -> Pose {
+fn pose_of_origin(origin: &Origin) -> Pose {
     let [roll, pitch, yaw] = origin.rpy.value;
-    let turn = |axis, angle| axis_rotation(axis, angle);
+    let rotation_about_axis = |axis, angle| axis_rotation(axis, angle);
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-    let axes = matrix_product(&matrix_product(&turn(z, yaw), &turn(y, pitch)), &turn(x, roll));
+    let axes = matrix_product(
+        &matrix_product(&rotation_about_axis(z, yaw), &rotation_about_axis(y, pitch)),
+        &rotation_about_axis(x, roll),
+    );
     Pose { at: origin.xyz.value, axes }
 }

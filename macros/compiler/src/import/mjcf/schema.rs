@@ -158,25 +158,25 @@ pub(in crate::import) const WHOLE: [&str; 10] = [
 /// Attributes of an element, divided by their influence on the motion.
 #[derive(Clone, Default)]
 pub(in crate::import) struct Attributes {
-    /// Attributes that may change the motion.
+    /// Attributes of an MJCF element that may change the motion.
     pub(in crate::import) moving: Vec<&'static str>,
-    /// Attributes on which the motion does not depend.
+    /// Attributes of an MJCF element without effect on the motion.
     pub(in crate::import) idle: Vec<&'static str>,
 }
 
 /// Returns the attributes of every element. Keys are `parent/element`, or only the name for children of the
 /// root.
-pub(in crate::import) fn read() -> BTreeMap<String, Attributes> {
+pub(in crate::import) fn read_schema() -> BTreeMap<String, Attributes> {
     let mut lists: BTreeMap<&str, Vec<&'static str>> = BTreeMap::new();
     let mut all = BTreeMap::new();
     for line in SCHEMA.lines() {
         let Some((key, attributes)) = line.split_once(':') else { continue };
         let (moving, idle) = attributes.split_once('|').unwrap_or((attributes, ""));
-        let expand = |text: &'static str| -> Vec<&'static str> {
+        let expand_names = |text: &'static str| -> Vec<&'static str> {
             let words = text.split_ascii_whitespace();
             words.flat_map(|word| lists.get(word).cloned().unwrap_or_else(|| vec![word])).collect()
         };
-        let (moving, idle) = (expand(moving), expand(idle));
+        let (moving, idle) = (expand_names(moving), expand_names(idle));
         if key.starts_with('@') {
             lists.insert(key, moving);
             continue;
@@ -190,10 +190,10 @@ pub(in crate::import) fn read() -> BTreeMap<String, Attributes> {
     all
 }
 
-/// Reports unknown elements and attributes, and repeated names.
-pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
-    check_names(root, cx);
-    let schema = read();
+/// Reports unknown MJCF elements and attributes, and repeated names.
+pub(super) fn check_schema(root: Node<'_>, cx: &mut Cx<'_>) {
+    check_unique_names(root, cx);
+    let schema = read_schema();
     let mut open = vec![root];
     while let Some(node) = open.pop() {
         check_attributes(node, &schema, cx);
@@ -203,22 +203,22 @@ pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
             if WHOLE.contains(&name) {
                 continue;
             }
-            if schema.contains_key(&key(node, name)) {
+            if schema.contains_key(&schema_key(node, name)) {
                 children.push(child);
             } else {
-                report_element(child, &key(node, ""), &schema, cx);
+                report_unknown_element(child, &schema_key(node, ""), &schema, cx);
             }
         }
         open.extend(children.into_iter().rev());
     }
 }
 
-/// Kinds of elements whose names are checked here. Names of bodies and joints are checked after the unnamed
+/// Kinds of MJCF elements whose names must be unique. Names of bodies and joints are checked after unnamed
 /// ones have received generated names.
 const NAMED: [&str; 6] = ["site", "geom", "tendon", "equality", "actuator", "sensor"];
 
-/// Reports repeated names of elements of one kind.
-fn check_names(root: Node<'_>, cx: &mut Cx<'_>) {
+/// Reports repeated names of MJCF elements of one kind.
+fn check_unique_names(root: Node<'_>, cx: &mut Cx<'_>) {
     for kind in NAMED {
         let is_kind = |node: &Node<'_>| {
             let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
@@ -232,7 +232,7 @@ fn check_names(root: Node<'_>, cx: &mut Cx<'_>) {
 }
 
 /// Returns the key of an element with this parent in the schema.
-fn key(parent: Node<'_>, name: &str) -> String {
+fn schema_key(parent: Node<'_>, name: &str) -> String {
     let parent = match (parent.tag_name().name(), name) {
         ("mujoco", _) | ("default", "default") => return name.to_string(),
         ("worldbody" | "frame", _) => "body",
@@ -262,7 +262,7 @@ const OWN: [&str; 10] = [
 fn check_attributes(node: Node<'_>, schema: &BTreeMap<String, Attributes>, cx: &mut Cx<'_>) {
     let parent = node.parent_element();
     let name = node.tag_name().name();
-    let path = parent.map_or_else(|| name.to_string(), |parent| key(parent, name));
+    let path = parent.map_or_else(|| name.to_string(), |parent| schema_key(parent, name));
     let Some(found) = schema.get(&path) else { return };
     let within = parent.is_some_and(|parent| parent.tag_name().name() == "default") && name != "default";
     let mut known: Vec<&str> = found.moving.iter().chain(&found.idle).copied().collect();
@@ -282,7 +282,12 @@ fn check_attributes(node: Node<'_>, schema: &BTreeMap<String, Attributes>, cx: &
     }
 }
 
-fn report_element(node: Node<'_>, parent: &str, schema: &BTreeMap<String, Attributes>, cx: &mut Cx<'_>) {
+fn report_unknown_element(
+    node: Node<'_>,
+    parent: &str,
+    schema: &BTreeMap<String, Attributes>,
+    cx: &mut Cx<'_>,
+) {
     let name = node.tag_name().name();
     let siblings = schema.keys().map(String::as_str).filter_map(|known| match parent {
         "" => (!known.contains('/')).then_some(known),

@@ -1,34 +1,34 @@
 //! `<compiler>` and `<option>`: settings for the interpretation of the file.
 
-use super::defaults::{choice, some};
+use super::defaults::{boolean_choice, numbers_with_defaults};
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
     Node, child_elements, element_position, read_number_attribute, read_numbers_attribute,
 };
 use crate::import::imported::Placed;
 
-/// Source of mass properties.
+/// Source from which mass properties of MJCF bodies are taken.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
-    /// `<inertial>`, or the geometry for bodies without it.
+    /// Mass properties from `<inertial>`, or from the geometry of bodies without it.
     Auto,
-    /// Geometry.
+    /// Mass properties from the geometry of all bodies.
     Geometry,
-    /// `<inertial>`.
+    /// Mass properties from `<inertial>` alone.
     Inertial,
 }
 
-/// Settings of a file.
+/// Settings of an MJCF file: its `<compiler>` and `<option>` elements.
 pub(super) struct Settings {
-    /// Whether angles are in degrees.
+    /// Whether angles of the file are in degrees.
     pub(super) degrees: bool,
     /// Axes of the Euler angles in order; capital letters for fixed axes.
     pub(super) euler: [char; 3],
-    /// Whether the presence of a range activates the limit.
+    /// Whether the presence of a range activates the limit of a joint or tendon.
     pub(super) autolimits: bool,
-    /// Source of mass properties.
+    /// Source from which mass properties of bodies are taken.
     pub(super) source: Source,
-    /// First and last geometry group with mass.
+    /// First and last geometry group that contributes mass.
     pub(super) groups: [f64; 2],
     /// Whether inertias that violate the triangle inequality are replaced by that of a ball.
     pub(super) balance: bool,
@@ -36,11 +36,11 @@ pub(super) struct Settings {
     pub(super) least_mass: f64,
     /// Minimum principal moment of inertia of a body, kg·m².
     pub(super) least_inertia: f64,
-    /// Total mass of all bodies, kg.
+    /// Total mass to which all bodies are scaled, kg.
     pub(super) total_mass: Option<f64>,
-    /// Folder of meshes.
+    /// Folder that contains the meshes.
     pub(super) meshes: String,
-    /// Gravitational acceleration, m/s².
+    /// Gravitational acceleration of the file, m/s².
     pub(super) gravity: Placed<[f64; 3]>,
     gravitates: bool,
     /// Nonzero properties of the fluid: density, viscosity and wind.
@@ -61,19 +61,19 @@ pub(super) struct Settings {
     contacts: bool,
     /// Whether actuators are enabled.
     pub(super) actuation: bool,
-    /// Whether inputs are clamped to their ranges.
+    /// Whether actuator inputs are clamped to their ranges.
     pub(super) clamped: bool,
     /// Groups of actuators that are disabled.
     pub(super) disabled_groups: Vec<f64>,
     /// Whether the axes of free bodies are aligned with their principal axes by default.
     pub(super) align_free: bool,
-    /// Whether the folders in file names are ignored.
+    /// Whether the folders in names of mesh files are ignored.
     pub(super) strip_paths: bool,
 }
 
 impl Settings {
-    /// Reads all `<compiler>` and `<option>` elements of the root.
-    pub(super) fn read(root: Node<'_>, cx: &mut Cx<'_>) -> Settings {
+    /// Reads the `<compiler>` and `<option>` elements of an MJCF file.
+    pub(super) fn read_settings(root: Node<'_>, cx: &mut Cx<'_>) -> Settings {
         let mut all = Settings {
             degrees: true,
             euler: ['x', 'y', 'z'],
@@ -103,8 +103,8 @@ impl Settings {
         };
         for node in child_elements(root) {
             match node.tag_name().name() {
-                "compiler" => all.read_compiler(node, cx),
-                "option" => all.read_option(node, cx),
+                "compiler" => all.read_compiler_settings(node, cx),
+                "option" => all.read_option_settings(node, cx),
                 _ => {}
             }
         }
@@ -118,7 +118,7 @@ impl Settings {
         all
     }
 
-    fn read_compiler(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
+    fn read_compiler_settings(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
         let word = |attribute: &str| node.attribute(attribute).map(str::trim);
         let mut unknown = |attribute: &str, expected: &str| {
             let value = node.attribute_node(attribute);
@@ -158,10 +158,10 @@ impl Settings {
                 _ => unknown("inertiafromgeom", "`true`, `false` or `auto`"),
             }
         }
-        self.autolimits = choice(node, "autolimits", cx).unwrap_or(self.autolimits);
-        self.balance = choice(node, "balanceinertia", cx).unwrap_or(self.balance);
-        self.align_free = choice(node, "alignfree", cx).unwrap_or(self.align_free);
-        self.strip_paths = choice(node, "strippath", cx).unwrap_or(self.strip_paths);
+        self.autolimits = boolean_choice(node, "autolimits", cx).unwrap_or(self.autolimits);
+        self.balance = boolean_choice(node, "balanceinertia", cx).unwrap_or(self.balance);
+        self.align_free = boolean_choice(node, "alignfree", cx).unwrap_or(self.align_free);
+        self.strip_paths = boolean_choice(node, "strippath", cx).unwrap_or(self.strip_paths);
         if let Some(groups) = read_numbers_attribute(node, "inertiagrouprange", cx) {
             self.groups = groups.value;
         }
@@ -184,12 +184,12 @@ impl Settings {
         }
     }
 
-    fn read_option(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
+    fn read_option_settings(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
         if let Some(gravity) = read_numbers_attribute(node, "gravity", cx) {
             self.gravity = gravity;
         }
         for which in ["density", "viscosity", "wind"] {
-            let Some(found) = some(node, which, [0.0; 3], cx) else { continue };
+            let Some(found) = numbers_with_defaults(node, which, [0.0; 3], cx) else { continue };
             self.medium.retain(|(known, _)| *known != which);
             if found.value != [0.0; 3] {
                 self.medium.push((which, found));
@@ -214,7 +214,8 @@ impl Settings {
     }
 
     fn read_flag(&mut self, flag: Node<'_>, cx: &mut Cx<'_>) {
-        let mut set = |attribute: &str, to: &mut bool| *to = choice(flag, attribute, cx).unwrap_or(*to);
+        let mut set =
+            |attribute: &str, to: &mut bool| *to = boolean_choice(flag, attribute, cx).unwrap_or(*to);
         // Older versions have one flag for springs and dampers.
         let mut passive = true;
         set("passive", &mut passive);
@@ -233,32 +234,32 @@ impl Settings {
 
     /// Whether passive forces that are not constraint forces act: those of the fluid, and gravity
     /// compensation.
-    pub(super) fn passive(&self) -> bool {
+    pub(super) fn has_passive_forces(&self) -> bool {
         self.springs || self.dampers
     }
 
-    /// Whether dry friction acts.
-    pub(super) fn friction(&self) -> bool {
+    /// Whether dry friction of joints and tendons acts.
+    pub(super) fn has_dry_friction(&self) -> bool {
         self.constraints && self.friction
     }
 
     /// Whether couplings and loop constraints act.
-    pub(super) fn equality(&self) -> bool {
+    pub(super) fn has_equalities(&self) -> bool {
         self.constraints && self.equality
     }
 
     /// Whether ranges of joints and tendons act.
-    pub(super) fn limits(&self) -> bool {
+    pub(super) fn has_limits(&self) -> bool {
         self.constraints && self.limits
     }
 
-    /// Whether contacts act.
-    pub(super) fn contacts(&self) -> bool {
+    /// Whether contacts act in the simulation of the file.
+    pub(super) fn has_contacts(&self) -> bool {
         self.constraints && self.contacts
     }
 
-    /// Converts an angle of the file to radians.
-    pub(super) fn angle(&self, angle: f64) -> f64 {
+    /// Converts an angle of the MJCF file to radians.
+    pub(super) fn angle_in_radians(&self, angle: f64) -> f64 {
         if self.degrees { angle.to_radians() } else { angle }
     }
 }

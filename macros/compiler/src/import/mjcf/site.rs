@@ -3,13 +3,13 @@
 
 use super::activation::OTHER_INPUTS;
 use super::defaults::Element;
-use super::reader::Reader;
-use super::spatial::Spot;
+use super::reader::MjcfReader;
+use super::spatial::BodyFrame;
 use crate::import::context::{Cx, quote_word};
 use crate::import::pose::{Vector, matrix_times_vector};
 use crate::syntax::{BinaryOp, DriveOn, Expr, ExprKind, GROUND, Name, Wrench};
 
-impl<'a> Reader<'a> {
+impl<'a> MjcfReader<'a> {
     /// Returns what an actuator on a site acts on, and whether its force is a torque. Without a reference
     /// site, the length of the actuator is zero (MuJoCo, *Modeling*, "general/refsite").
     pub(super) fn site_transmission(
@@ -21,18 +21,19 @@ impl<'a> Reader<'a> {
     ) -> Option<(DriveOn, bool)> {
         let spot = self.find_site(site, cx)?;
         let usual = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let [x, y, z, a, b, c] = element.some("gear", usual, cx).map_or(usual, |gear| gear.value);
+        let [x, y, z, a, b, c] =
+            element.numbers_with_defaults("gear", usual, cx).map_or(usual, |gear| gear.value);
         let (force, torque) = ([x, y, z], [a, b, c]);
         let turns = force == [0.0; 3];
         let at = &site.place;
-        let Some(other) = element.name("refsite", cx) else {
-            let in_body = |vector| matrix_times_vector(&spot.pose.axes, vector);
-            let (force, torque) = (in_body(force), in_body(torque));
-            let wrench = Wrench { on: spot.expression(at), force, torque, against: None };
+        let Some(other) = element.name_of_attribute("refsite", cx) else {
+            let vector_in_body = |vector| matrix_times_vector(&spot.pose.axes, vector);
+            let (force, torque) = (vector_in_body(force), vector_in_body(torque));
+            let wrench = Wrench { on: spot.position_of_spot(at), force, torque, against: None };
             return Some((DriveOn::Wrench(wrench), turns));
         };
         let against = self.find_site(&other, cx)?;
-        if !self.carries(&against.body, &spot.body) {
+        if !self.is_ancestor_or_same(&against.body, &spot.body) {
             let message = format!(
                 "a `refsite` that does not carry the site {} is not supported",
                 quote_word(&site.text)
@@ -42,13 +43,17 @@ impl<'a> Reader<'a> {
         }
         if servo && torque != [0.0; 3] {
             let message = "a servo on the orientation of a site is not supported";
-            cx.report_error(&element.place("gear", cx), message, |d| d.add_help(OTHER_INPUTS));
+            cx.report_error(&element.place_of_value("gear", cx), message, |d| d.add_help(OTHER_INPUTS));
             return None;
         }
-        let in_body = |vector| matrix_times_vector(&against.pose.axes, vector);
-        let (force, torque) = (in_body(force), in_body(torque));
+        let vector_in_body = |vector| matrix_times_vector(&against.pose.axes, vector);
+        let (force, torque) = (vector_in_body(force), vector_in_body(torque));
         if torque == [0.0; 3] {
-            let path = Expr::binary_operation(BinaryOp::Div, spot.expression(at), against.expression(at));
+            let path = Expr::binary_operation(
+                BinaryOp::Div,
+                spot.position_of_spot(at),
+                against.position_of_spot(at),
+            );
             let path = Expr::function_call_at("r", vec![path], at);
             return Some((
                 DriveOn::Length(Expr::function_call_at(
@@ -59,12 +64,12 @@ impl<'a> Reader<'a> {
                 turns,
             ));
         }
-        let against = Some(against.expression(at));
-        Some((DriveOn::Wrench(Wrench { on: spot.expression(at), force, torque, against }), turns))
+        let against = Some(against.position_of_spot(at));
+        Some((DriveOn::Wrench(Wrench { on: spot.position_of_spot(at), force, torque, against }), turns))
     }
 
     /// Returns true if the bodies are equal or `carrier` is an ancestor of `carried`.
-    fn carries(&self, carrier: &str, carried: &str) -> bool {
+    fn is_ancestor_or_same(&self, carrier: &str, carried: &str) -> bool {
         let mut at = carried;
         while at != carrier {
             let Some(joint) = self.robot.joints.iter().find(|joint| joint.child.text == at) else {
@@ -76,17 +81,18 @@ impl<'a> Reader<'a> {
     }
 }
 
-impl Spot {
+impl BodyFrame {
     /// Returns the expression of a vector whose components are given in the axes of the body.
     pub(super) fn vector_expression(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
-        let axis = |k: usize| {
+        let axis_expression = |k: usize| {
             let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
             let name = Name { text: ["x", "y", "z"][k].to_string(), place: at.clone() };
             Expr { kind: ExprKind::Field(Box::new(body), name), place: at.clone() }
         };
         let terms = (0..3).filter(|k| vector[*k] != 0.0);
-        let terms =
-            terms.map(|k| Expr::binary_operation(BinaryOp::Mul, Expr::number_at(vector[k], at), axis(k)));
+        let terms = terms.map(|k| {
+            Expr::binary_operation(BinaryOp::Mul, Expr::number_at(vector[k], at), axis_expression(k))
+        });
         terms
             .reduce(|a, b| Expr::binary_operation(BinaryOp::Add, a, b))
             .unwrap_or_else(|| Expr::vector_at([0.0; 3], at))

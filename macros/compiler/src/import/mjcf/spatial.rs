@@ -6,8 +6,8 @@
 //! in MuJoCo 4.0.
 
 use super::defaults::Element;
-use super::geometry::dimensions;
-use super::reader::Reader;
+use super::geometry::shape_dimensions;
+use super::reader::MjcfReader;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
@@ -19,78 +19,78 @@ use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// Frame fixed to a body.
+/// Position and axes fixed in a body of an MJCF file.
 #[derive(Clone)]
-pub(super) struct Spot {
+pub(super) struct BodyFrame {
     pub(super) body: String,
     pub(super) pose: Pose,
 }
 
-/// Path of a cable around a surface.
+/// Path of a tendon around a surface.
 #[derive(Clone, Copy, PartialEq)]
 enum CablePath {
-    /// Shortest path around a sphere.
+    /// Shortest path of a tendon around a sphere.
     Ball,
-    /// Shortest path around a cylinder.
+    /// Shortest path of a tendon around a cylinder.
     Shorter,
     /// Path around a cylinder with given direction of rotation about its axis: positive or negative from the
     /// first end to the second.
     Turning(f64),
 }
 
-/// Surface that a segment of a path wraps around.
-struct Around {
-    frame: Spot,
+/// Surface around which a segment of a tendon path is wrapped.
+struct WrappedSurface {
+    frame: BodyFrame,
     radius: f64,
     way: CablePath,
 }
 
-/// Segment of a path between two sites.
-struct Piece {
-    ends: [Spot; 2],
-    around: Option<Around>,
+/// Segment of a tendon path between two sites.
+struct PathSegment {
+    ends: [BodyFrame; 2],
+    around: Option<WrappedSurface>,
     /// Factor of the segment's length: the inverse of the divisor of a preceding pulley, or one.
     share: f64,
 }
 
-/// Error for an unsupported path. It is reported only if something acts on the tendon.
+/// Error for an unsupported tendon path, reported only if something acts on the tendon.
 #[derive(Clone)]
 pub(super) struct Refusal {
     pub(super) place: Place,
     pub(super) message: String,
 }
 
-/// Path of a cable.
+/// Path of a spatial tendon: its segments.
 pub(super) struct Path {
-    pieces: Vec<Piece>,
+    pieces: Vec<PathSegment>,
     place: Place,
 }
 
-/// Pose of each body relative to the world.
+/// Poses of bodies relative to the world, by name of the body.
 pub(super) type Poses = BTreeMap<String, Pose>;
 
-impl<'a> Reader<'a> {
+impl<'a> MjcfReader<'a> {
     /// Reads the path of a tendon. The outer `None` means an error in the file, the inner `Err` an
     /// unsupported path.
     pub(super) fn read_path(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Path, Refusal>> {
-        let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<Spot>, None, 1.0);
+        let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<BodyFrame>, None, 1.0);
         let mut refused = None;
-        check_path(node, cx)?;
+        check_path_length(node, cx)?;
         for child in child_elements(node) {
             match child.tag_name().name() {
                 "site" => {
                     check_attributes(child, &["site"], &[], cx);
                     let next = self.find_site(&read_name_attribute(child, "site", cx)?, cx)?;
                     if let Some(first) = last.replace(next.clone()) {
-                        pieces.push(Piece { ends: [first, next], around: pending.take(), share });
+                        pieces.push(PathSegment { ends: [first, next], around: pending.take(), share });
                     }
                 }
                 "geom" => {
                     check_attributes(child, &["geom"], &["sidesite"], cx);
                     if last.is_none() || pending.is_some() {
-                        return unfinished(child, cx);
+                        return report_unfinished_path(child, cx);
                     }
-                    match self.surface(child, cx)? {
+                    match self.wrapped_surface(child, cx)? {
                         Ok(around) => pending = Some(around),
                         Err(refusal) => refused = refused.or(Some(refusal)),
                     }
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
                 "pulley" => {
                     check_attributes(child, &["divisor"], &[], cx);
                     if pending.is_some() {
-                        return unfinished(child, cx);
+                        return report_unfinished_path(child, cx);
                     }
                     let divisor = read_number_attribute(child, "divisor", cx)?;
                     if divisor.value <= 0.0 {
@@ -121,30 +121,30 @@ impl<'a> Reader<'a> {
             }
         }
         if pending.is_some() {
-            return unfinished(node, cx);
+            return report_unfinished_path(node, cx);
         }
         let mut path = Path { pieces, place: element_position(node, cx) };
         for piece in &mut path.pieces {
-            refused = refused.or(self.choose_side(piece, &path.place));
+            refused = refused.or(self.choose_wrapping_side(piece, &path.place));
         }
         Some(refused.map_or(Ok(path), Err))
     }
 
-    /// Finds a site by its name, or reports that it is unknown.
-    pub(super) fn find_site(&self, site: &Name, cx: &mut Cx<'_>) -> Option<Spot> {
+    /// Finds a site of the MJCF file by its name, or reports that the name is unknown.
+    pub(super) fn find_site(&self, site: &Name, cx: &mut Cx<'_>) -> Option<BodyFrame> {
         let found = self.poses_of_sites.get(&site.text);
         if found.is_none() {
             let known = self.poses_of_sites.keys().map(String::as_str);
             let message = format!("unknown site {}", quote_word(&site.text));
             cx.report_error(&site.place, message, |d| d.suggest_name(&site.text, known));
         }
-        found.map(|(body, pose)| Spot { body: body.clone(), pose: *pose })
+        found.map(|(body, pose)| BodyFrame { body: body.clone(), pose: *pose })
     }
 
     /// Returns the surface that a segment of a path wraps around. For a cylinder with a `sidesite`,
     /// `Way::Turning` temporarily contains the polar angle of that site; `choose_side` replaces it by the
     /// direction.
-    fn surface(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Around, Refusal>> {
+    fn wrapped_surface(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<WrappedSurface, Refusal>> {
         let said = read_name_attribute(node, "geom", cx)?;
         let Some((body, shape, outer)) = self.named_shapes.get(&said.text) else {
             let known = self.named_shapes.keys().map(String::as_str);
@@ -152,7 +152,7 @@ impl<'a> Reader<'a> {
             cx.report_error(&said.place, message, |d| d.suggest_name(&said.text, known));
             return None;
         };
-        let kind = shape.text("type").unwrap_or("sphere");
+        let kind = shape.trimmed_text("type").unwrap_or("sphere");
         if !["sphere", "cylinder"].contains(&kind) {
             let message = format!(
                 "a tendon wraps around spheres and cylinders, but {} is neither",
@@ -161,58 +161,62 @@ impl<'a> Reader<'a> {
             cx.report_error(&said.place, message, |d| d);
             return None;
         }
-        let (pose, [radius, ..]) = dimensions(kind, shape, &self.settings, cx)?;
-        let frame = Spot { body: body.clone(), pose: outer.compose_with(&pose) };
+        let (pose, [radius, ..]) = shape_dimensions(kind, shape, &self.settings, cx)?;
+        let frame = BodyFrame { body: body.clone(), pose: outer.compose_with(&pose) };
         let Some(side) =
             node.has_attribute("sidesite").then(|| read_name_attribute(node, "sidesite", cx)).flatten()
         else {
             let way = if kind == "sphere" { CablePath::Ball } else { CablePath::Shorter };
-            return Some(Ok(Around { frame, radius, way }));
+            return Some(Ok(WrappedSurface { frame, radius, way }));
         };
         let spot = self.find_site(&side, cx)?;
-        let refusal = |message: String| Some(Err(Refusal { place: side.place.clone(), message }));
+        let refusal_at_side_site =
+            |message: String| Some(Err(Refusal { place: side.place.clone(), message }));
         if kind == "sphere" {
-            return refusal(format!(
+            return refusal_at_side_site(format!(
                 "the side on which a tendon passes the sphere {}",
                 quote_word(&said.text)
             ));
         }
-        let [x, y, z] = self.seen_from(&frame, &spot);
+        let [x, y, z] = self.position_relative_to(&frame, &spot);
         if length([x, y, z]) < radius {
-            return refusal(format!("a tendon that runs inside of the cylinder {}", quote_word(&said.text)));
+            return refusal_at_side_site(format!(
+                "a tendon that runs inside of the cylinder {}",
+                quote_word(&said.text)
+            ));
         }
         // Polar angle of the side, until the ends of the segment are known.
-        Some(Ok(Around { frame, radius, way: CablePath::Turning(libm::atan2(y, x)) }))
+        Some(Ok(WrappedSurface { frame, radius, way: CablePath::Turning(libm::atan2(y, x)) }))
     }
 
     /// Returns the position of a spot relative to a frame, in the configuration of the file.
-    fn seen_from(&self, frame: &Spot, spot: &Spot) -> Vector {
-        seen(&self.poses, frame, spot)
+    fn position_relative_to(&self, frame: &BodyFrame, spot: &BodyFrame) -> Vector {
+        position_in_frame(&self.poses, frame, spot)
     }
 
     /// Determines the direction in which a segment passes a cylinder with a `sidesite`: the direction of
     /// rotation of the path through that site.
-    fn choose_side(&self, piece: &mut Piece, place: &Place) -> Option<Refusal> {
-        let Some(Around { frame, radius, way: CablePath::Turning(side) }) = &mut piece.around else {
+    fn choose_wrapping_side(&self, piece: &mut PathSegment, place: &Place) -> Option<Refusal> {
+        let Some(WrappedSurface { frame, radius, way: CablePath::Turning(side) }) = &mut piece.around else {
             return None;
         };
-        let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));
+        let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.position_relative_to(frame, end));
         let [far_a, far_b] = [a, b].map(|[x, y, _]| libm::hypot(x, y));
         if far_a < *radius || far_b < *radius {
             let message = "a tendon that begins inside of a cylinder in the pose of the file".to_string();
             return Some(Refusal { place: place.clone(), message });
         }
         let angle = |[x, y, _]: Vector| libm::atan2(y, x);
-        let shortest = |angle: f64| libm::atan2(libm::sin(angle), libm::cos(angle));
-        let winding = shortest(*side - angle(a)) + shortest(angle(b) - *side);
+        let wrapped_angle = |angle: f64| libm::atan2(libm::sin(angle), libm::cos(angle));
+        let winding = wrapped_angle(*side - angle(a)) + wrapped_angle(angle(b) - *side);
         *side = if winding >= 0.0 { 1.0 } else { -1.0 };
         None
     }
 
     /// Records the named shapes of a body, and shapes with an individual fluid model.
-    pub(super) fn note_shapes(&mut self, body: &str, shapes: &[(Element<'a>, Pose)], cx: &Cx<'_>) {
+    pub(super) fn record_shapes(&mut self, body: &str, shapes: &[(Element<'a>, Pose)], cx: &Cx<'_>) {
         for (shape, outer) in shapes {
-            self.note_shaped(shape, cx);
+            self.note_fluid_shape(shape, cx);
             if let Some(name) = shape.node.attribute("name") {
                 self.named_shapes.insert(name.to_string(), (body.to_string(), shape.clone(), *outer));
             }
@@ -221,22 +225,25 @@ impl<'a> Reader<'a> {
 }
 
 /// Returns the position of a spot relative to a frame for given poses of the bodies.
-fn seen(poses: &Poses, frame: &Spot, spot: &Spot) -> Vector {
-    let world = |spot: &Spot| poses.get(&spot.body).map_or(spot.pose, |body| body.compose_with(&spot.pose));
-    world(frame).inverse_pose().compose_with(&world(spot)).at
+fn position_in_frame(poses: &Poses, frame: &BodyFrame, spot: &BodyFrame) -> Vector {
+    let world_pose =
+        |spot: &BodyFrame| poses.get(&spot.body).map_or(spot.pose, |body| body.compose_with(&spot.pose));
+    world_pose(frame).inverse_pose().compose_with(&world_pose(spot)).at
 }
 
-/// Reports what adds no length to a path, as MuJoCo does: sites without a neighbour on their part of the
-/// path, pulleys that no site follows, and a path without elements.
-fn check_path(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
+/// Reports elements that add no length to a tendon path, as MuJoCo does: sites without a neighbour, pulleys
+/// without a following site, and paths without elements.
+fn check_path_length(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
     let parts: Vec<Node<'_>> = child_elements(node).collect();
-    let is_end = |part: Option<&Node<'_>>| part.is_none_or(|part| part.tag_name().name() == "pulley");
-    let is_alone = |k: &usize| match parts[*k].tag_name().name() {
-        "site" => is_end(k.checked_sub(1).and_then(|k| parts.get(k))) && is_end(parts.get(k + 1)),
-        "pulley" => is_end(parts.get(k + 1)),
+    let is_end_of_path = |part: Option<&Node<'_>>| part.is_none_or(|part| part.tag_name().name() == "pulley");
+    let is_isolated_site = |k: &usize| match parts[*k].tag_name().name() {
+        "site" => {
+            is_end_of_path(k.checked_sub(1).and_then(|k| parts.get(k))) && is_end_of_path(parts.get(k + 1))
+        }
+        "pulley" => is_end_of_path(parts.get(k + 1)),
         _ => false,
     };
-    let found = (0..parts.len()).find(is_alone).map(|k| parts[k]);
+    let found = (0..parts.len()).find(is_isolated_site).map(|k| parts[k]);
     let Some(found) = found.or(parts.is_empty().then_some(node)) else { return Some(()) };
     let message = format!("{} adds nothing to the length of the tendon", quoted_tag(found));
     cx.report_error(&element_position(found, cx), message, |d| {
@@ -246,7 +253,7 @@ fn check_path(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
 }
 
 /// Reports a surface in a path that is not between two sites.
-fn unfinished<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
+fn report_unfinished_path<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
     cx.report_error(&element_position(node, cx), "a tendon runs around a shape between two sites", |d| {
         d.add_help("write `<site/>`, `<geom/>`, `<site/>`")
     });
@@ -254,84 +261,93 @@ fn unfinished<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
 }
 
 impl Path {
-    /// Returns the length of the path for given poses of the bodies.
+    /// Returns the length of the tendon path for these poses of the bodies.
     pub(super) fn length(&self, poses: &Poses) -> f64 {
         self.pieces.iter().map(|piece| piece.share * piece.length(poses)).sum()
     }
 
-    /// Returns the expression of the path's length.
-    pub(super) fn expression(&self) -> Expr {
+    /// Returns the expression of the length of a tendon path.
+    pub(super) fn path_length(&self) -> Expr {
         let at = &self.place;
         let sum = self.pieces.iter().map(|piece| {
-            let whole = piece.expression(at);
-            let share = || Expr::number_at(piece.share, at);
-            if piece.share == 1.0 { whole } else { Expr::binary_operation(BinaryOp::Mul, share(), whole) }
+            let whole = piece.length_of_piece(at);
+            let share_literal = || Expr::number_at(piece.share, at);
+            if piece.share == 1.0 {
+                whole
+            } else {
+                Expr::binary_operation(BinaryOp::Mul, share_literal(), whole)
+            }
         });
         sum.reduce(|a, b| Expr::binary_operation(BinaryOp::Add, a, b))
             .unwrap_or_else(|| Expr::number_at(0.0, at))
     }
 }
 
-impl Piece {
+impl PathSegment {
     fn length(&self, poses: &Poses) -> f64 {
         let [a, b] = [&self.ends[0], &self.ends[1]];
         match &self.around {
-            None => length(seen(poses, a, b)),
-            Some(around) => around.length([a, b].map(|end| seen(poses, &around.frame, end))),
+            None => length(position_in_frame(poses, a, b)),
+            Some(around) => around.length([a, b].map(|end| position_in_frame(poses, &around.frame, end))),
         }
     }
 
-    fn expression(&self, at: &Place) -> Expr {
-        let [a, b] = [&self.ends[0], &self.ends[1]].map(|end| end.expression(at));
-        let ends = || Expr::binary_operation(BinaryOp::Div, a.clone(), b.clone());
+    fn length_of_piece(&self, at: &Place) -> Expr {
+        let [a, b] = [&self.ends[0], &self.ends[1]].map(|end| end.position_of_spot(at));
+        let relative_ends = || Expr::binary_operation(BinaryOp::Div, a.clone(), b.clone());
         let Some(around) = &self.around else {
-            return Expr::function_call_at("norm", vec![Expr::function_call_at("r", vec![ends()], at)], at);
+            return Expr::function_call_at(
+                "norm",
+                vec![Expr::function_call_at("r", vec![relative_ends()], at)],
+                at,
+            );
         };
-        let cable = |word: &str, mut arguments: Vec<Expr>| {
+        let cable_call = |word: &str, mut arguments: Vec<Expr>| {
             arguments.insert(0, Expr::number_at(around.radius, at));
-            let surface = Expr::method_call(around.frame.expression(at), word, arguments);
-            Expr::function_call_at("cable", vec![ends(), surface], at)
+            let surface = Expr::method_call(around.frame.position_of_spot(at), word, arguments);
+            Expr::function_call_at("cable", vec![relative_ends(), surface], at)
         };
-        let axis =
+        let axis_vector =
             |sign: f64| Expr::vector_at(matrix_times_vector(&around.frame.pose.axes, [0.0, 0.0, sign]), at);
         match around.way {
-            CablePath::Ball => cable("sphere", Vec::new()),
-            CablePath::Turning(sign) => cable("cylinder", vec![axis(sign)]),
+            CablePath::Ball => cable_call("sphere", Vec::new()),
+            CablePath::Turning(sign) => cable_call("cylinder", vec![axis_vector(sign)]),
             CablePath::Shorter => Expr::function_call_at(
                 "min",
-                [1.0, -1.0].map(|sign| cable("cylinder", vec![axis(sign)])).into(),
+                [1.0, -1.0].map(|sign| cable_call("cylinder", vec![axis_vector(sign)])).into(),
                 at,
             ),
         }
     }
 }
 
-impl Around {
+impl WrappedSurface {
     /// Returns the length of a taut cable between two points in the axes of this frame. The numeric
     /// counterpart of `Scope::cable`.
     fn length(&self, [a, b]: [Vector; 2]) -> f64 {
-        let flat = |[x, y, _]: Vector| [x, y, 0.0];
-        let round = |a: Vector, b: Vector, angle: f64| {
+        let planar_components = |[x, y, _]: Vector| [x, y, 0.0];
+        let length_around = |a: Vector, b: Vector, angle: f64| {
             let tangents = [a, b].map(|p| (dot(p, p) - self.radius * self.radius).max(0.0).sqrt());
             let touched = tangents.iter().fold(angle, |angle, t| angle - libm::atan2(*t, self.radius));
             let straight = length(add(a, scale_vector(b, -1.0)));
             if touched > 0.0 { tangents[0] + tangents[1] + self.radius * touched } else { straight }
         };
-        let turning = |sign: f64| {
-            let angle = libm::atan2(-sign * cross(a, b)[2], -dot(flat(a), flat(b))) + PI;
-            libm::hypot(round(flat(a), flat(b), angle), a[2] - b[2])
+        let length_of_turn = |sign: f64| {
+            let angle =
+                libm::atan2(-sign * cross(a, b)[2], -dot(planar_components(a), planar_components(b))) + PI;
+            libm::hypot(length_around(planar_components(a), planar_components(b), angle), a[2] - b[2])
         };
         match self.way {
-            CablePath::Ball => round(a, b, libm::atan2(length(cross(a, b)), dot(a, b))),
-            CablePath::Turning(sign) => turning(sign),
-            CablePath::Shorter => turning(1.0).min(turning(-1.0)),
+            CablePath::Ball => length_around(a, b, libm::atan2(length(cross(a, b)), dot(a, b))),
+            CablePath::Turning(sign) => length_of_turn(sign),
+            CablePath::Shorter => length_of_turn(1.0).min(length_of_turn(-1.0)),
         }
     }
 }
 
-impl Spot {
+impl BodyFrame {
     /// Returns the expression `body.at(vector)`.
-    pub(super) fn expression(&self, at: &Place) -> Expr {
+    pub(super) fn position_of_spot(&self, at: &Place) -> Expr {
         let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
         if self.pose.at == [0.0; 3] {
             return body;

@@ -1,8 +1,8 @@
 //! `<tendon>`: fixed tendons are weighted sums of coordinates, spatial tendons are lengths.
 
-use super::defaults::{Element, some};
-use super::joint::{IGNORE_PASSIVE, refuse_yield};
-use super::reader::Reader;
+use super::defaults::{Element, numbers_with_defaults};
+use super::joint::{IGNORE_PASSIVE, report_spring_yield};
+use super::reader::MjcfReader;
 use super::spatial::Refusal;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
@@ -13,14 +13,14 @@ use crate::import::robot::has_coordinate;
 use crate::syntax::{Drive, DriveLaw, DriveOn, Name};
 use std::collections::BTreeSet;
 
-/// Tendon. An unsupported spatial tendon is an error only if something acts on it.
+/// Tendon of an MJCF file. An unsupported spatial tendon is an error only if something acts on it.
 pub(super) struct Tendon {
     pub(super) name: Name,
     path: Result<DriveOn, Refusal>,
 }
 
 impl Tendon {
-    fn find<'t>(name: &Name, tendons: &'t [Tendon], cx: &mut Cx<'_>) -> Option<&'t Tendon> {
+    fn find_tendon<'t>(name: &Name, tendons: &'t [Tendon], cx: &mut Cx<'_>) -> Option<&'t Tendon> {
         let found = tendons.iter().find(|known| known.name.text == name.text);
         if found.is_none() {
             let known = tendons.iter().map(|known| known.name.text.as_str());
@@ -32,13 +32,13 @@ impl Tendon {
 
     /// Returns the joints and weights of a coupled tendon. Reports a spatial tendon, for which couplings are
     /// not supported.
-    pub(super) fn terms_of(
+    pub(super) fn terms_of_tendon(
         name: &Name,
         tendons: &[Tendon],
         help: &'static str,
         cx: &mut Cx<'_>,
     ) -> Option<Vec<(Name, f64)>> {
-        match &Tendon::find(name, tendons, cx)?.path {
+        match &Tendon::find_tendon(name, tendons, cx)?.path {
             Ok(DriveOn::Sum(terms)) => Some(terms.clone()),
             _ => {
                 let message = format!("tendon {} is spatial and cannot be coupled", quote_word(&name.text));
@@ -55,12 +55,12 @@ impl Tendon {
         help: &'static str,
         cx: &mut Cx<'_>,
     ) -> Option<DriveOn> {
-        taken_over(&Tendon::find(name, tendons, cx)?.path, help, cx).cloned()
+        target_or_refusal(&Tendon::find_tendon(name, tendons, cx)?.path, help, cx).cloned()
     }
 }
 
 /// Returns the coordinate or length that forces on a tendon act on, or reports an unsupported path.
-fn taken_over<'t>(
+fn target_or_refusal<'t>(
     path: &'t Result<DriveOn, Refusal>,
     help: &'static str,
     cx: &mut Cx<'_>,
@@ -76,72 +76,72 @@ fn taken_over<'t>(
     }
 }
 
-impl<'a> Reader<'a> {
-    /// Reads all tendons with their springs and dampers.
-    pub(super) fn tendons(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Vec<Tendon> {
+impl<'a> MjcfReader<'a> {
+    /// Reads all tendons of an MJCF file with their springs and dampers.
+    pub(super) fn read_tendons(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Vec<Tendon> {
         let groups = child_elements(root).filter(|node| node.tag_name().name() == "tendon");
         let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
-        nodes.into_iter().filter_map(|node| self.tendon(node, cx)).collect()
+        nodes.into_iter().filter_map(|node| self.read_tendon(node, cx)).collect()
     }
 
-    fn tendon(&mut self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Tendon> {
+    fn read_tendon(&mut self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Tendon> {
         let fixed = match node.tag_name().name() {
             "fixed" => true,
             "spatial" => false,
             // Unknown elements are reported by the schema check.
             _ => return None,
         };
-        let element = self.defaults.element(node, &["tendon"], 0, cx);
+        let element = self.defaults.element_with_defaults(node, &["tendon"], 0, cx);
         let said = node.has_attribute("name").then(|| read_name_attribute(node, "name", cx)).flatten();
         let named =
             said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: element_position(node, cx) });
         let (path, rest) = if fixed {
-            let terms = self.terms(node, cx);
+            let terms = self.read_terms(node, cx);
             let rest_position = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
             let rest = terms.iter().map(|(joint, weight)| weight * rest_position(joint)).sum();
             (Ok(DriveOn::Sum(terms)), rest)
         } else {
             let path = self.read_path(node, cx)?;
             let rest = path.as_ref().map_or(0.0, |path| path.length(&self.poses_at_rest()));
-            (path.map(|path| DriveOn::Length(path.expression())), rest)
+            (path.map(|path| DriveOn::Length(path.path_length())), rest)
         };
         for (limited, range, what) in
             [("limited", "range", "limits"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
         {
-            if self.range(&element, limited, range, cx).is_some() {
+            if self.read_range(&element, limited, range, cx).is_some() {
                 self.left_out.push(format!("the {what} of the tendon `{}`", named.text));
             }
         }
         let mut laws = Vec::new();
-        if let Some(found) = element.nonzero("armature", cx) {
+        if let Some(found) = element.nonzero_number("armature", cx) {
             if found.value < 0.0 {
                 cx.report_error(&found.place, format!("negative armature `{}`", found.value), |d| d);
             }
             laws.push((DriveLaw::Inerter(found.value), "write `armature=\"0\"` into the tendon"));
         }
         if self.springs {
-            refuse_yield(&element, cx);
-            let stiffness = element.polynomial("stiffness", cx);
-            laws.extend(stiffness.map(|k| (spring(k.value, &element, rest, cx), IGNORE_PASSIVE)));
+            report_spring_yield(&element, cx);
+            let stiffness = element.polynomial_coefficients("stiffness", cx);
+            laws.extend(stiffness.map(|k| (read_tendon_spring(k.value, &element, rest, cx), IGNORE_PASSIVE)));
         }
         if self.dampers {
-            let damping = element.polynomial("damping", cx);
+            let damping = element.polynomial_coefficients("damping", cx);
             laws.extend(damping.map(|found| (DriveLaw::damper(found.value), IGNORE_PASSIVE)));
         }
         if self.friction {
-            let loss = element.nonzero("frictionloss", cx);
+            let loss = element.nonzero_number("frictionloss", cx);
             laws.extend(loss.map(|found| (DriveLaw::Friction(found.value), IGNORE_PASSIVE)));
         }
         if let Some((_, help)) = laws.first()
-            && let Some(on) = taken_over(&path, help, cx)
+            && let Some(on) = target_or_refusal(&path, help, cx)
         {
-            let drive = |law| Drive { name: named.clone(), on: on.clone(), law };
-            self.robot.drives.extend(laws.iter().map(|(law, _)| drive(law.clone())));
+            let drive_on_tendon = |law| Drive { name: named.clone(), on: on.clone(), law };
+            self.robot.drives.extend(laws.iter().map(|(law, _)| drive_on_tendon(law.clone())));
         }
         Some(Tendon { name: named, path })
     }
 
-    fn terms(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Vec<(Name, f64)> {
+    fn read_terms(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Vec<(Name, f64)> {
         let (mut terms, mut known) = (Vec::new(), BTreeSet::new());
         if child_elements(node).next().is_none() {
             let message = format!("{} without a joint", quoted_tag(node));
@@ -152,7 +152,7 @@ impl<'a> Reader<'a> {
         for child in child_elements(node) {
             check_attributes(child, &["joint", "coef"], &[], cx);
             let joint = read_name_attribute(child, "joint", cx)
-                .filter(|joint| self.check_joint(joint, "pull on", cx));
+                .filter(|joint| self.check_coupled_joint(joint, "pull on", cx));
             if let Some(joint) = &joint
                 && !known.insert(joint.text.clone())
             {
@@ -165,8 +165,9 @@ impl<'a> Reader<'a> {
         terms
     }
 
-    /// Returns true for a joint with one coordinate; reports other and unknown joints.
-    pub(super) fn check_joint(&self, joint: &Name, verb: &str, cx: &mut Cx<'_>) -> bool {
+    /// Returns true for a joint with exactly one coordinate; reports unknown joints and joints of other
+    /// types.
+    pub(super) fn check_coupled_joint(&self, joint: &Name, verb: &str, cx: &mut Cx<'_>) -> bool {
         let Some(found) = self.robot.joints.iter().find(|known| known.name.text == joint.text) else {
             let known = self.robot.joints.iter().filter(|joint| has_coordinate(joint.kind));
             let known: Vec<&str> = known.map(|joint| joint.name.text.as_str()).collect();
@@ -190,11 +191,12 @@ impl<'a> Reader<'a> {
 /// Reads the spring of a tendon. The attribute `springlength` specifies its free length or a range of free
 /// lengths; −1 means that neither is specified. In this case the free length is that in the configuration in
 /// which all joint springs are relaxed.
-fn spring(stiffness: [f64; 3], element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
+fn read_tendon_spring(stiffness: [f64; 3], element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
     const NONE: f64 = -1.0;
     // A single length is the range of two equal ones, even if the defaults have two different ones.
-    let found =
-        element.node_with("springlength").and_then(|node| some(node, "springlength", [f64::NAN; 2], cx));
+    let found = element
+        .node_with_attribute("springlength")
+        .and_then(|node| numbers_with_defaults(node, "springlength", [f64::NAN; 2], cx));
     let [low, high] = found.as_ref().map_or([NONE; 2], |found| found.value);
     let high = if high.is_nan() { low } else { high };
     if let Some(found) = found.filter(|_| high < low) {

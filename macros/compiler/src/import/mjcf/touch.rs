@@ -1,4 +1,4 @@
-//! Contact parameters of shapes → contacts with planes.
+//! Conversion of MJCF contact parameters of shapes to contacts with planes.
 
 use super::defaults::Element;
 use crate::diag::Place;
@@ -7,9 +7,9 @@ use crate::import::pose::{Pose, matrix_times_vector};
 use crate::syntax::{Contact, Expr, ExprKind, GROUND, Key, Name, WrittenArguments};
 use std::cmp::Ordering;
 
-/// Contact parameters of a shape.
+/// MJCF contact parameters of a shape.
 pub(super) struct Law {
-    /// Bit masks `contype` and `conaffinity`.
+    /// Bit masks `contype` and `conaffinity`, which decide the shapes that collide.
     bits: [u32; 2],
     priority: f64,
     /// Dimension of the contact: 1 without friction, 3 with sliding friction, 4 with torsional friction, 6
@@ -19,17 +19,17 @@ pub(super) struct Law {
     friction: [f64; 3],
 }
 
-/// Plane of the world.
+/// Plane of the MJCF world, with which shapes collide.
 pub(super) struct Plane {
     pub(super) name: String,
     pub(super) pose: Pose,
     pub(super) law: Law,
 }
 
-/// Collision shape of a body.
+/// Collision shape of an MJCF body.
 pub(super) struct CollisionShape {
     pub(super) link: usize,
-    /// Index among the shapes of the body.
+    /// Index of the shape among the shapes of its body.
     pub(super) number: usize,
     pub(super) name: Option<String>,
     pub(super) law: Law,
@@ -39,9 +39,9 @@ pub(super) struct CollisionShape {
 impl Law {
     /// Reads the contact parameters of a shape with their defaults. Reports contact forces that are not
     /// supported.
-    pub(super) fn read(shape: &Element<'_>, cx: &mut Cx<'_>) -> Law {
+    pub(super) fn read_contact_law(shape: &Element<'_>, cx: &mut Cx<'_>) -> Law {
         for which in ["adhesion", "surfacevel"] {
-            let found = shape.some(which, [0.0; 6], cx);
+            let found = shape.numbers_with_defaults(which, [0.0; 6], cx);
             if let Some(found) = found.filter(|found| found.value != [0.0; 6]) {
                 cx.report_error(
                     &found.place,
@@ -50,23 +50,24 @@ impl Law {
                 );
             }
         }
-        let mut of =
-            |attribute: &str, usual: f64| shape.number(attribute, cx).map_or(usual, |found| found.value);
+        let mut of = |attribute: &str, usual: f64| {
+            shape.finite_number(attribute, cx).map_or(usual, |found| found.value)
+        };
         let (bits, priority) =
             ([of("contype", 1.0) as u32, of("conaffinity", 1.0) as u32], of("priority", 0.0));
         let dimensions = of("condim", 3.0);
         let usual = [1.0, 0.005, 0.0001];
-        let friction = shape.some("friction", usual, cx).map_or(usual, |found| found.value);
+        let friction = shape.numbers_with_defaults("friction", usual, cx).map_or(usual, |found| found.value);
         Law { bits, priority, dimensions, friction }
     }
 
-    /// Returns true if the masks permit no contacts.
-    pub(super) fn touches_nothing(&self) -> bool {
+    /// Returns true if the bit masks of the shape permit no contacts.
+    pub(super) fn has_no_contacts(&self) -> bool {
         self.bits == [0; 2]
     }
 
     /// Returns true if the masks of two shapes permit contact.
-    pub(super) fn meets(&self, other: &Law) -> bool {
+    pub(super) fn may_touch(&self, other: &Law) -> bool {
         self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
     }
 
@@ -88,22 +89,27 @@ impl Law {
 }
 
 impl CollisionShape {
-    /// Returns the contact of the shape with a plane.
-    pub(super) fn contact(&self, name: String, link: &str, plane: &Plane) -> Contact {
+    /// Returns the contact between the shape and a plane of the world.
+    pub(super) fn contact_with_plane(&self, name: String, link: &str, plane: &Plane) -> Contact {
         let at = &self.place;
-        let as_name = |text: &str| Name { text: text.to_string(), place: at.clone() };
-        let body = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-        let method = |of: Expr, word: &str, argument: Expr| Expr::method_call(of, word, vec![argument]);
+        let placed_name = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        let name_expression = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
+        let method_expression =
+            |of: Expr, word: &str, argument: Expr| Expr::method_call(of, word, vec![argument]);
         let normal = Expr::vector_at(matrix_times_vector(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
-        let point = method(body(GROUND), "at", Expr::vector_at(plane.pose.at, at));
-        let coefficient = |number: f64| (number != 0.0).then(|| Expr::number_at(number, at));
+        let point = method_expression(name_expression(GROUND), "at", Expr::vector_at(plane.pose.at, at));
+        let nonzero_coefficient = |number: f64| (number != 0.0).then(|| Expr::number_at(number, at));
         let keys = [Key::Friction, Key::TorsionalFriction, Key::RollingFriction];
-        let values = self.law.friction_with(&plane.law).map(coefficient);
+        let values = self.law.friction_with(&plane.law).map(nonzero_coefficient);
         let given = keys.into_iter().zip(values).filter_map(|(key, value)| Some((key, value?)));
         Contact {
-            name: as_name(&name),
-            first: method(body(link), "collision", Expr::number_at(self.number as f64, at)),
-            second: method(point, "plane", normal),
+            name: placed_name(&name),
+            first: method_expression(
+                name_expression(link),
+                "collision",
+                Expr::number_at(self.number as f64, at),
+            ),
+            second: method_expression(point, "plane", normal),
             arguments: WrittenArguments(given.collect()),
             of_file: true,
         }

@@ -2,42 +2,44 @@
 
 use super::body::Shaped;
 use super::defaults::Element;
-use super::reader::{Reader, origin};
+use super::reader::{MjcfReader, origin_of_pose};
 use crate::import::context::Cx;
 use crate::import::element::element_position;
 use crate::import::pose::Pose;
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Shape};
 
-impl<'a> Reader<'a> {
+impl<'a> MjcfReader<'a> {
     /// Adds the shapes of a link that are drawn: shapes without contact, which files contain for this
     /// purpose, or else all shapes.
-    pub(super) fn add_visuals(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+    pub(super) fn add_visual_shapes(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         if !self.options.visuals {
             return;
         }
         let mut touches = |shape: &Element<'a>| {
-            let mut bits = |attribute: &str| shape.number(attribute, cx).map_or(1.0, |bits| bits.value);
+            let mut bits =
+                |attribute: &str| shape.finite_number(attribute, cx).map_or(1.0, |bits| bits.value);
             bits("contype") != 0.0 || bits("conaffinity") != 0.0
         };
         let seen: Vec<&Shaped<'a>> = shapes.iter().filter(|(shape, _)| !touches(shape)).collect();
         let seen = if seen.is_empty() { shapes.iter().collect() } else { seen };
         for (shape, outer) in seen {
-            let Some((kind, mesh, pose)) = self.visual(shape, cx) else { continue };
+            let Some((kind, mesh, pose)) = self.visual_shape(shape, cx) else { continue };
             let at = element_position(shape.node, cx);
-            let part = FileVisual { origin: origin(&outer.compose_with(&pose), &at), shape: kind, mesh };
+            let part =
+                FileVisual { origin: origin_of_pose(&outer.compose_with(&pose), &at), shape: kind, mesh };
             self.robot.visuals.push((link, part));
         }
     }
 
-    fn visual(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(Shape, Option<Mesh>, Pose)> {
-        match shape.text("type").unwrap_or("sphere") {
+    fn visual_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(Shape, Option<Mesh>, Pose)> {
+        match shape.trimmed_text("type").unwrap_or("sphere") {
             "mesh" => {
                 let pose = super::frame::read_pose(shape, &self.settings, cx);
-                Some((Shape::Mesh, Some(self.meshes.drawn(shape, cx)?), pose))
+                Some((Shape::Mesh, Some(self.meshes.mesh_to_draw(shape, cx)?), pose))
             }
             "plane" | "hfield" | "sdf" => None,
-            _ => self.collision(shape, cx).map(|(kind, pose)| (kind, None, pose)),
+            _ => self.collision_shape(shape, cx).map(|(kind, pose)| (kind, None, pose)),
         }
     }
 }

@@ -1,26 +1,26 @@
-//! Attributes of `<dcmotor>` → parameters in MuJoCo's order.
+//! Conversion of `<dcmotor>` attributes to actuator parameters in MuJoCo's order.
 
-use super::defaults::some;
+use super::defaults::numbers_with_defaults;
 use crate::import::context::Cx;
 use crate::import::element::{Node, read_number_attribute};
 
-/// Parameters of dynamics, gain and bias in MuJoCo's order.
+/// Parameters of an actuator's dynamics, gain and bias in MuJoCo's order.
 type Parameters = [[f64; 10]; 3];
 
-/// Returns the parameters of a motor. `usual` are those of its defaults.
-pub(super) fn parameters(usual: Parameters, node: Node<'_>, cx: &mut Cx<'_>) -> Parameters {
+/// Returns the parameters of a DC motor. `usual` are the parameters of its defaults.
+pub(super) fn motor_parameters(usual: Parameters, node: Node<'_>, cx: &mut Cx<'_>) -> Parameters {
     let [mut dynprm, mut gain, mut bias] = usual;
     macro_rules! read {
         ($attribute:literal, $usual:expr) => {{
             let usual = $usual;
-            some(node, $attribute, usual, cx).map_or(usual, |found| found.value)
+            numbers_with_defaults(node, $attribute, usual, cx).map_or(usual, |found| found.value)
         }};
     }
     let [torque, emf] = read!("motorconst", [gain[1], 0.0]);
     let resistance = read_number_attribute(node, "resistance", cx).map_or(gain[0], |found| found.value);
     let nominal = read!("nominal", [0.0; 3]);
     let friction = read!("damping", [0.0; 3])[0];
-    [gain[0], gain[1]] = winding([torque, emf], resistance, nominal, friction);
+    [gain[0], gain[1]] = winding_constants([torque, emf], resistance, nominal, friction);
     let controller = read!("controller", [gain[4], gain[5], gain[6], dynprm[7], dynprm[8], gain[7]]);
     [gain[4], gain[5], gain[6], dynprm[7], dynprm[8], gain[7]] = controller;
     let [_, _, current_rate] = read!("saturation", [0.0, 0.0, dynprm[1]]);
@@ -42,7 +42,12 @@ pub(super) fn parameters(usual: Parameters, node: Node<'_>, cx: &mut Cx<'_>) -> 
 
 /// Returns resistance and motor constant from those of the file, nominal voltage, stall torque and
 /// no-load speed.
-fn winding([torque, mut emf]: [f64; 2], resistance: f64, nominal: [f64; 3], friction: f64) -> [f64; 2] {
+fn winding_constants(
+    [torque, mut emf]: [f64; 2],
+    resistance: f64,
+    nominal: [f64; 3],
+    friction: f64,
+) -> [f64; 2] {
     let [voltage, stall, speed] = nominal;
     if voltage > 0.0 && emf <= 0.0 && speed > 0.0 {
         let ideal = voltage / speed;

@@ -16,7 +16,7 @@ use crate::syntax::{
 };
 
 /// Assembles the mechanism. Each body is placed in the list like the joint whose child it is.
-pub(in crate::import) fn assemble(
+pub(in crate::import) fn assemble_mechanism(
     robot: Robot,
     order: &Order,
     motions: Vec<Motion>,
@@ -38,8 +38,8 @@ pub(in crate::import) fn assemble(
         robot.joints.into_iter().zip(motions).map(Some).collect();
     let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
     let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
-    let drives = drives::resolve(robot.drives, &given);
-    let constraints = couplings::resolve(robot.constraints, &given, cx);
+    let drives = drives::resolve_drives(robot.drives, &given);
+    let constraints = couplings::resolve_constraints(robot.constraints, &given, cx);
     let (mut limits, stops) = (Vec::new(), options.limits == LimitOption::Stops);
     let mut left_out = robot.left_out;
     for (joint, child) in &order.joints {
@@ -51,8 +51,8 @@ pub(in crate::import) fn assemble(
         }
         limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
             Motion::Frozen(_) => None,
-            Motion::Own => joint.limits.of_joint(&joint.name, false, stops),
-            Motion::Follows(_) => joint.limits.of_joint(&joint.name, true, stops),
+            Motion::Own => joint.limits.limit_of_joint(&joint.name, false, stops),
+            Motion::Follows(_) => joint.limits.limit_of_joint(&joint.name, true, stops),
         }));
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
@@ -66,8 +66,8 @@ pub(in crate::import) fn assemble(
         })
         .unzip();
     // The order has all of them.
-    links.iter().flatten().for_each(|link| cx.report_lost(&link.name));
-    given.iter().flatten().for_each(|(joint, _)| cx.report_lost(&joint.name));
+    links.iter().flatten().for_each(|link| cx.report_lost_element(&link.name));
+    given.iter().flatten().for_each(|(joint, _)| cx.report_lost_element(&joint.name));
     Imported {
         bodies,
         joints,
@@ -99,25 +99,30 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
         Base::Fixed => JointKind::Weld,
         Base::Free => JointKind::Free,
     };
-    let mut ground = end_at(name_at_link(GROUND));
+    let mut ground = endpoint_at_origin(name_at_link(GROUND));
     if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
         (ground.at, ground.rotated) = (origin.nonzero_position(), origin.nonzero_rotations());
     }
-    bare_joint(name_at_link(&text), kind, ground, end_at(link.clone()))
+    plain_joint(name_at_link(&text), kind, ground, endpoint_at_origin(link.clone()))
 }
 
 /// Returns an endpoint at the origin of a body.
-pub(in crate::import) fn end_at(body: Name) -> Endpoint {
+pub(in crate::import) fn endpoint_at_origin(body: Name) -> Endpoint {
     Endpoint { body, at: None, rotated: Vec::new() }
 }
 
 /// Returns the endpoint of a joint on its child link.
-fn place_at(anchor: [f64; 3], given: &FileJoint) -> Endpoint {
+fn endpoint_of_child(anchor: [f64; 3], given: &FileJoint) -> Endpoint {
     let at = (anchor != [0.0; 3]).then(|| Expr::vector_at(anchor, &given.origin.xyz.place));
-    Endpoint { at, ..end_at(given.child.clone()) }
+    Endpoint { at, ..endpoint_at_origin(given.child.clone()) }
 }
 
-pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoint, child: Endpoint) -> Joint {
+pub(in crate::import) fn plain_joint(
+    name: Name,
+    kind: JointKind,
+    parent: Endpoint,
+    child: Endpoint,
+) -> Joint {
     Joint {
         name,
         kind,
@@ -137,7 +142,7 @@ pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoin
 }
 
 /// Returns the endpoint of a joint on its parent link.
-fn parent_of(given: &FileJoint) -> Endpoint {
+fn endpoint_of_parent(given: &FileJoint) -> Endpoint {
     Endpoint {
         body: given.parent.clone(),
         at: given.origin.nonzero_position(),
@@ -147,13 +152,13 @@ fn parent_of(given: &FileJoint) -> Endpoint {
 
 fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {
     if let Motion::Frozen(coordinate) = motion {
-        let mut parent = parent_of(&given);
+        let mut parent = endpoint_of_parent(&given);
         move_end(&mut parent, &given, coordinate, cx);
-        let child = place_at(given.anchor, &given);
-        return bare_joint(given.name, JointKind::Weld, parent, child);
+        let child = endpoint_of_child(given.anchor, &given);
+        return plain_joint(given.name, JointKind::Weld, parent, child);
     }
     let alone = given.has_coordinate();
-    let mut joint = joint_of(given);
+    let mut joint = converted_joint(given);
     match motion {
         Motion::Follows(mimic) => joint.mimic = Some(mimic),
         _ => joint.driven = options.inputs == InputOption::Joints && alone,
@@ -162,10 +167,10 @@ fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut
 }
 
 /// Converts a joint with its endpoints, axis, lead, damping and friction.
-pub(in crate::import) fn joint_of(given: FileJoint) -> Joint {
-    let (parent, child) = (parent_of(&given), place_at(given.anchor, &given));
+pub(in crate::import) fn converted_joint(given: FileJoint) -> Joint {
+    let (parent, child) = (endpoint_of_parent(&given), endpoint_of_child(given.anchor, &given));
     let has_axis = given.has_axis();
-    let mut joint = bare_joint(given.name, given.kind, parent, child);
+    let mut joint = plain_joint(given.name, given.kind, parent, child);
     let axis = Expr::vector_at(given.axis.value, &given.axis.place);
     // A planar joint moves in the plane perpendicular to its axis.
     match given.kind.row().arguments {
@@ -186,7 +191,7 @@ fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<
     }
     let axis = unit_vector(given.axis.value);
     match given.kind.rotates_about_one_axis() {
-        Some(true) => end.rotated.push(turn_about(axis, coordinate, given)),
+        Some(true) => end.rotated.push(rotation_about_axis(axis, coordinate, given)),
         Some(false) => {
             let shift = given.origin.rotate_vector(axis);
             let from = given.origin.xyz.value;
@@ -203,7 +208,7 @@ fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<
 
 /// Returns a rotation about a unit axis. Rotations about coordinate axes use `x`, `y` or `z`, which keep
 /// zeros and ones exact.
-fn turn_about(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
+fn rotation_about_axis(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
     let place = &given.axis.place;
     let (word, sign) = match axis {
         [s, 0.0, 0.0] => ("x", s),

@@ -1,6 +1,6 @@
 //! Detection of joints that close kinematic loops.
 
-use super::assemble::joint_of;
+use super::assemble::converted_joint;
 use super::parts::Robot;
 use crate::import::context::{Cx, quote_word};
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Loop-closing joints have no coordinates, so nothing can act on one: drives, damping, friction and `mimic`
 /// of such joints are reported.
 pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
-    let chosen = find_closing(robot);
+    let chosen = loop_closing_joints(robot);
     let joints = std::mem::take(&mut robot.joints).into_iter().enumerate();
     let (closing, tree): (Vec<_>, Vec<_>) = joints.partition(|(k, _)| chosen.contains(k));
     robot.joints = tree.into_iter().map(|(_, joint)| joint).collect();
@@ -30,13 +30,13 @@ pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
         if joint.limits.has_limits() {
             robot.left_out.push(format!("limits of {}, which closes a loop", joint.name.text));
         }
-        robot.closing.push(joint_of(joint));
+        robot.closing.push(converted_joint(joint));
     }
 }
 
 /// Returns the indices of the joints that close loops. Joints with unknown links, or from a link to itself,
 /// are reported by another check.
-fn find_closing(robot: &Robot) -> BTreeSet<usize> {
+fn loop_closing_joints(robot: &Robot) -> BTreeSet<usize> {
     let links: BTreeSet<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
     let mut joints_above: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     let mut links_below: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -55,8 +55,8 @@ fn find_closing(robot: &Robot) -> BTreeSet<usize> {
             let next = links_below.get(link).into_iter().flatten();
             stack.extend(next.copied().filter(|link| below.insert(*link)));
         }
-        let is_outside = |k: &usize| !below.contains(robot.joints[*k].parent.text.as_str());
-        let kept = joints.iter().copied().find(is_outside).unwrap_or(joints[0]);
+        let has_parent_outside = |k: &usize| !below.contains(robot.joints[*k].parent.text.as_str());
+        let kept = joints.iter().copied().find(has_parent_outside).unwrap_or(joints[0]);
         closing.extend(joints.into_iter().filter(|k| *k != kept));
     }
     closing

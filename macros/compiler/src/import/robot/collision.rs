@@ -6,9 +6,9 @@ use crate::syntax::{Collision, Endpoint, MeshVertices, Name, Shape};
 
 /// Collision shape of a link.
 pub(in crate::import) struct FileCollision {
-    /// Pose of the shape's centre relative to the link.
+    /// Pose of the collision shape's centre relative to the link.
     pub(in crate::import) origin: Origin,
-    /// Shape of the geometry with its lengths, m.
+    /// Shape of the collision geometry with its lengths, m.
     pub(in crate::import) shape: Shape,
     /// Source of the vertices of a mesh; `None` for other shapes.
     pub(in crate::import) mesh: Option<MeshVertices>,
@@ -17,7 +17,7 @@ pub(in crate::import) struct FileCollision {
 }
 
 impl FileCollision {
-    /// Attaches the shape to the link with this name.
+    /// Converts the shape to collision geometry of the link with this name.
     pub(in crate::import) fn attached_to(&self, link: &Name) -> Collision {
         let (at, rotated) = (self.origin.nonzero_position(), self.origin.nonzero_rotations());
         let on = Endpoint { body: link.clone(), at, rotated };

@@ -12,16 +12,16 @@ const ROUNDING: f64 = 1e-9;
 
 /// Returns the constraints on moving joints. A constraint on locked joints alone is dropped if it is
 /// satisfied and reported otherwise.
-pub(in crate::import) fn resolve(
+pub(in crate::import) fn resolve_constraints(
     constraints: Vec<Constraint>,
     joints: &[Option<(FileJoint, Motion)>],
     cx: &mut Cx<'_>,
 ) -> Vec<Constraint> {
     let frozen = locked_coordinates(joints);
-    constraints.into_iter().filter_map(|constraint| without_locked(constraint, &frozen, cx)).collect()
+    constraints.into_iter().filter_map(|constraint| without_locked_joints(constraint, &frozen, cx)).collect()
 }
 
-fn without_locked(
+fn without_locked_joints(
     mut constraint: Constraint,
     frozen: &BTreeMap<&str, f64>,
     cx: &mut Cx<'_>,

@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 
 /// Returns the elements that act on at least one moving joint. Inputs without a joint are preserved, because
 /// callers rely on the input's index.
-pub(super) fn resolve(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
+pub(super) fn resolve_drives(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
     let frozen = locked_coordinates(joints);
-    drives.into_iter().filter_map(|drive| without_locked(drive, &frozen)).collect()
+    drives.into_iter().filter_map(|drive| without_locked_joints(drive, &frozen)).collect()
 }
 
 /// Returns the element without the locked joints. Their contributions are subtracted from free lengths and
 /// ranges.
-fn without_locked(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Drive> {
+fn without_locked_joints(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Drive> {
     let DriveOn::Sum(terms) = &mut drive.on else { return Some(drive) };
     let mut offset = 0.0;
     terms.retain(|(joint, weight)| match frozen.get(joint.text.as_str()) {

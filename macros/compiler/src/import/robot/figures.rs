@@ -15,7 +15,7 @@ use crate::syntax::{Body, Expr, ExprKind, FileOptions, Joint, JointKind, Name};
 
 /// Creates the fields of all requested values. `standing` are the names of links that are fixed to the
 /// ground, whose mass properties appear in no equation.
-pub(in crate::import) fn make_fields(
+pub(in crate::import) fn make_value_fields(
     imported: &mut Imported,
     standing: &[String],
     options: &FileOptions,
@@ -26,7 +26,7 @@ pub(in crate::import) fn make_fields(
         if figures.word.text == INERTIAL {
             add_inertial_fields(bodies, standing, figures, (fields, options.format.body_term()), cx);
         } else {
-            of_joints(joints, figures, (fields, options.format.body_term()), cx);
+            make_joint_fields(joints, figures, (fields, options.format.body_term()), cx);
         }
     }
 }
@@ -60,7 +60,7 @@ fn add_inertial_fields(
         }
         found = true;
         let Some(values) = mass_properties(body) else {
-            cx.report_lost(&body.name);
+            cx.report_lost_element(&body.name);
             continue;
         };
         let units = ["kg", "m", "m", "m", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²"].to_vec();
@@ -88,7 +88,7 @@ fn add_inertial_fields(
     }
 }
 
-fn of_joints(
+fn make_joint_fields(
     joints: &mut [Joint],
     figures: &FileParameters,
     (fields, link): (&mut Vec<FileField>, &str),
@@ -122,7 +122,7 @@ fn of_joints(
         let describe_joint_parameter = |what: &str| format!("{what} of the joint `{of}`.");
         if word == PLACEMENT {
             let Some(values) = joint_placement(joint) else {
-                cx.report_lost(&joint.name);
+                cx.report_lost_element(&joint.name);
                 continue;
             };
             let units = vec!["m", "m", "m", "rad", "rad", "rad"];
@@ -145,7 +145,7 @@ fn of_joints(
         };
         debug_assert!([DAMPING, FRICTION].contains(&word));
         let Some(value) = slot.as_ref().map_or(Some(0.0), Expr::literal_number) else {
-            cx.report_lost(&joint.name);
+            cx.report_lost_element(&joint.name);
             continue;
         };
         let e = add(
@@ -191,8 +191,9 @@ fn add(
     place: &Place,
     fields: &mut Vec<FileField>,
 ) -> Vec<Expr> {
-    let ident =
-        unused_name(&identifier(of, word, "link"), |name| fields.iter().any(|field| field.ident == name));
+    let ident = unused_name(&identifier_of_names(of, word, "link"), |name| {
+        fields.iter().any(|field| field.ident == name)
+    });
     let field = FileField { ident, kind, of: of.to_string(), about, values, units };
     let name_expression = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
     let expressions = field.member_accesses().into_iter().map(name_expression).collect();
@@ -202,7 +203,7 @@ fn add(
 
 /// Returns an identifier from a name of a file and a word. The `kind` of the named element distinguishes it
 /// from numbers and keywords.
-pub(in crate::import) fn identifier(of: &str, word: &str, kind: &str) -> String {
+pub(in crate::import) fn identifier_of_names(of: &str, word: &str, kind: &str) -> String {
     let identifier_character = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let mut name: String = of.chars().map(identifier_character).collect();
     if !word.is_empty() {
@@ -255,13 +256,13 @@ fn coordinate_rotation(e: &Expr) -> Option<(usize, f64)> {
     Some((axis, arguments.first()?.literal_number()?))
 }
 
-/// Returns the matrix of successive rotations about body-fixed axes.
+/// Returns the matrix of successive rotations about moving axes.
 fn rotation_matrix(rotations: &[Expr]) -> Option<Matrix> {
-    rotations.iter().try_fold(IDENTITY, |whole, e| Some(matrix_product(&whole, &one_rotation(e)?)))
+    rotations.iter().try_fold(IDENTITY, |whole, e| Some(matrix_product(&whole, &matrix_of_rotation(e)?)))
 }
 
 /// Returns the matrix of one rotation: about a coordinate axis, or about a unit vector.
-fn one_rotation(e: &Expr) -> Option<Matrix> {
+fn matrix_of_rotation(e: &Expr) -> Option<Matrix> {
     let Some((axis, angle)) = coordinate_rotation(e) else {
         let ExprKind::Call(_, arguments) = &e.kind else { return None };
         let [axis, angle] = arguments.as_slice() else { return None };
@@ -274,8 +275,8 @@ fn one_rotation(e: &Expr) -> Option<Matrix> {
     Some(m)
 }
 
-/// Returns position, roll, pitch and yaw of the frame of a joint. A joint that is held at a coordinate other
-/// than zero has one more rotation than its frame.
+/// Returns position, roll, pitch and yaw of a joint's frame. A joint that is locked at a nonzero coordinate
+/// has one more rotation than its frame.
 fn joint_placement(joint: &Joint) -> Option<Vec<f64>> {
     let rotations = &joint.parent.rotated;
     let turns: Option<Vec<(usize, f64)>> = rotations.iter().map(coordinate_rotation).collect();

@@ -7,9 +7,9 @@ use crate::syntax::{Expr, JointKind, Mimic, Name};
 
 /// Joint as the robot file describes it.
 pub(in crate::import) struct FileJoint {
-    /// Name of the joint.
+    /// Name of the joint in the robot file.
     pub(in crate::import) name: Name,
-    /// Type of the joint.
+    /// Type of the joint in the language.
     pub(in crate::import) kind: JointKind,
     /// Name of the joint type in the file format.
     pub(in crate::import) word: &'static str,
@@ -29,13 +29,13 @@ pub(in crate::import) struct FileJoint {
     pub(in crate::import) mimic: Option<Mimic>,
     /// Coordinate at which the file locks the joint.
     pub(in crate::import) held: Option<f64>,
-    /// Lead of a screw: advance per revolution, m.
+    /// Lead of a screw joint: advance per revolution, m.
     pub(in crate::import) lead: Option<Expr>,
-    /// Limits of the coordinate, velocity and force.
+    /// Limits of the joint's coordinate, velocity and force.
     pub(in crate::import) limits: FileLimits,
-    /// Coefficient of viscous damping; `None` for no damping.
+    /// Coefficient of the joint's viscous damping; `None` for no damping.
     pub(in crate::import) damping: Option<Expr>,
-    /// Coulomb friction force or torque; `None` for no friction.
+    /// Coulomb friction force or torque of the joint; `None` for no friction.
     pub(in crate::import) friction: Option<Expr>,
 }
 

@@ -1,4 +1,4 @@
-//! Limits of a joint as a file specifies them.
+//! Limits of a joint as a robot file specifies them.
 
 use crate::import::imported::Placed;
 use crate::syntax::{Expr, ExprKind, Key, Limit, Name, WrittenArguments};
@@ -6,22 +6,22 @@ use crate::syntax::{Expr, ExprKind, Key, Limit, Name, WrittenArguments};
 /// Limits of a joint; `None` for a quantity without a limit.
 #[derive(Default)]
 pub(in crate::import) struct FileLimits {
-    /// Lower bound of the coordinate.
+    /// Lower bound of the joint coordinate.
     pub(in crate::import) lower: Option<Placed<f64>>,
-    /// Upper bound of the coordinate.
+    /// Upper bound of the joint coordinate.
     pub(in crate::import) upper: Option<Placed<f64>>,
-    /// Maximum speed of the coordinate.
+    /// Maximum magnitude of the joint velocity.
     pub(in crate::import) velocity: Option<Placed<f64>>,
-    /// Maximum force or torque on the coordinate.
+    /// Maximum magnitude of the joint force or torque.
     pub(in crate::import) effort: Option<Placed<f64>>,
 }
 
-/// Help text for invalid limits.
+/// Help text for limits of a robot file that are invalid.
 pub(in crate::import) const IGNORE_LIMITS: &str =
     "to ignore limits, write `#[mechanism(…, limits = ignore)]`";
 
 impl FileLimits {
-    /// Returns whether any limit is specified.
+    /// Returns whether the file specifies any limit of the joint.
     pub(in crate::import) fn has_limits(&self) -> bool {
         [&self.lower, &self.upper, &self.velocity, &self.effort].into_iter().any(Option::is_some)
     }
@@ -29,14 +29,19 @@ impl FileLimits {
     /// Converts the limits of a joint to the language's representation. For a joint that follows another one
     /// (`follows`), the limit of force is dropped, because nothing drives it. With `stops`, the ends of the
     /// range are stops with restitution 0.
-    pub(in crate::import) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {
-        let expression =
+    pub(in crate::import) fn limit_of_joint(
+        &self,
+        joint: &Name,
+        follows: bool,
+        stops: bool,
+    ) -> Option<Limit> {
+        let limit_expression =
             |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number_at(f.value, &f.place));
         let bounds = [
-            (Key::From, expression(&self.lower)),
-            (Key::To, expression(&self.upper)),
-            (Key::MaxSpeed, expression(&self.velocity)),
-            (Key::MaxEffort, expression(&self.effort).filter(|_| !follows)),
+            (Key::From, limit_expression(&self.lower)),
+            (Key::To, limit_expression(&self.upper)),
+            (Key::MaxSpeed, limit_expression(&self.velocity)),
+            (Key::MaxEffort, limit_expression(&self.effort).filter(|_| !follows)),
         ];
         let mut given: Vec<(Key, Expr)> =
             bounds.into_iter().filter_map(|(key, bound)| Some((key, bound?))).collect();

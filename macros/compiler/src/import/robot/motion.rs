@@ -8,11 +8,11 @@ use std::collections::BTreeMap;
 
 /// Motion of a joint: free, coupled or locked.
 pub(in crate::import) enum Motion {
-    /// Joint that moves independently.
+    /// Joint whose coordinate is independent.
     Own,
     /// Joint that follows an independent joint by a linear relation.
     Follows(Mimic),
-    /// Joint that is locked at this coordinate.
+    /// Joint that is locked at this coordinate, m or rad.
     Frozen(f64),
 }
 
@@ -44,7 +44,7 @@ pub(in crate::import) fn resolve_motions(
     let leaders: Vec<Option<usize>> = (0..joints.len())
         .map(|k| if locked[k] { None } else { find_leader(&joints[k], joints, &index, cx) })
         .collect();
-    report_circles(joints, &leaders, cx);
+    report_leader_cycles(joints, &leaders, cx);
     // Following the leaders terminates only if there are no cycles.
     if cx.has_errors() {
         return None;
@@ -88,7 +88,7 @@ const MOVE_ALONE: &str =
     "to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
 
 /// Reports each cycle of joints that follow one another once.
-fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'_>) {
+fn report_leader_cycles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'_>) {
     for start in 0..joints.len() {
         let walk = std::iter::successors(leaders[start], |k| leaders[*k]);
         let circle: Vec<usize> = walk.take(joints.len()).take_while(|k| *k != start).collect();

@@ -2,7 +2,7 @@
 //! generates unused names.
 
 use super::joint::FileJoint;
-use super::parts::{Robot, bare_link};
+use super::parts::{Robot, massless_link};
 use crate::import::context::{Cx, format_position, quote_word};
 use crate::syntax::{Base, FileFormat, GROUND, Name};
 use std::collections::BTreeMap;
@@ -16,19 +16,18 @@ pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut
 /// Link that files use as a parent without declaring it.
 const WORLD: &str = "world";
 
-/// Declares the link `world` if joints have it as parent and the file does not define it. Other tools connect
-/// the root to this link.
-pub(in crate::import) fn declare_world(robot: &mut Robot) {
+/// Declares the link `world` if joints have it as parent and the file does not define it, as other tools do.
+pub(in crate::import) fn declare_world_link(robot: &mut Robot) {
     let is_known = robot.links.iter().any(|link| link.name.text == WORLD)
         || robot.joints.iter().any(|joint| joint.child.text == WORLD);
     let used = robot.joints.iter().find(|joint| joint.parent.text == WORLD);
     if let Some(world) = used.filter(|_| !is_known).map(|joint| joint.parent.clone()) {
-        robot.links.push(bare_link(world));
+        robot.links.push(massless_link(world));
     }
 }
 
 /// Renames a link `ground` to `ground_link`, because `ground` is the name of the fixed frame. The root of a
-/// fixed mechanism may be called `ground`: it is the ground then.
+/// fixed mechanism may be called `ground`.
 pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
     if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;
@@ -41,7 +40,7 @@ pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
     }
 }
 
-/// Returns the name, with a number appended if it is taken.
+/// Returns the name, with a number appended if it is already used.
 pub(in crate::import) fn unused_name(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
     let mut text = name.to_string();
     for k in 2.. {
@@ -73,7 +72,7 @@ pub(in crate::import) fn check_unique<'a>(
 }
 
 /// Reports joints with unknown links, joints from a link to itself, and links with two parents.
-pub(in crate::import) fn check_ends(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
+pub(in crate::import) fn check_joint_ends(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
     let known: BTreeMap<&str, ()> = links.iter().map(|link| (*link, ())).collect();
     let mut parents: BTreeMap<&str, &FileJoint> = BTreeMap::new();
@@ -118,7 +117,7 @@ fn report_two_parents(first: &FileJoint, second: &FileJoint, format: FileFormat,
 }
 
 /// Reports names in the option `lock` that no joint has.
-pub(in crate::import) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
+pub(in crate::import) fn check_locked_names(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
     for lock in locks.iter().filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text)) {
         let names = joints.iter().map(|joint| joint.name.text.as_str());
         let message = format!("unknown joint {} in `lock`", quote_word(&lock.text));

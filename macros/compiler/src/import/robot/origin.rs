@@ -3,16 +3,16 @@
 use crate::import::imported::Placed;
 use crate::syntax::Expr;
 
-/// Pose of a frame as a file specifies it.
+/// Pose of a frame as a robot file specifies it: position and rotation.
 pub(in crate::import) struct Origin {
-    /// Position of the origin in its reference frame.
+    /// Position of the frame's origin relative to its reference frame, m.
     pub(in crate::import) xyz: Placed<[f64; 3]>,
     /// Roll, pitch and yaw, rad: rotations about the fixed x, y and z axes, in this order.
     pub(in crate::import) rpy: Placed<[f64; 3]>,
 }
 
 impl Origin {
-    /// Returns the position, or `None` if it is zero.
+    /// Returns the position of the frame, or `None` if it is zero.
     pub(in crate::import) fn nonzero_position(&self) -> Option<Expr> {
         (self.xyz.value != [0.0; 3]).then(|| Expr::vector_at(self.xyz.value, &self.xyz.place))
     }

@@ -13,23 +13,23 @@ pub(in crate::import) const MAX_ELEMENTS: usize = 1024;
 /// Contents of a robot file, in the order of the file.
 #[derive(Default)]
 pub(in crate::import) struct Robot {
-    /// Links of the robot, as bodies.
+    /// Links of the robot file, as bodies.
     pub(in crate::import) links: Vec<Body>,
-    /// Joints of the kinematic tree.
+    /// Joints of the robot's kinematic tree.
     pub(in crate::import) joints: Vec<FileJoint>,
     /// Pose of the root relative to the ground; `None` for the identity.
     pub(in crate::import) root: Option<Origin>,
-    /// Joints that close loops.
+    /// Joints of the file that close loops.
     pub(in crate::import) closing: Vec<Joint>,
-    /// Constraints on coordinates.
+    /// Constraints on joint coordinates of the robot.
     pub(in crate::import) constraints: Vec<Constraint>,
-    /// Contact pairs.
+    /// Contact pairs of the robot file.
     pub(in crate::import) contacts: Vec<Contact>,
     /// Collision geometry, each with the index of its link.
     pub(in crate::import) collisions: Vec<(usize, FileCollision)>,
     /// Visual geometry, each with the index of its link.
     pub(in crate::import) visuals: Vec<(usize, FileVisual)>,
-    /// Springs, dampers, rotors and motors on coordinates.
+    /// Springs, dampers, rotors and motors on joint coordinates.
     pub(in crate::import) drives: Vec<Drive>,
     /// States of first order, each with its field and its rate.
     pub(in crate::import) states: Vec<(FileField, Expr)>,
@@ -37,13 +37,13 @@ pub(in crate::import) struct Robot {
     pub(in crate::import) dissipations: Vec<(Name, Expr)>,
     /// Gravitational acceleration, m/s²; `None` if the format does not specify one.
     pub(in crate::import) gravity: Option<Expr>,
-    /// Descriptions of the values that were rounded.
+    /// Descriptions of the values of the file that were rounded.
     pub(in crate::import) snapped: Vec<String>,
     /// Descriptions of contents of the file that the mechanism does not represent.
     pub(in crate::import) left_out: Vec<String>,
 }
 
-/// Returns a body for a link without mass properties.
-pub(in crate::import) fn bare_link(name: Name) -> Body {
+/// Returns the body for a link of the file without mass properties.
+pub(in crate::import) fn massless_link(name: Name) -> Body {
     Body { name, mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }

@@ -31,10 +31,11 @@ pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<
     }
     report_cycles(robot, &ends, &above, cx);
     let root = find_root(robot, &above, cx)?;
-    Some(Order { root, joints: depth_first(robot, root, &ends) })
+    Some(Order { root, joints: depth_first_order(robot, root, &ends) })
 }
 
-/// Returns the link without a parent. Returns `None` if there is a cycle, which is reported separately.
+/// Returns the link that is no joint's child, the root. Returns `None` if there is a cycle, which is reported
+/// separately.
 fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<usize> {
     let mut roots = (0..above.len()).filter(|link| above[*link].is_none());
     let root = roots.next()?;
@@ -49,7 +50,7 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
     Some(root)
 }
 
-/// Reports every cycle of joints once.
+/// Reports every cycle of links and joints once.
 fn report_cycles(robot: &Robot, ends: &[(usize, usize)], above: &[Option<usize>], cx: &mut Cx<'_>) {
     // Each upward walk marks its links with its own number. It ends at the root, at an earlier walk or at
     // itself.
@@ -86,7 +87,7 @@ fn report_cycle(
 }
 
 /// Traverses the tree depth first. An explicit stack replaces recursion, because chains may be long.
-fn depth_first(robot: &Robot, root: usize, ends: &[(usize, usize)]) -> Vec<(usize, usize)> {
+fn depth_first_order(robot: &Robot, root: usize, ends: &[(usize, usize)]) -> Vec<(usize, usize)> {
     let mut below: Vec<Vec<(usize, usize)>> = vec![Vec::new(); robot.links.len()];
     for (joint, (parent, child)) in ends.iter().enumerate() {
         below[*parent].push((joint, *child));

@@ -3,18 +3,18 @@
 use super::origin::Origin;
 use crate::syntax::{Endpoint, Mesh, Name, Shape, Visual};
 
-/// Visual shape of a link.
+/// Visual shape of a link of a robot file.
 pub(in crate::import) struct FileVisual {
-    /// Pose of the shape's centre relative to the link.
+    /// Pose of the visual shape's centre relative to the link.
     pub(in crate::import) origin: Origin,
-    /// Shape of the geometry with its lengths, m.
+    /// Visual shape with its lengths, m.
     pub(in crate::import) shape: Shape,
     /// Triangles of a mesh; `None` for other shapes.
     pub(in crate::import) mesh: Option<Mesh>,
 }
 
 impl FileVisual {
-    /// Attaches the shape to the link with this name.
+    /// Converts the shape to visual geometry of the link with this name.
     pub(in crate::import) fn attached_to(&self, link: &Name) -> Visual {
         let on = Endpoint {
             body: link.clone(),

@@ -1,6 +1,6 @@
 //! `<collision>` → collision shapes of links, which contacts refer to.
 
-use super::frames::{Frames, origin_in};
+use super::frames::{Frames, origin_in_link};
 use super::scope::Scope;
 use crate::import::context::Cx;
 use crate::import::element::{
@@ -12,7 +12,7 @@ use crate::import::robot::FileCollision;
 use crate::syntax::{MeshVertices, Name, Shape};
 use std::path::Path;
 
-/// Shapes of collision geometry that are supported.
+/// Names of the SDF shapes that are supported as collision geometry.
 pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
 
 /// Reads all collision geometry of a link. Paths of meshes are relative to `folder`.
@@ -24,10 +24,10 @@ pub(super) fn read_collisions(
     cx: &mut Cx<'_>,
 ) -> Vec<FileCollision> {
     let parts = child_elements(node).filter(|node| node.tag_name().name() == "collision");
-    parts.filter_map(|part| read_part(part, link, frames, folder, cx)).collect()
+    parts.filter_map(|part| read_collision(part, link, frames, folder, cx)).collect()
 }
 
-fn read_part(
+fn read_collision(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
@@ -42,7 +42,7 @@ fn read_part(
         let help = "write a `<collision>` for each shape";
         cx.report_error(&element_position(second, cx), "second shape of one geometry", |d| d.add_help(help));
     }
-    let origin = origin_in(node, link, frames, cx)?;
+    let origin = origin_in_link(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = match shape {
         Shape::Mesh => read_mesh(form, folder, cx),
@@ -59,11 +59,11 @@ fn read_mesh(form: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<MeshVerti
         Some(scale) => read_numbers_content(scale, cx)?.value,
         None => [1.0; 3],
     };
-    let paths = mesh::candidates(folder, &path.text);
+    let paths = mesh::candidate_paths(folder, &path.text);
     submesh.is_none().then(|| MeshVertices::scaled(path, paths, scale))
 }
 
-/// Reads a child element of `<geometry>` as a shape.
+/// Reads a child element of an SDF `<geometry>` as a shape.
 pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
     check_attributes(shape, &[], &[], cx);
     match shape.tag_name().name() {
@@ -99,7 +99,7 @@ pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
     }
 }
 
-/// Reads positive lengths of a shape, m.
+/// Reads positive lengths of an SDF shape, m.
 fn read_lengths<const N: usize>(
     child: Option<Node<'_>>,
     shape: Node<'_>,

@@ -1,15 +1,17 @@
 //! Resolution of frames that are defined relative to one another to their poses in the model.
 
 use super::scope::{Scope, WORLD};
-use super::version::is_before;
+use super::version::is_before_version;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Attribute, Node, check_plain, check_radians, child_elements, element_position, read_numbers_content,
-    relevant_contents, report_second,
+    Attribute, Node, check_radians, check_value_element, child_elements, element_position,
+    read_numbers_content, relevant_contents, report_duplicate,
 };
 use crate::import::imported::Placed;
-use crate::import::pose::{IDENTITY, Pose, axis_rotation, matrix_product, of_quaternion, roll_pitch_yaw};
+use crate::import::pose::{
+    IDENTITY, Pose, axis_rotation, matrix_product, roll_pitch_yaw, rotation_of_quaternion,
+};
 use crate::import::robot::Origin;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
@@ -22,7 +24,7 @@ const MAX_DEPTH: usize = 1024;
 pub(super) struct Frame {
     /// Full name of the frame that the pose is relative to.
     pub(super) base: Name,
-    /// Pose of the frame relative to `base`.
+    /// Pose of the SDF frame relative to the frame `base`.
     pub(super) pose: Pose,
     /// Frame that this frame is attached to; `None` for links.
     pub(super) attached: Option<Name>,
@@ -32,7 +34,7 @@ pub(super) struct Frame {
 /// model.
 #[derive(Default)]
 pub(super) struct Frames {
-    /// Frames by their full names.
+    /// SDF frames by their full names.
     pub(super) known: BTreeMap<String, Frame>,
 }
 
@@ -48,13 +50,13 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
         return Frame { base: base_name(element_position(node, cx)), pose: Pose::ZERO, attached: None };
     };
     if let Some(second) = poses.next() {
-        report_second(second, Some(found), cx);
+        report_duplicate(second, Some(found), cx);
     }
-    check_plain(found, &["relative_to", "rotation_format", "degrees", "frame"], cx);
+    check_value_element(found, &["relative_to", "rotation_format", "degrees", "frame"], cx);
     let base = match reference_frame_attribute(found, cx) {
         Some(said) => {
             let name = said.value().trim();
-            let text = own_frame(found, name, scope).unwrap_or_else(|| scope.whole_name(name));
+            let text = name_of_own_frame(found, name, scope).unwrap_or_else(|| scope.full_name(name));
             Name { text, place: cx.source_position(said.range_value().start) }
         }
         None => base_name(element_position(found, cx)),
@@ -68,7 +70,7 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
 pub(super) fn reference_frame_attribute<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute<'a>> {
     let non_blank_attribute = |word| pose.attribute_node(word).filter(|said| !said.value().trim().is_empty());
     let old = non_blank_attribute("frame");
-    if let Some(found) = old.filter(|_| !is_before(pose, RELATIVE_TO)) {
+    if let Some(found) = old.filter(|_| !is_before_version(pose, RELATIVE_TO)) {
         let at = cx.source_position(found.range().start);
         cx.report_error(&at, "`frame` of a pose has another name since version 1.7 of SDF", |d| {
             d.add_help(format!("write `relative_to=\"{}\"`", found.value().trim()))
@@ -79,7 +81,7 @@ pub(super) fn reference_frame_attribute<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> 
 
 /// Returns the full name of the frame `name` if the link or joint around a pose declares this frame inside
 /// itself, as versions 1.5 and 1.6 allow.
-fn own_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
+fn name_of_own_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
     let owner = pose.ancestors().find(|above| matches!(above.tag_name().name(), "link" | "joint"))?;
     let is_declared = own_frames(owner).any(|frame| frame.attribute("name") == Some(name));
     is_declared.then(|| name_in_owner(&scope.name_of_part(owner.attribute("name").unwrap_or_default()), name))
@@ -91,7 +93,7 @@ pub(super) fn own_frames<'a>(owner: Node<'a>) -> impl Iterator<Item = Node<'a>> 
     let parts = owner.children().filter(|node| node.is_element());
     let inside = parts.filter(|part| matches!(part.tag_name().name(), "inertial" | "collision" | "visual"));
     let around = std::iter::once(owner).chain(inside);
-    around.flat_map(child_elements).filter(is_frame).filter(|frame| is_before(*frame, RELATIVE_TO))
+    around.flat_map(child_elements).filter(is_frame).filter(|frame| is_before_version(*frame, RELATIVE_TO))
 }
 
 /// Returns the full name of a frame that a link or a joint declares inside itself.
@@ -100,7 +102,7 @@ pub(super) fn name_in_owner(owner: &str, name: &str) -> String {
 }
 
 /// Returns the pose of an element of a link relative to the link.
-pub(super) fn pose_in(
+pub(super) fn pose_in_link(
     node: Node<'_>,
     (link, scope): (&Name, &Scope),
     frames: &Frames,
@@ -109,20 +111,20 @@ pub(super) fn pose_in(
     let frame = read_frame(node, scope, &link.text, cx);
     Some(
         frames
-            .resolve(link, cx)?
+            .resolve_pose(link, cx)?
             .inverse_pose()
-            .compose_with(&frames.resolve(&frame.base, cx)?.compose_with(&frame.pose)),
+            .compose_with(&frames.resolve_pose(&frame.base, cx)?.compose_with(&frame.pose)),
     )
 }
 
 /// Returns the pose of an element of a link relative to the link, as an [`Origin`].
-pub(super) fn origin_in(
+pub(super) fn origin_in_link(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Option<Origin> {
-    Some(origin_from_pose(&pose_in(node, link, frames, cx)?, &element_position(node, cx)))
+    Some(origin_from_pose(&pose_in_link(node, link, frames, cx)?, &element_position(node, cx)))
 }
 
 const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
@@ -137,7 +139,7 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
             cx.report_error(&element_position(node, cx), message, |d| d);
             return None;
         }
-        return Some(Pose { at: [x, y, z], axes: of_quaternion([w, a, b, c].map(|x| x / size)) });
+        return Some(Pose { at: [x, y, z], axes: rotation_of_quaternion([w, a, b, c].map(|x| x / size)) });
     }
     let found = read_numbers_content(node, cx)?;
     let [x, y, z, roll, pitch, yaw] = found.value;
@@ -163,7 +165,7 @@ impl Frames {
                 return Some(Name { text: at.text, place: name.place.clone() });
             }
             let Some(frame) = self.known.get(&at.text) else {
-                self.report_unknown(&at, cx);
+                self.report_unknown_frame(&at, cx);
                 return None;
             };
             match &frame.attached {
@@ -176,14 +178,14 @@ impl Frames {
         None
     }
 
-    fn report_unknown(&self, name: &Name, cx: &mut Cx<'_>) {
+    fn report_unknown_frame(&self, name: &Name, cx: &mut Cx<'_>) {
         let known = self.known.keys().map(String::as_str).filter(|known| !known.ends_with("__model__"));
         let message = format!("unknown frame {}", quote_word(&name.text));
         cx.report_error(&name.place, message, |d| d.suggest_name(&name.text, known));
     }
 
     /// Returns the pose of a frame relative to the world. Reports unknown names and cycles.
-    pub(super) fn resolve(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Pose> {
+    pub(super) fn resolve_pose(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Pose> {
         let mut pose = Pose::ZERO;
         let mut at = name.clone();
         for _ in 0..MAX_DEPTH {
@@ -191,7 +193,7 @@ impl Frames {
                 return Some(pose);
             }
             let Some(frame) = self.known.get(&at.text) else {
-                self.report_unknown(&at, cx);
+                self.report_unknown_frame(&at, cx);
                 return None;
             };
             pose = frame.pose.compose_with(&pose);
@@ -203,7 +205,7 @@ impl Frames {
     }
 }
 
-/// Converts a pose to an [`Origin`].
+/// Converts a numeric pose to an [`Origin`] with a source position.
 pub(super) fn origin_from_pose(pose: &Pose, place: &Place) -> Origin {
     let value_at_pose = |value| Placed { value, place: place.clone() };
     Origin { xyz: value_at_pose(pose.at.map(|x| x + 0.0)), rpy: value_at_pose(roll_pitch_yaw(&pose.axes)) }

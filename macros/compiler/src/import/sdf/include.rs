@@ -7,28 +7,31 @@ use super::version;
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_position, read_word, relevant_contents, report_second,
+    Node, check_attributes, child_elements, element_position, read_word, relevant_contents, report_duplicate,
 };
-use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, canonical_path, report_circle, report_many};
+use crate::import::whole::{
+    ComposedText, MAX_DEPTH, MAX_FILES, ReadFile, canonical_path, report_include_cycle,
+    report_too_many_includes,
+};
 use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Child elements that `<include>` may have.
+/// Child elements that the SDF element `<include>` may have.
 const INCLUDE: [&str; 6] = ["uri", "name", "pose", "static", "plugin", "placement_frame"];
 
 /// Half-open range of bytes in a file.
 type Range = std::ops::Range<usize>;
 
 /// Step of the expansion. The list of steps is a stack: the last step is executed first.
-enum Step {
-    /// Copy of bytes of a file with this index.
+enum ExpansionStep {
+    /// Expansion step that copies a range of bytes of the file with this index.
     Copy(usize, Range),
     /// Inserted text, attributed to a byte of a file: text, index of the file, offset.
     Put(String, usize, usize),
-    /// Start of the expansion of an included file.
+    /// Expansion step at the start of an included file.
     Include(Box<Include>),
     /// End of an included file. A later `<include>` of the same file is a repetition, not a cycle.
     Leave,
@@ -47,28 +50,35 @@ struct Include {
 }
 
 /// Reads a file together with all files that it includes.
-pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
-    let mut whole = Whole::new(text, path, name);
+pub(super) fn read_with_includes(
+    text: &str,
+    path: &Path,
+    name: &Name,
+    cx: &mut Diagnostics,
+) -> Option<ComposedText> {
+    let mut whole = ComposedText::new(text, path, name);
     let mut places = vec![name.clone()];
     let (mut open, mut count) = (vec![0], 0);
     let mut steps = expansion_steps(&whole.files, 0, name, None, cx)?;
     while let Some(step) = steps.pop() {
         match step {
-            Step::Copy(file, range) => whole.append_file_bytes(file, range.start, range.end, name, cx)?,
-            Step::Put(text, file, at) => whole.append_text(&text, (file, at), name, cx)?,
-            Step::Leave => {
+            ExpansionStep::Copy(file, range) => {
+                whole.append_file_bytes(file, range.start, range.end, name, cx)?
+            }
+            ExpansionStep::Put(text, file, at) => whole.append_text(&text, (file, at), name, cx)?,
+            ExpansionStep::Leave => {
                 open.pop();
             }
-            Step::Include(include) => {
+            ExpansionStep::Include(include) => {
                 let found = find_included_file(&whole.files, &include, cx)?;
                 count += 1;
                 if include.depth > MAX_DEPTH || count > MAX_FILES {
-                    report_many(include.depth, &include.uri, cx);
+                    report_too_many_includes(include.depth, &include.uri, cx);
                     return None;
                 }
                 let known = whole.files.iter().position(|read| canonical_path(&read.path) == found.path);
                 if let Some(known) = known.filter(|known| open.contains(known)) {
-                    report_circle(known, &open, &whole.files, &places, &include.uri, cx);
+                    report_include_cycle(known, &open, &whole.files, &places, &include.uri, cx);
                     return None;
                 }
                 let file = known.unwrap_or(whole.files.len());
@@ -77,7 +87,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
                     places.push(include.uri.clone());
                 }
                 open.push(file);
-                steps.push(Step::Leave);
+                steps.push(ExpansionStep::Leave);
                 steps.extend(expansion_steps(&whole.files, file, &include.uri, Some(&include), cx)?);
             }
         }
@@ -87,22 +97,22 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
 
 /// Returns the steps that expand a file, last first: the whole file, or only its model for an `<include>`.
 fn expansion_steps(
-    files: &[Read],
+    files: &[ReadFile],
     file: usize,
     name: &Name,
     include: Option<&Include>,
     cx: &mut Diagnostics,
-) -> Option<Vec<Step>> {
+) -> Option<Vec<ExpansionStep>> {
     let read = files.get(file)?;
     let shown = Name { text: read.shown.clone(), place: name.place.clone() };
     let cx = &mut Cx::new(&read.text, &shown, cx);
     let declared = OnceCell::new();
-    let document = xml::parse(&read.text, &declared, FileFormat::Sdf, cx)?;
+    let document = xml::parse_document(&read.text, &declared, FileFormat::Sdf, cx)?;
     version::check_version(document.root_element(), cx);
     // Declarations of undeclared prefixes shift the bytes of the text, so pieces of it cannot be copied.
     if declared.get().is_some() {
         return match include {
-            None => plain_copy(&document, file, read, cx),
+            None => copy_with_prefixes(&document, file, read, cx),
             Some(_) => {
                 report_undeclared_prefixes(document.root_element(), cx);
                 None
@@ -114,8 +124,8 @@ fn expansion_steps(
     let (top, mut at, end) = match include {
         None => (root, 0, read.text.len()),
         Some(include) => {
-            let model = only_model(root, cx)?;
-            open_model(&mut steps, model, file, include);
+            let model = only_model_of_file(root, cx)?;
+            open_included_model(&mut steps, model, file, include);
             let range_of_child = |child: Option<Node<'_>>| child.map(|child| child.range());
             let first = range_of_child(model.first_child()).map_or(model.range().end, |range| range.start);
             let last = range_of_child(model.last_child()).map_or(first, |range| range.end);
@@ -131,39 +141,39 @@ fn expansion_steps(
             None
         } else if node.tag_name().name() == "include" {
             match read_include(node, files, file, depth, cx) {
-                Some(found) => Some(Step::Include(Box::new(found))),
+                Some(found) => Some(ExpansionStep::Include(Box::new(found))),
                 // A world may include missing models, which are skipped.
                 None => continue,
             }
         } else {
             continue;
         };
-        steps.push(Step::Copy(file, at..range.start));
+        steps.push(ExpansionStep::Copy(file, at..range.start));
         steps.extend(replaces);
         at = range.end;
     }
-    steps.push(Step::Copy(file, at..end));
+    steps.push(ExpansionStep::Copy(file, at..end));
     if include.is_some() {
-        steps.push(Step::Put("</model>".to_string(), file, end));
+        steps.push(ExpansionStep::Put("</model>".to_string(), file, end));
     }
     steps.reverse();
     (!cx.has_errors()).then_some(steps)
 }
 
 /// Returns the single copy step of a file with undeclared prefixes. Reports an `<include>` in it.
-fn plain_copy(
+fn copy_with_prefixes(
     document: &roxmltree::Document<'_>,
     file: usize,
-    read: &Read,
+    read: &ReadFile,
     cx: &mut Cx<'_>,
-) -> Option<Vec<Step>> {
+) -> Option<Vec<ExpansionStep>> {
     let include =
         document.descendants().find(|node| node.is_element() && node.tag_name().name() == "include");
-    if let Some(include) = include.filter(|include| !in_world(*include)) {
+    if let Some(include) = include.filter(|include| !is_in_world(*include)) {
         report_undeclared_prefixes(include, cx);
         return None;
     }
-    Some(vec![Step::Copy(file, 0..read.text.len())])
+    Some(vec![ExpansionStep::Copy(file, 0..read.text.len())])
 }
 
 fn report_undeclared_prefixes(node: Node<'_>, cx: &mut Cx<'_>) {
@@ -175,40 +185,41 @@ fn report_undeclared_prefixes(node: Node<'_>, cx: &mut Cx<'_>) {
     });
 }
 
-fn in_world(node: Node<'_>) -> bool {
+fn is_in_world(node: Node<'_>) -> bool {
     node.parent().is_some_and(|parent| parent.tag_name().name() == "world")
 }
 
-/// Adds the start tag of an included model. Name and pose are those of the `<include>` if it has them,
+/// Adds the start tag of an included SDF model, with name and pose of the `<include>` if it has them,
 /// otherwise those of the model.
-fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Include) {
+fn open_included_model(steps: &mut Vec<ExpansionStep>, model: Node<'_>, file: usize, include: &Include) {
     let start = model.range().start;
-    let text_step = |text: &str| Step::Put(text.to_string(), file, start);
-    steps.push(Step::Put("<model name=\"".to_string(), include.by, include.from));
+    let text_step = |text: &str| ExpansionStep::Put(text.to_string(), file, start);
+    steps.push(ExpansionStep::Put("<model name=\"".to_string(), include.by, include.from));
     match &include.name {
-        Some(range) => steps.push(Step::Copy(include.by, range.clone())),
-        None => steps.extend(model.attribute_node("name").map(|name| Step::Copy(file, name.range_value()))),
+        Some(range) => steps.push(ExpansionStep::Copy(include.by, range.clone())),
+        None => steps
+            .extend(model.attribute_node("name").map(|name| ExpansionStep::Copy(file, name.range_value()))),
     }
     steps.push(text_step("\""));
     // The version of the included file determines the interpretation of its elements.
     if let Some(version) = model.document().root_element().attribute_node("version") {
         steps.push(text_step(&format!(" {}=\"", version::OF_INCLUDED)));
-        steps.push(Step::Copy(file, version.range_value()));
+        steps.push(ExpansionStep::Copy(file, version.range_value()));
         steps.push(text_step("\""));
     }
     let is_own_attribute = |name: &str| name != "name" && name != version::OF_INCLUDED;
     for attribute in model.attributes().filter(|attribute| is_own_attribute(attribute.name())) {
         steps.push(text_step(&format!(" {}=\"", attribute.name())));
-        steps.push(Step::Copy(file, attribute.range_value()));
+        steps.push(ExpansionStep::Copy(file, attribute.range_value()));
         steps.push(text_step("\""));
     }
     steps.push(text_step(">"));
     let parts = include.pose.iter().chain(&include.plugins);
-    steps.extend(parts.map(|part| Step::Copy(include.by, part.clone())));
+    steps.extend(parts.map(|part| ExpansionStep::Copy(include.by, part.clone())));
 }
 
 /// Returns the only model of an included file, or reports that it has no model or several.
-fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
+fn only_model_of_file<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
     let mut models = child_elements(root).filter(|node| node.tag_name().name() == "model");
     let found = models.next().filter(|_| root.tag_name().name() == "sdf");
     let second = models.next();
@@ -225,7 +236,13 @@ fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
 
 /// Reads an `<include>`. Returns `None` if it is invalid, which is reported, or if a world includes a missing
 /// or static model.
-fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mut Cx<'_>) -> Option<Include> {
+fn read_include(
+    node: Node<'_>,
+    files: &[ReadFile],
+    by: usize,
+    depth: usize,
+    cx: &mut Cx<'_>,
+) -> Option<Include> {
     check_attributes(node, &[], &["merge"], cx);
     if node.attribute("merge").is_some_and(|merge| matches!(merge.trim(), "true" | "1")) {
         cx.report_error(&element_position(node, cx), "`merge` of an `<include>` is not supported", |d| {
@@ -240,7 +257,7 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
         let text_of_child = || relevant_contents(child).find(Node::is_text).map(trimmed_range);
         let kind = child.tag_name().name();
         if let Some(first) = seen.insert(kind, child).filter(|_| kind != "plugin") {
-            report_second(child, Some(first), cx);
+            report_duplicate(child, Some(first), cx);
         }
         match kind {
             "uri" => uri = read_word(child, cx),
@@ -250,7 +267,7 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
             "static"
                 if read_word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
             {
-                if in_world(node) {
+                if is_in_world(node) {
                     return None;
                 }
                 cx.report_error(
@@ -274,13 +291,13 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
         return None;
     };
     let from = node.range().start;
-    if in_world(node) && include_candidates(files, by, &uri.text).iter().all(|(path, _)| !path.is_file()) {
+    if is_in_world(node) && include_candidates(files, by, &uri.text).iter().all(|(path, _)| !path.is_file()) {
         return None;
     }
     Some(Include { by, from, uri, name: own_name, pose, plugins, depth })
 }
 
-/// Returns the byte range of a text without surrounding whitespace.
+/// Returns the byte range of a text node without surrounding whitespace.
 fn trimmed_range(text: Node<'_>) -> Range {
     let (range, all) = (text.range(), text.text().unwrap_or_default());
     let before = all.len() - all.trim_start().len();
@@ -291,7 +308,7 @@ fn trimmed_range(text: Node<'_>) -> Range {
 /// Returns the possible paths of an included file, each with the path for messages: relative to the including
 /// file or to the user's file, and one folder above each. For a folder, the path is that of its model, which
 /// is `model.sdf` unless `model.config` names another file.
-fn include_candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
+fn include_candidates(files: &[ReadFile], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     let rest = ["model://", "file://", "package://"].iter().find_map(|scheme| uri.strip_prefix(scheme));
     let named = rest.unwrap_or(uri);
     let mut found = Vec::new();
@@ -300,7 +317,7 @@ fn include_candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, Str
         for above in ["", ".."] {
             let sibling_path = |base: &Path| base.with_file_name(above).join(named);
             let (path, shown) = (sibling_path(&read.path), sibling_path(Path::new(&read.shown)));
-            let inside = if path.is_dir() { Some(model_of(&path)) } else { None };
+            let inside = if path.is_dir() { Some(model_file_name(&path)) } else { None };
             let path_of_model = |base: PathBuf| match &inside {
                 Some(inside) => base.join(inside),
                 None => base,
@@ -312,7 +329,7 @@ fn include_candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, Str
 }
 
 /// Returns the file name of the model in a folder.
-fn model_of(folder: &Path) -> String {
+fn model_file_name(folder: &Path) -> String {
     let usual = "model.sdf".to_string();
     let Ok(config) = std::fs::read_to_string(folder.join("model.config")) else { return usual };
     let Ok(document) = roxmltree::Document::parse(&config) else { return usual };
@@ -321,8 +338,8 @@ fn model_of(folder: &Path) -> String {
     last.unwrap_or(usual)
 }
 
-/// Finds and reads the file of an `<include>`.
-fn find_included_file(files: &[Read], include: &Include, cx: &mut Diagnostics) -> Option<Read> {
+/// Finds and reads the SDF file of an `<include>`.
+fn find_included_file(files: &[ReadFile], include: &Include, cx: &mut Diagnostics) -> Option<ReadFile> {
     let all = include_candidates(files, include.by, &include.uri.text);
     let there = all.iter().find(|(path, _)| path.is_file());
     if there.is_none() && include.uri.text.contains("://") {
@@ -337,8 +354,8 @@ fn find_included_file(files: &[Read], include: &Include, cx: &mut Diagnostics) -
     }
     let (path, shown) = there.or(all.first())?;
     let name = Name { text: shown.clone(), place: include.uri.place.clone() };
-    let text = file::read_named(path, &name, FileFormat::Sdf, cx)?;
-    Some(Read {
+    let text = file::read_named_file(path, &name, FileFormat::Sdf, cx)?;
+    Some(ReadFile {
         text: xml::clean_xml_text(&text).into_owned(),
         shown: shown.clone(),
         path: canonical_path(path),

@@ -2,17 +2,17 @@
 
 use super::frames::{Frames, origin_from_pose};
 use super::scope::Scope;
-use super::version::is_before;
+use super::version::is_before_version;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_plain, child_elements, element_position, known_children, quoted_tag,
-    read_name_attribute, read_numbers_content, read_word, relevant_contents, required_child,
+    Node, check_attributes, check_value_element, child_elements, element_position, known_children,
+    quoted_tag, read_name_attribute, read_numbers_content, read_word, relevant_contents, required_child,
 };
 use crate::import::imported::Placed;
 use crate::import::misplaced;
 use crate::import::pose::{Pose, Vector, length, matrix_times_vector};
 use crate::import::robot::{
-    FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, bare_link, has_axis, has_coordinate,
+    FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, has_axis, has_coordinate, massless_link,
 };
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
 
@@ -51,10 +51,10 @@ const EXPRESSED_IN: (u32, u32) = (1, 7);
 pub(super) fn frame_at_joint_end(node: Node<'_>, which: &str, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     let found = child_elements(node).find(|child| child.tag_name().name() == which)?;
     let said = read_word(found, cx)?;
-    Some(Name { text: scope.whole_name(&said.text), ..said })
+    Some(Name { text: scope.full_name(&said.text), ..said })
 }
 
-/// Reads a joint and adds it to the robot.
+/// Reads an SDF joint and adds it to the robot.
 pub(super) fn read_joint(
     (node, joint, scope): (Node<'_>, &Name, &Scope),
     frames: &Frames,
@@ -67,8 +67,8 @@ pub(super) fn read_joint(
     let [_, parent, child, axis, axis2, lead, old] = known_children(node, known, cx);
     required_child(parent, node, "parent", &[], cx)?;
     required_child(child, node, "child", &[], cx)?;
-    misplaced::check_misplaced(node, &known, JOINT_HELP, cx);
-    [parent, child].into_iter().flatten().for_each(|end| check_plain(end, &[], cx));
+    misplaced::report_misplaced_contents(node, &known, JOINT_HELP, cx);
+    [parent, child].into_iter().flatten().for_each(|end| check_value_element(end, &[], cx));
     for empty in [parent, child].into_iter().flatten().filter(|end| relevant_contents(*end).next().is_none())
     {
         let message = format!("{} without a name", quoted_tag(empty));
@@ -78,11 +78,11 @@ pub(super) fn read_joint(
     }
     let (parent, child) =
         (frame_at_joint_end(node, "parent", scope, cx)?, frame_at_joint_end(node, "child", scope, cx)?);
-    let (word, kind, axes) = read_type(node, cx)?;
-    let at = frames.resolve(joint, cx)?;
+    let (word, kind, axes) = read_joint_type(node, cx)?;
+    let at = frames.resolve_pose(joint, cx)?;
     // The ends of a joint may be frames that are attached to links.
     let (parent, child) = (frames.link_of_frame(&parent, cx)?, frames.link_of_frame(&child, cx)?);
-    let (outer, inner) = (frames.resolve(&parent, cx)?, frames.resolve(&child, cx)?);
+    let (outer, inner) = (frames.resolve_pose(&parent, cx)?, frames.resolve_pose(&child, cx)?);
     let anchor = inner.inverse_pose().compose_with(&at).at;
     let base = outer.inverse_pose().compose_with(&Pose { at: at.at, axes: inner.axes });
     let number = axes.max(1);
@@ -105,23 +105,23 @@ pub(super) fn read_joint(
             false => Name { text: format!("{}_1", joint.text), place: joint.place.clone() },
         };
         let pose = if k == 0 { base } else { Pose { at: anchor, ..Pose::ZERO } };
-        let said = Said { node, named: &named, axis, word, kind };
+        let said = AxisSource { node, named: &named, axis, word, kind };
         let mut found = said.read_axis_joint((&at, &inner), scope, frames, options, robot, cx)?;
         (found.parent, found.child) = (carrier, carried.clone());
         (found.origin, found.anchor) = (origin_from_pose(&pose, &joint.place), anchor);
         if kind == JointKind::Screw {
-            found.lead = read_lead(node, lead, old, cx);
+            found.lead = read_screw_lead(node, lead, old, cx);
         }
         robot.joints.push(found);
         if !last {
-            robot.links.push(bare_link(carried.clone()));
+            robot.links.push(massless_link(carried.clone()));
         }
         carrier = carried;
     }
     Some(())
 }
 
-fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind, usize)> {
+fn read_joint_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind, usize)> {
     let found = node.attribute_node("type")?;
     let known = TYPES.iter().find(|(word, ..)| *word == found.value());
     if known.is_none() {
@@ -142,7 +142,12 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
 
 /// Reads the lead of a screw: advance per revolution, m. The older element `<thread_pitch>`, in rad/m, is
 /// positive for left-handed threads.
-fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
+fn read_screw_lead(
+    node: Node<'_>,
+    lead: Option<Node<'_>>,
+    old: Option<Node<'_>>,
+    cx: &mut Cx<'_>,
+) -> Option<Expr> {
     let Some(written) = lead.or(old) else {
         cx.report_error(&element_position(node, cx), "screw without `<screw_thread_pitch>`", |d| {
             d.add_help("it is the advance of the joint per turn, m")
@@ -163,7 +168,7 @@ fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: 
     Some(Expr::number_at(lead, &found.place))
 }
 
-/// Returns a joint that fixes two links to each other.
+/// Returns the SDF joint that fixes one link to another.
 pub(super) fn fixed_joint(name: Name, parent: Name, child: Name, origin: Origin) -> FileJoint {
     let axis = Placed { value: [0.0, 0.0, 1.0], place: name.place.clone() };
     FileJoint {
@@ -184,8 +189,8 @@ pub(super) fn fixed_joint(name: Name, parent: Name, child: Name, origin: Origin)
     }
 }
 
-/// Data from which one axis of a joint is read.
-struct Said<'n> {
+/// Data from which one axis of an SDF joint is read.
+struct AxisSource<'n> {
     node: Node<'n>,
     named: &'n Name,
     axis: Option<Node<'n>>,
@@ -193,7 +198,7 @@ struct Said<'n> {
     kind: JointKind,
 }
 
-impl Said<'_> {
+impl AxisSource<'_> {
     /// Reads the joint of this axis. Parent, child and origin are placeholders, which the caller sets.
     fn read_axis_joint(
         &self,
@@ -204,7 +209,7 @@ impl Said<'_> {
         robot: &mut Robot,
         cx: &mut Cx<'_>,
     ) -> Option<FileJoint> {
-        let Said { node, named, word, kind, .. } = *self;
+        let AxisSource { node, named, word, kind, .. } = *self;
         let own = element_position(node, cx);
         let bare =
             fixed_joint(named.clone(), named.clone(), named.clone(), origin_from_pose(&Pose::ZERO, &own));
@@ -219,10 +224,13 @@ impl Said<'_> {
         };
         let parts = ["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"];
         let [xyz, limit, dynamics, mimic, old, _] = known_children(axis, parts, cx);
-        [Some(axis), limit, dynamics].into_iter().flatten().for_each(|node| check_plain(node, &[], cx));
-        misplaced::check_misplaced(axis, &parts, AXIS_HELP, cx);
+        [Some(axis), limit, dynamics]
+            .into_iter()
+            .flatten()
+            .for_each(|node| check_value_element(node, &[], cx));
+        misplaced::report_misplaced_contents(axis, &parts, AXIS_HELP, cx);
         let of_model = Name { text: scope.full_frame_name(), place: element_position(axis, cx) };
-        let usual = if is_in_model(axis, old, cx) { frames.resolve(&of_model, cx)? } else { *at };
+        let usual = if is_in_model(axis, old, cx) { frames.resolve_pose(&of_model, cx)? } else { *at };
         joint.axis = read_axis(xyz, axis, (&usual, inner), scope, frames, cx)?;
         if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
             read_dynamics(dynamics, &mut joint, robot, cx);
@@ -244,10 +252,10 @@ impl Said<'_> {
 /// Returns true if an axis is expressed in the axes of the model: by default in old versions, otherwise if
 /// `<use_parent_model_frame>` is true.
 fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
-    let Some(old) = old else { return is_before(axis, IN_JOINT) };
+    let Some(old) = old else { return is_before_version(axis, IN_JOINT) };
     let is_said =
         read_word(old, cx).is_some_and(|word| matches!(&*word.text.to_ascii_lowercase(), "true" | "1"));
-    if is_said && !is_before(axis, EXPRESSED_IN) {
+    if is_said && !is_before_version(axis, EXPRESSED_IN) {
         let message = "`<use_parent_model_frame>` has another name since version 1.7 of SDF";
         cx.report_error(&element_position(old, cx), message, |d| {
             d.add_help("write `<xyz expressed_in=\"__model__\">`")
@@ -278,8 +286,8 @@ fn read_axis(
     let said = xyz.and_then(|xyz| xyz.attribute_node("expressed_in"));
     let axes = match said.filter(|said| !said.value().trim().is_empty()) {
         Some(said) => {
-            let text = scope.whole_name(said.value().trim());
-            frames.resolve(&Name { text, place: cx.source_position(said.range_value().start) }, cx)?
+            let text = scope.full_name(said.value().trim());
+            frames.resolve_pose(&Name { text, place: cx.source_position(said.range_value().start) }, cx)?
         }
         None => *usual,
     };
@@ -290,7 +298,7 @@ fn read_axis(
 fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &mut Cx<'_>) {
     let parts = ["damping", "friction", "spring_stiffness", "spring_reference"];
     let found = known_children(node, parts, cx);
-    misplaced::check_misplaced(node, &parts, AXIS_HELP, cx);
+    misplaced::report_misplaced_contents(node, &parts, AXIS_HELP, cx);
     let [damping, friction, stiffness, free] =
         found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
     let alone = has_coordinate(joint.kind);
@@ -322,7 +330,12 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
 
 fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits {
     let found = known_children(node, ["lower", "upper", "velocity", "effort"], cx);
-    misplaced::check_misplaced(node, &["lower", "upper", "velocity", "effort", "stiffness"], AXIS_HELP, cx);
+    misplaced::report_misplaced_contents(
+        node,
+        &["lower", "upper", "velocity", "effort", "stiffness"],
+        AXIS_HELP,
+        cx,
+    );
     let is_infinite_limit = |part: Node<'_>, cx: &Cx<'_>| {
         read_word(part, cx).is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
     };
@@ -355,18 +368,19 @@ fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
     check_attributes(node, &["joint"], &["axis"], cx);
     let mut leader = read_name_attribute(node, "joint", cx)?;
     leader.text = match node.attribute("axis") {
-        Some("axis2") => format!("{}_2", scope.whole_name(&leader.text)),
-        _ => scope.whole_name(&leader.text),
+        Some("axis2") => format!("{}_2", scope.full_name(&leader.text)),
+        _ => scope.full_name(&leader.text),
     };
     let found = known_children(node, ["multiplier", "offset", "reference"], cx);
-    misplaced::check_misplaced(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
+    misplaced::report_misplaced_contents(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
     let [multiplier, offset, reference] =
         found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
-    let value_or = |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
-    let multiplier = value_or(multiplier, 1.0);
+    let value_or_default =
+        |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
+    let multiplier = value_or_default(multiplier, 1.0);
     Some(Mimic {
         joint: leader,
         multiplier,
-        offset: value_or(offset, 0.0) - multiplier * value_or(reference, 0.0),
+        offset: value_or_default(offset, 0.0) - multiplier * value_or_default(reference, 0.0),
     })
 }

@@ -1,24 +1,24 @@
-//! Conversion of a `<link>` element to a [`Body`].
+//! Conversion of an SDF `<link>` element to a [`Body`].
 
-use super::frames::{Frames, pose_in, reference_frame_attribute};
+use super::frames::{Frames, pose_in_link, reference_frame_attribute};
 use super::scope::Scope;
-use super::version::is_before;
+use super::version::is_before_version;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, check_element_name, check_plain, child_elements, element_position,
+    Node, check_attributes, check_element_name, check_value_element, child_elements, element_position,
     known_children, read_numbers_content, read_word,
 };
 use crate::import::misplaced;
 use crate::import::pose::{Matrix, Pose, rotated_tensor};
-use crate::import::robot::bare_link;
+use crate::import::robot::massless_link;
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 
-/// Entries of the inertia matrix with their defaults, kg·m².
+/// Entries of the SDF inertia matrix with their defaults, kg·m².
 const INERTIA: [(&str, f64); 6] =
     [("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0)];
 
-/// Elements of a link that are read here.
+/// Child elements of an SDF link that this module reads.
 const LINK: [&str; 3] = ["inertial", "pose", "velocity_decay"];
 
 const PARTS_HELP: &str = "expected `<pose>`, `<mass>` and `<inertia>` with `<ixx>` and so on";
@@ -36,11 +36,11 @@ pub(super) fn read_link(
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
     check_attributes(node, &["name"], &[], cx);
-    frames.resolve(name, cx)?;
-    let mut body = bare_link(name.clone());
-    check_motion(node, options, cx);
+    frames.resolve_pose(name, cx)?;
+    let mut body = massless_link(name.clone());
+    check_link_motion(node, options, cx);
     child_elements(node).for_each(|child| check_element_name(child, &LINK, cx));
-    misplaced::check_misplaced(
+    misplaced::report_misplaced_contents(
         node,
         &LINK,
         "mass properties belong to `<inertial>`, and connections of links to `<joint>`",
@@ -53,9 +53,9 @@ pub(super) fn read_link(
     let at = element_position(inertial.unwrap_or(node), cx);
     let [pose, mass, inertia, water] = match inertial {
         Some(inertial) => {
-            check_computed(inertial, &at, cx);
-            check_plain(inertial, &["auto"], cx);
-            misplaced::check_misplaced(inertial, &["pose", "mass", "inertia"], PARTS_HELP, cx);
+            check_computed_inertia(inertial, &at, cx);
+            check_value_element(inertial, &["auto"], cx);
+            misplaced::report_misplaced_contents(inertial, &["pose", "mass", "inertia"], PARTS_HELP, cx);
             known_children(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
         }
         None => [None; 4],
@@ -71,13 +71,15 @@ pub(super) fn read_link(
     };
     let pose = match (pose, inertial) {
         (Some(pose), Some(inertial)) => {
-            if let Some(said) = reference_frame_attribute(pose, cx).filter(|_| !is_before(pose, IN_LINK)) {
+            if let Some(said) =
+                reference_frame_attribute(pose, cx).filter(|_| !is_before_version(pose, IN_LINK))
+            {
                 let at = cx.source_position(said.range_value().start);
                 cx.report_error(&at, "the pose of an `<inertial>` is relative to its link", |d| {
                     d.add_help("remove `relative_to`")
                 });
             }
-            pose_in(inertial, (name, scope), frames, cx)?
+            pose_in_link(inertial, (name, scope), frames, cx)?
         }
         _ => Pose::ZERO,
     };
@@ -95,7 +97,7 @@ pub(super) fn read_link(
 }
 
 /// Reports settings of a link that affect its motion and are not supported.
-fn check_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
+fn check_link_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
     for child in child_elements(node) {
         let kind = child.tag_name().name();
         let off = read_word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "false" | "0"));
@@ -118,7 +120,7 @@ fn check_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
     }
 }
 
-fn check_computed(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
+fn check_computed_inertia(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
     check_attributes(inertial, &[], &["auto"], cx);
     if inertial.attribute("auto").is_some_and(|auto| matches!(auto, "true" | "1")) {
         let message = "mass properties by collision geometry are not supported";
@@ -129,8 +131,8 @@ fn check_computed(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
 fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     let mut entries = INERTIA.map(|(_, usual)| usual);
     if let Some(inertia) = inertia {
-        check_plain(inertia, &[], cx);
-        misplaced::check_misplaced(inertia, &INERTIA.map(|(entry, _)| entry), PARTS_HELP, cx);
+        check_value_element(inertia, &[], cx);
+        misplaced::report_misplaced_contents(inertia, &INERTIA.map(|(entry, _)| entry), PARTS_HELP, cx);
         let found = known_children(inertia, INERTIA.map(|(entry, _)| entry), cx);
         for (to, from) in entries.iter_mut().zip(found) {
             if let Some(found) = from.and_then(|from| read_numbers_content::<1>(from, cx)) {
@@ -142,7 +144,7 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }
 
-/// Sets the mass properties of a body.
+/// Sets the mass properties of a body from an SDF link.
 fn set_mass_properties(body: &mut Body, mass: f64, pose: &Pose, inertia: &Matrix, at: &Place) {
     body.mass = Some(Expr::number_at(mass, at));
     body.com = (pose.at != [0.0; 3]).then(|| Expr::vector_at(pose.at, at));

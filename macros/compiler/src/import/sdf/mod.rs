@@ -30,13 +30,13 @@ mod scope;
 mod version;
 mod visual;
 
-/// Child elements that a model may have.
+/// Child elements that an SDF model may have.
 const MODEL: [&str; 10] =
     ["link", "joint", "frame", "model", "pose", "static", "include", "plugin", "self_collide", "gripper"];
 
 const MODEL_HELP: &str = "a model holds `<link>`, `<joint>`, `<frame>` and `<model>`";
 
-/// Child elements that a world may have.
+/// Child elements that an SDF world may have.
 const WORLD_PARTS: [&str; 20] = [
     "model",
     "joint",
@@ -80,9 +80,9 @@ const ASIDE: [(&str, &str); 12] = [
     ("state", "states of the world"),
 ];
 
-/// Elements of a file, collected before they are read.
+/// Elements of an SDF file, collected before their contents are read.
 #[derive(Default)]
-struct Reader<'a> {
+struct SdfReader<'a> {
     frames: Frames,
     links: Vec<(Node<'a>, Name, Scope)>,
     /// Names of the frames that `<frame>` elements define.
@@ -95,7 +95,7 @@ struct Models<'a> {
     moving: Vec<(Node<'a>, String)>,
     /// Static models in the world of the mechanism.
     fixed: Vec<(Node<'a>, String)>,
-    /// World that contains the models, if the file has one.
+    /// SDF world that contains the models, if the file has one.
     world: Option<Node<'a>>,
 }
 
@@ -106,7 +106,7 @@ pub(super) fn import_sdf(
     options: &FileOptions,
     cx: &mut Diagnostics,
 ) -> Option<Imported> {
-    let whole = include::read_whole(text, path, &options.path, cx)?;
+    let whole = include::read_with_includes(text, path, &options.path, cx)?;
     let folder = path.parent().unwrap_or(path);
     import_composed_text(whole, &options.path, FileFormat::Sdf, cx, |root, cx| {
         read_root_element(root, folder, options, cx)
@@ -121,8 +121,8 @@ fn read_root_element<'a>(
     cx: &mut Cx<'_>,
 ) -> Option<Imported> {
     let top = find_models(root_node, cx)?;
-    let mut reader = Reader::default();
-    reader.read_top(&top, cx)?;
+    let mut reader = SdfReader::default();
+    reader.read_top_models(&top, cx)?;
     let mut robot = Robot::default();
     for (node, name, scope) in &reader.links {
         let number = robot.links.len();
@@ -149,10 +149,10 @@ fn read_root_element<'a>(
         robot::close_loops(&mut robot, cx);
     }
     robot::check_names(&robot, options.format, cx);
-    robot::declare_world(&mut robot);
+    robot::declare_world_link(&mut robot);
     robot::rename_ground(&mut robot, options.base);
-    robot::check_ends(&robot, options.format, cx);
-    robot::check_locks(&robot.joints, &options.lock, cx);
+    robot::check_joint_ends(&robot, options.format, cx);
+    robot::check_locked_names(&robot.joints, &options.lock, cx);
     if let Some(tolerance) = options.snap.filter(|_| !cx.has_errors()) {
         robot.snapped =
             robot.joints.iter_mut().flat_map(|joint| robot::snap_joint_frame(joint, tolerance)).collect();
@@ -165,20 +165,20 @@ fn read_root_element<'a>(
     let root = robot.links.get(order.root)?.name.clone();
     // If the root is a frame of the file, its pose relative to the world is known.
     if reader.frames.known.contains_key(&root.text) {
-        robot.root = Some(origin_from_pose(&reader.frames.resolve(&root, cx)?, &root.place));
+        robot.root = Some(origin_from_pose(&reader.frames.resolve_pose(&root, cx)?, &root.place));
     }
     robot.gravity = gravity_of_world(top.world.or_else(|| first_child(root_node, "world")), cx);
-    robot.left_out.extend(left_out(root_node, options));
+    robot.left_out.extend(ignored_contents(root_node, options));
     let standing = links_fixed_to_ground(&robot, &root.text, options);
     let closing = std::mem::take(&mut robot.closing);
-    let mut imported = robot::assemble(robot, &order, motions, options, cx);
-    robot::make_fields(&mut imported, &standing, options, cx);
+    let mut imported = robot::assemble_mechanism(robot, &order, motions, options, cx);
+    robot::make_value_fields(&mut imported, &standing, options, cx);
     imported.joints.extend(closing);
     (!cx.has_errors()).then_some(imported)
 }
 
 /// Returns the contents of the file that the mechanism does not represent, for the generated documentation.
-fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
+fn ignored_contents(root: Node<'_>, options: &FileOptions) -> Vec<String> {
     let mut counts = [0; ASIDE.len()];
     for node in root.descendants().filter(Node::is_element) {
         for (count, (element, _)) in counts.iter_mut().zip(ASIDE) {
@@ -222,12 +222,12 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     if found.len() > 1 {
         (fixed, found) = found.into_iter().partition(|model| is_static(*model));
     }
-    let world_of =
+    let world_of_model =
         |model: &Node<'a>| model.parent_element().filter(|above| above.tag_name().name() == "world");
-    let world = found.first().and_then(world_of);
+    let world = found.first().and_then(world_of_model);
     let has_child_of_kind =
         |kind: &str| world.is_some_and(|world| !children_with_tag(world, kind).is_empty());
-    let is_joined = has_child_of_kind("joint") && found.iter().all(|model| world_of(model) == world);
+    let is_joined = has_child_of_kind("joint") && found.iter().all(|model| world_of_model(model) == world);
     let models_with_prefix = |models: Vec<Node<'a>>, before: &str| -> Vec<(Node<'a>, String)> {
         let name_prefix =
             |model: Node<'a>| format!("{before}{}::", model.attribute("name").unwrap_or_default());
@@ -236,13 +236,13 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     match found.as_slice() {
         [one] => {
             fixed.retain(|model| {
-                world_of(model) == world && (has_child_of_kind("joint") || has_child_of_kind("frame"))
+                world_of_model(model) == world && (has_child_of_kind("joint") || has_child_of_kind("frame"))
             });
             let fixed = models_with_prefix(fixed, &format!("{WORLD}::"));
             return Some(Models { moving: vec![(*one, String::new())], fixed, world });
         }
         [_, _, ..] if is_joined => {
-            fixed.retain(|model| world_of(model) == world);
+            fixed.retain(|model| world_of_model(model) == world);
             let fixed = models_with_prefix(fixed, &format!("{WORLD}::"));
             return Some(Models { moving: models_with_prefix(found, ""), fixed, world });
         }
@@ -261,12 +261,12 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     None
 }
 
-/// Returns the first child element with this name.
+/// Returns the first child element of an XML element with this name.
 fn first_child<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
     child_elements(node).find(|child| child.tag_name().name() == kind)
 }
 
-/// Returns whether a model is static.
+/// Returns whether an SDF model is static, so that its links do not move.
 fn is_static(model: Node<'_>) -> bool {
     let text =
         first_child(model, "static").and_then(|said| relevant_contents(said).find_map(|text| text.text()));
@@ -279,7 +279,7 @@ fn gravity_of_world(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     let world = world?;
     let said = first_child(world, "gravity").or_else(|| {
         let of_physics = first_child(first_child(world, "physics")?, "gravity")?;
-        if !version::is_before(world, GRAVITY_OF_WORLD) {
+        if !version::is_before_version(world, GRAVITY_OF_WORLD) {
             let message = "`<gravity>` is an element of the world since version 1.6 of SDF";
             cx.report_error(&element_position(of_physics, cx), message, |d| {
                 d.add_help("move it from `<physics>` into `<world>`")
@@ -293,9 +293,9 @@ fn gravity_of_world(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     Some(Expr::vector_at(value, &at))
 }
 
-impl<'a> Reader<'a> {
+impl<'a> SdfReader<'a> {
     /// Collects the links, joints and frames of the models and of their world.
-    fn read_top(&mut self, top: &Models<'a>, cx: &mut Cx<'_>) -> Option<()> {
+    fn read_top_models(&mut self, top: &Models<'a>, cx: &mut Cx<'_>) -> Option<()> {
         let all = [top.moving.as_slice(), &top.fixed].concat();
         let world = Scope::World(Rc::new(World::new(top.world, &all)));
         for (model, prefix) in &top.moving {
@@ -305,11 +305,16 @@ impl<'a> Reader<'a> {
             self.read_models((*model, prefix), &world, true, cx)?;
         }
         if let Some(node) = top.world {
-            misplaced::check_misplaced(node, &["joint"], "links and their parts belong to a `<model>`", cx);
+            misplaced::report_misplaced_contents(
+                node,
+                &["joint"],
+                "links and their parts belong to a `<model>`",
+                cx,
+            );
         }
         for child in top.world.into_iter().flat_map(child_elements) {
             match child.tag_name().name() {
-                kind @ ("joint" | "frame") => self.read_part(child, kind, &world, false, cx),
+                kind @ ("joint" | "frame") => self.read_model_element(child, kind, &world, false, cx),
                 _ => check_element_name(child, &WORLD_PARTS, cx),
             }
         }
@@ -329,7 +334,7 @@ impl<'a> Reader<'a> {
         while let Some((node, prefix, outer)) = open.pop() {
             let scope = Scope::Model(prefix.clone());
             check_attributes(node, &["name"], &["canonical_link", "placement_frame"], cx);
-            misplaced::check_misplaced(node, &["link", "joint", "pose"], MODEL_HELP, cx);
+            misplaced::report_misplaced_contents(node, &["link", "joint", "pose"], MODEL_HELP, cx);
             if let Some(frame) =
                 node.attribute_node("placement_frame").filter(|frame| !frame.value().is_empty())
             {
@@ -353,7 +358,9 @@ impl<'a> Reader<'a> {
             self.frames.known.insert(own.clone(), frame);
             for child in child_elements(node) {
                 match child.tag_name().name() {
-                    kind @ ("link" | "joint" | "frame") => self.read_part(child, kind, &scope, is_fixed, cx),
+                    kind @ ("link" | "joint" | "frame") => {
+                        self.read_model_element(child, kind, &scope, is_fixed, cx)
+                    }
                     "model" => {
                         if let Some(inner) = read_name_attribute(child, "name", cx) {
                             open.push((child, format!("{prefix}{}::", inner.text), scope.clone()));
@@ -386,7 +393,14 @@ impl<'a> Reader<'a> {
     }
 
     /// Collects a link, a joint or a frame. Each of them defines a frame.
-    fn read_part(&mut self, node: Node<'a>, kind: &str, scope: &Scope, is_fixed: bool, cx: &mut Cx<'_>) {
+    fn read_model_element(
+        &mut self,
+        node: Node<'a>,
+        kind: &str,
+        scope: &Scope,
+        is_fixed: bool,
+        cx: &mut Cx<'_>,
+    ) {
         let Some(mut part) = read_name_attribute(node, "name", cx) else {
             check_attributes(node, &["name"], &[], cx);
             return;
@@ -397,7 +411,7 @@ impl<'a> Reader<'a> {
             "joint" => joint::frame_at_joint_end(node, "child", scope, cx)
                 .map_or(scope.full_frame_name(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
-                Some(to) => scope.whole_name(to),
+                Some(to) => scope.full_name(to),
                 None => scope.full_frame_name(),
             },
             _ => scope.full_frame_name(),
@@ -441,7 +455,7 @@ impl<'a> Reader<'a> {
             if carrier.text == WORLD && !hangs_from_world {
                 continue;
             }
-            let (at, base) = (self.frames.resolve(mark, cx)?, self.frames.resolve(&carrier, cx)?);
+            let (at, base) = (self.frames.resolve_pose(mark, cx)?, self.frames.resolve_pose(&carrier, cx)?);
             let text = robot::unused_name(&format!("{}_weld", mark.text), |name| names.contains(name));
             names.insert(text.clone());
             let name = Name { text, place: mark.place.clone() };
@@ -451,7 +465,7 @@ impl<'a> Reader<'a> {
                 mark.clone(),
                 origin_from_pose(&base.inverse_pose().compose_with(&at), &mark.place),
             ));
-            robot.links.push(robot::bare_link(mark.clone()));
+            robot.links.push(robot::massless_link(mark.clone()));
         }
         Some(())
     }
@@ -461,12 +475,12 @@ impl<'a> Reader<'a> {
 /// default.
 fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     if let Some(said) = node.attribute_node("canonical_link").filter(|said| !said.value().is_empty()) {
-        let text = scope.whole_name(said.value());
+        let text = scope.full_name(said.value());
         return Some(Name { text, place: cx.source_position(said.range_value().start) });
     }
     let child_name = |what: &str| {
         let found = first_child(node, what)?;
-        Some(Name { text: scope.whole_name(found.attribute("name")?), place: element_position(found, cx) })
+        Some(Name { text: scope.full_name(found.attribute("name")?), place: element_position(found, cx) })
     };
     child_name("link").or_else(|| child_name("model"))
 }

@@ -4,8 +4,7 @@ use crate::import::element::{Node, child_elements};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-/// Frame of the world, and of the outermost model. All other frames are relative to it, directly or
-/// indirectly.
+/// Name of the frame of the world and of the outermost model, to which all other frames are relative.
 pub(super) const WORLD: &str = "world";
 
 /// Scope in which names are looked up: a model or the world.
@@ -18,17 +17,17 @@ pub(super) enum Scope {
     World(Rc<World>),
 }
 
-/// Names that a world defines.
+/// Names that an SDF world defines for its joints and frames.
 #[derive(Debug, Default)]
 pub(super) struct World {
-    /// Prefix of the full names of each model's parts.
+    /// Prefix of the full names of elements in each model of the world.
     models: BTreeMap<String, String>,
     /// Full name of each frame and joint of the world.
     parts: BTreeMap<String, String>,
 }
 
 impl World {
-    /// Collects the names of the world `node`, if there is one, whose `models` have these prefixes.
+    /// Collects the names in the SDF world `node`, if it exists, whose `models` have these prefixes.
     pub(super) fn new(node: Option<Node<'_>>, models: &[(Node<'_>, String)]) -> World {
         let name = |node: &Node<'_>| node.attribute("name").map(str::to_string);
         // Elements of a model without a prefix keep their names; equal names of the world get a prefix
@@ -53,8 +52,8 @@ impl World {
 }
 
 impl Scope {
-    /// Returns the full name that `name` refers to.
-    pub(super) fn whole_name(&self, name: &str) -> String {
+    /// Returns the full name to which `name` refers in this scope.
+    pub(super) fn full_name(&self, name: &str) -> String {
         match (self, name) {
             (_, WORLD) => WORLD.to_string(),
             (Scope::Model(prefix), "__model__") => full_model_frame_name(prefix),
@@ -74,7 +73,7 @@ impl Scope {
     pub(super) fn name_of_part(&self, name: &str) -> String {
         match self {
             Scope::Model(prefix) => format!("{prefix}{name}"),
-            Scope::World(_) => self.whole_name(name),
+            Scope::World(_) => self.full_name(name),
         }
     }
 

@@ -11,13 +11,13 @@ const FIRST: (u32, u32) = (1, 2);
 
 /// Returns true if an element belongs to a file of an earlier version than `number`. A file without a version
 /// is treated as the latest version.
-pub(super) fn is_before(node: Node<'_>, number: (u32, u32)) -> bool {
+pub(super) fn is_before_version(node: Node<'_>, number: (u32, u32)) -> bool {
     let version = node.ancestors().find_map(|above| {
         above
             .attribute(OF_INCLUDED)
             .or_else(|| above.attribute("version").filter(|_| above.tag_name().name() == "sdf"))
     });
-    version.and_then(parse).is_some_and(|version| version < number)
+    version.and_then(parse_version).is_some_and(|version| version < number)
 }
 
 /// Reports an invalid or unsupported version of SDF.
@@ -25,25 +25,25 @@ pub(super) fn check_version(root: Node<'_>, cx: &mut Cx<'_>) {
     let is_sdf = root.tag_name().name() == "sdf";
     let Some(version) = root.attribute_node("version").filter(|_| is_sdf) else { return };
     let at = cx.source_position(version.range_value().start);
-    match parse(version.value()) {
+    match parse_version(version.value()) {
         None => {
             let message = format!("{} is not a version of SDF", quote_word(version.value()));
             cx.report_error(&at, message, |d| d.add_help("expected a number, as in `version=\"1.9\"`"));
         }
-        Some(found) if found < FIRST => report_first(root, cx),
+        Some(found) if found < FIRST => report_first_version(root, cx),
         Some(_) => {}
     }
 }
 
-/// Reports a file of version 1.0, whose elements have other names.
-pub(super) fn report_first(root: Node<'_>, cx: &mut Cx<'_>) {
+/// Reports an SDF file of version 1.0, whose elements have other names.
+pub(super) fn report_first_version(root: Node<'_>, cx: &mut Cx<'_>) {
     cx.report_error(&element_position(root, cx), "version 1.0 of SDF is not supported", |d| {
         d.add_help("convert the file: `gz sdf -p robot.sdf > converted.sdf`")
     });
 }
 
-/// Returns major and minor number of a version.
-fn parse(text: &str) -> Option<(u32, u32)> {
+/// Returns the major and minor number of an SDF version.
+fn parse_version(text: &str) -> Option<(u32, u32)> {
     let (major, minor) = text.trim().split_once('.')?;
     Some((major.parse().ok()?, minor.parse().ok()?))
 }

@@ -2,14 +2,14 @@
 //! error.
 
 use super::collision::{SHAPES, read_shape};
-use super::frames::{Frames, origin_in};
+use super::frames::{Frames, origin_in_link};
 use super::scope::Scope;
 use crate::import::context::Cx;
 use crate::import::element::{Node, child_elements, read_numbers_content, read_word};
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Name, Shape};
 
-/// Reads all visual geometry of a link.
+/// Reads all visual geometry of an SDF link.
 pub(super) fn read_visuals(
     node: Node<'_>,
     link: (&Name, &Scope),
@@ -17,14 +17,19 @@ pub(super) fn read_visuals(
     cx: &mut Cx<'_>,
 ) -> Vec<FileVisual> {
     let parts = child_elements(node).filter(|node| node.tag_name().name() == "visual");
-    parts.filter_map(|part| read_part(part, link, frames, cx)).collect()
+    parts.filter_map(|part| read_visual(part, link, frames, cx)).collect()
 }
 
-fn read_part(node: Node<'_>, link: (&Name, &Scope), frames: &Frames, cx: &mut Cx<'_>) -> Option<FileVisual> {
+fn read_visual(
+    node: Node<'_>,
+    link: (&Name, &Scope),
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Option<FileVisual> {
     let geometry = child_elements(node).find(|child| child.tag_name().name() == "geometry")?;
     let is_shape = |child: &Node<'_>| SHAPES.contains(&child.tag_name().name());
     let form = child_elements(geometry).find(is_shape)?;
-    let origin = origin_in(node, link, frames, cx)?;
+    let origin = origin_in_link(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = if shape == Shape::Mesh { Some(read_mesh(form, cx)?) } else { None };
     Some(FileVisual { origin, shape, mesh })

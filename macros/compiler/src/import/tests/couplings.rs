@@ -1,12 +1,12 @@
 //! Tests of actuators and couplings of joints in MJCF files.
 
-use super::mjcf::{check_model, mjcf_options};
+use super::mjcf::{check_mjcf_elements, mjcf_options};
 use super::*;
 use crate::syntax::Key;
 
 #[test]
-fn servos_are_inputs_with_springs() {
-    check_model(
+fn position_servos_become_inputs_with_springs() {
+    check_mjcf_elements(
         "<worldbody><body name='b'><joint name='j'/></body></worldbody><actuator>
          <motor name='m' joint='j' gear='5'/> <position joint='j' kp='4' gear='2'/>
          <general name='g' joint='j' gainprm='3' biastype='affine' biasprm='1 0 -2'/></actuator>",
@@ -23,14 +23,14 @@ fn servos_are_inputs_with_springs() {
 }
 
 #[test]
-fn a_joint_follows_or_is_held() {
+fn coupled_joints_follow_or_are_locked() {
     let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
              </body></body></worldbody><equality>{equality}</equality>"
         )
     };
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<joint joint1='k' joint2='j' polycoef='5 -3'/>"),
         "the root is the ground
          body b
@@ -38,7 +38,7 @@ fn a_joint_follows_or_is_held() {
          Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
          Sleeve k: b.at([0, 0, -2]) -> c along [0, 0, 1] = -3 j + 10",
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<joint joint1='k' polycoef='5'/>"),
         "the root is the ground
          body b
@@ -46,12 +46,12 @@ fn a_joint_follows_or_is_held() {
          Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
          Weld k: b.at([0, 0, 5]) -> c",
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<joint joint1='k' joint2='jj'/>"),
         "r.xml:2:180: unknown joint `jj`
          = help: did you mean `j`?",
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<flex flex='b'/>"),
         "r.xml:2:154: the coupling `<flex>` is not supported
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
@@ -59,7 +59,7 @@ fn a_joint_follows_or_is_held() {
 }
 
 #[test]
-fn sums_and_polynomials_are_conditions() {
+fn linear_and_polynomial_couplings_become_constraints() {
     let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
@@ -77,15 +77,18 @@ fn sums_and_polynomials_are_conditions() {
         )
     };
     // 2 (j − 1) + 4 (k − 2) = 6
-    check_model(&model_with_equality("<tendon tendon1='s' polycoef='6'/>"), &expected_start(" = -0.5 j + 4"));
-    check_model(
+    check_mjcf_elements(
+        &model_with_equality("<tendon tendon1='s' polycoef='6'/>"),
+        &expected_start(" = -0.5 j + 4"),
+    );
+    check_mjcf_elements(
         &model_with_equality("<tendon name='w' tendon1='s' tendon2='t' polycoef='5 6 7'/>"),
         &format!(
             "{}\nw: ((-10 + (2 * j)) + (4 * k)) = (5 + ((6 + (7 * (-6 + (3 * k)))) * (-6 + (3 * k))))",
             expected_start("")
         ),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<joint joint1='j' joint2='k' polycoef='0 0 1'/>"),
         &format!(
             "{}\njoint_coupling: (-1 + (1 * j)) = (0 + ((0 + (1 * (-2 + (1 * k)))) * (-2 + (1 * k))))",
@@ -93,7 +96,7 @@ fn sums_and_polynomials_are_conditions() {
         ),
     );
     // Two constraints on one joint.
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<joint joint1='k' joint2='j'/><tendon tendon1='s'/>"),
         &format!("{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0", expected_start(" = 1 j + 1")),
     );
@@ -113,7 +116,7 @@ fn sums_and_polynomials_are_conditions() {
         let model = model_with_equality(equality)
             .replace("<worldbody>", sites)
             .replace("</tendon><eq", &format!("{cable}<eq"));
-        check_model(&model, &expected);
+        check_mjcf_elements(&model, &expected);
     }
 }
 
@@ -121,7 +124,7 @@ fn sums_and_polynomials_are_conditions() {
 /// defaults of the same shortcut, or of `<general>` with a constant gain, in the nearest class that has them.
 /// No shortcut takes the constant force of a bias.
 #[test]
-fn defaults_of_actuators_are_one_record() {
+fn actuator_defaults_of_a_class_form_one_record() {
     for (defaults, actuator, expected) in [
         (
             "<general gainprm='400' biasprm='1 -300 -20'/>",
@@ -184,7 +187,7 @@ fn defaults_of_actuators_are_one_record() {
 }
 
 #[test]
-fn what_newer_versions_have_is_refused() {
+fn attributes_of_newer_mujoco_versions_are_rejected() {
     let model_with_joint_and_motor = |joint: &str, motor: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>\
@@ -215,12 +218,12 @@ fn what_newer_versions_have_is_refused() {
         ),
         ("", "delay='0.1'", format!("r.xml:2:107: `delay` of an actuator is not supported\n{inputs}")),
     ] {
-        check_model(&model_with_joint_and_motor(joint, motor), &expected);
+        check_mjcf_elements(&model_with_joint_and_motor(joint, motor), &expected);
     }
 }
 
 #[test]
-fn loops_are_closed() {
+fn connect_and_weld_constraints_close_loops() {
     let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b' pos='1 0 0' euler='90 0 0'/><body name='c' mocap='true'/><body name='d' pos='0 0 2'>\
@@ -236,29 +239,29 @@ fn loops_are_closed() {
          Weld c_weld: ground -> c
          Weld d_weld: ground.at([0, 0, 2]) -> d
          Weld s_weld: d.at([0, 0, 3]) -> s";
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<connect body1='b' body2='d' anchor='1 2 4'/>"),
         &format!("{start}\nBall connect1: b.at([1, 2, 4]) -> d.at([2, -4, 0])"),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<weld body1='d'/>"),
         &format!("{start}\nWeld weld1: d.at([0, 0, -2]) -> ground"),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<weld name='w' body1='d' relpose='1 2 3 1 0 0 0' body2='b'/>"),
         &format!("{start}\nWeld w: d.at([1, 2, 3]) -> b"),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<connect site1='s' site2='s'/>"),
         "r.xml:2:194: body `d` closes a loop with itself
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<weld body1='c' body2='b'/>"),
         "r.xml:2:181: `c` is a mocap body, which does not move here
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_equality("<weld body1='e'/>"),
         "r.xml:2:181: unknown body `e`
          = help: expected `b`, `c` or `d`",
@@ -268,10 +271,10 @@ fn loops_are_closed() {
 /// The rotor inertia and viscous damping of an actuator are multiplied by the square of the gear ratio. They
 /// act even if actuators are not imported.
 #[test]
-fn rotors_of_actuators() {
+fn rotor_inertia_is_scaled_by_the_squared_gear_ratio() {
     let model = "<worldbody><body name='b'><joint name='j'/></body></worldbody>
          <actuator><motor name='m' joint='j' gear='3' armature='0.5' damping='0.2'/></actuator>";
-    check_model(
+    check_mjcf_elements(
         model,
         "the root is the ground
          body b
@@ -280,7 +283,7 @@ fn rotors_of_actuators() {
          j: inerter 0.5 on 3 j
          m: input in N·m on 3 j",
     );
-    check_with(
+    check_with_options(
         &FileOptions { inputs: InputOption::Joints, ..mjcf_options() },
         &format!("<mujoco>\n{model}\n</mujoco>"),
         "the root is the ground
@@ -295,7 +298,7 @@ fn rotors_of_actuators() {
 /// Checks that the maximum effort of a joint is the sum over its actuators, or unlimited if one of them has
 /// no limit, and at most the joint's own limit.
 #[test]
-fn efforts_of_several_actuators() {
+fn joint_effort_is_the_sum_over_actuators() {
     let site = "<motor site='s' gear='0 0 1' ctrlrange='-1 1'/>";
     for (joint, actuators, expected) in [
         (
@@ -335,14 +338,14 @@ fn efforts_of_several_actuators() {
 }
 
 #[test]
-fn actuators_that_do_not_act() {
+fn disabled_actuators_create_no_inputs() {
     let model_with_option = |option: &str| {
         format!(
             "<option {option}/><worldbody><body name='b'><joint name='j'/></body></worldbody>
              <actuator><motor name='m' joint='j' group='3' armature='0.5'/><motor name='n' joint='j'/></actuator>"
         )
     };
-    check_model(
+    check_mjcf_elements(
         &model_with_option("actuatorgroupdisable='1 3'"),
         "the root is the ground
          body b
@@ -351,7 +354,7 @@ fn actuators_that_do_not_act() {
          n: input in N·m on 1 j
          left out actuators of disabled groups: 1",
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_option("actuatorgroupdisable='1 31'"),
         "r.xml:2:31: `actuatorgroupdisable` is `1 31`
          = help: expected numbers of groups from 0 to 30",
@@ -361,7 +364,7 @@ fn actuators_that_do_not_act() {
 /// Checks that the free lengths of fixed tendons are those of MuJoCo 4.0.0 (`tendon_lengthspring`). The
 /// spring of the joint is relaxed at 17°.
 #[test]
-fn springs_of_tendons_are_free_where_they_say() {
+fn tendon_springs_have_the_rest_lengths_of_mujoco() {
     let rest = 2.0 * 17.0_f64.to_radians();
     for (length, expected) in [
         ("-0.3", "spring 10 from -0.3".to_string()),
@@ -373,7 +376,7 @@ fn springs_of_tendons_are_free_where_they_say() {
         ("0", "spring 10 from 0".to_string()),
         ("-1.5", "spring 10 from -1.5".to_string()),
     ] {
-        check_model(
+        check_mjcf_elements(
             &format!(
                 "<default><tendon springlength='0.1 0.5'/></default>
                  <worldbody><body name='b'><joint name='j' springref='17'/></body></worldbody>\
@@ -387,7 +390,7 @@ fn springs_of_tendons_are_free_where_they_say() {
 
 /// `relpose` is the pose of the second body's anchor relative to the first body.
 #[test]
-fn a_weld_with_anchor_and_pose() {
+fn weld_with_anchor_has_the_relative_pose_of_the_file() {
     let model_with_weld = |said: &str| {
         format!(
             "<worldbody><body name='a'><joint name='j' type='slide'/></body><body name='b' pos='1 0 0'><joint name='k' type='slide'/>\
@@ -400,7 +403,7 @@ fn a_weld_with_anchor_and_pose() {
         ("anchor='0.2 0 0'", "a.at([1, 0, 0]) -> b"),
         ("anchor='0.2 0 0' relpose='0.5 0 0 0 0 0 0'", "a.at([1, 0, 0]) -> b"),
     ] {
-        check_model(
+        check_mjcf_elements(
             &model_with_weld(said),
             &format!(
                 "the root is the ground\nbody a\nbody b\nSleeve j: ground -> a along [0, 0, 1]
@@ -413,19 +416,19 @@ fn a_weld_with_anchor_and_pose() {
 /// Checks that a coupling that contradicts earlier ones is reported, and that a coupling of fixed joints that
 /// is satisfied is dropped.
 #[test]
-fn couplings_of_joints_that_stand_still() {
+fn contradictory_couplings_of_fixed_joints_are_reported() {
     let model_with_last_coupling = |last: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide'/><body name='c'><joint name='k' type='slide'/></body></body></worldbody>
              <equality><joint name='e' joint1='j' polycoef='1'/><joint name='f' joint1='k' joint2='j'/>{last}</equality>"
         )
     };
-    check_model(
+    check_mjcf_elements(
         &model_with_last_coupling("<joint name='g' joint1='k' polycoef='3'/>"),
         "r.xml:3:117: the coupling `g` contradicts others: the joints that it couples cannot move, and it is violated by -2
          = help: remove it, or the constraints that fix these joints",
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_last_coupling("<joint name='g' joint1='k' polycoef='1'/>"),
         "the root is the ground
          body b

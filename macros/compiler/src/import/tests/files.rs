@@ -1,4 +1,4 @@
-//! Tests of the reading of files.
+//! Tests of reading robot files from paths.
 
 use crate::diag::Diagnostics;
 use crate::import::tests::{default_options, test_name};
@@ -37,14 +37,14 @@ impl Drop for Folder {
 }
 
 #[test]
-fn a_file_is_read() {
+fn robot_file_is_read_from_its_path() {
     let folder = Folder::new("read");
     folder.write_test_file("urdf/r.urdf", b"<robot/>");
     assert_eq!(folder.import_test_file("urdf/r.urdf"), "<robot/>");
 }
 
 #[test]
-fn a_missing_file_has_neighbours() {
+fn missing_file_error_lists_similar_files() {
     let folder = Folder::new("missing");
     let found = folder.import_test_file("urdf/pandas.urdf");
     assert_eq!(found, "there is no file `urdf/pandas.urdf`\n\n= help: looked for `…urdf/pandas.urdf`");
@@ -60,7 +60,7 @@ fn a_missing_file_has_neighbours() {
 }
 
 #[test]
-fn what_is_no_text_file_is_refused() {
+fn binary_files_are_rejected() {
     let folder = Folder::new("refused");
     assert_eq!(folder.import_test_file("urdf"), "`urdf` is a directory, expected a URDF file");
     folder.write_test_file("r.urdf", b"<robot>\n\xff</robot>");

@@ -13,7 +13,7 @@ const FILE: &str = r#"<?xml version="1.0"?>
     <mimic joint="j" multiplier="2" offset="1"/></joint>
 </robot>"#;
 
-/// Returns a pseudorandom number (xorshift64).
+/// Advances the pseudorandom generator (xorshift64) and returns a number.
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -43,7 +43,7 @@ fn damage_bytes(bytes: &mut Vec<u8>, state: &mut u64) {
 }
 
 #[test]
-fn damage_never_panics() {
+fn damaged_urdf_never_panics() {
     let options = FileOptions { inputs: InputOption::Joints, ..options_with_locked_joints(&["j"]) };
     damage_gets_an_answer(&options, FILE, "root_joint");
 }
@@ -64,7 +64,7 @@ pub(super) fn damage_gets_an_answer(options: &FileOptions, file: &str, sign: &st
 }
 
 #[test]
-fn every_beginning_of_a_file_gets_an_answer() {
+fn truncated_urdf_never_panics() {
     for end in 0..FILE.len() {
         assert!(!import_as_text(&default_options(), &FILE[..end]).contains("root_joint"));
     }

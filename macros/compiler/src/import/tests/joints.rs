@@ -3,13 +3,13 @@
 use super::*;
 use crate::syntax::file_parameters::FileParameters;
 
-/// Checks the last joints of a chain.
+/// Checks the last joints imported from a chain of URDF joints.
 fn check_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
-    check_with(options, &chain_of_links(joints), &(chain_bodies(joints.len()) + expected));
+    check_with_options(options, &chain_of_links(joints), &(chain_bodies(joints.len()) + expected));
 }
 
 #[test]
-fn every_type_has_its_joint() {
+fn every_urdf_joint_type_is_converted() {
     let axis = "<axis xyz='0 0 2'/>";
     let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
     check_chain(
@@ -26,7 +26,7 @@ fn every_type_has_its_joint() {
 }
 
 #[test]
-fn the_axis_is_x_unless_given() {
+fn urdf_joint_axis_defaults_to_x() {
     check_chain(
         &default_options(),
         &[
@@ -45,7 +45,7 @@ fn the_axis_is_x_unless_given() {
 }
 
 #[test]
-fn the_origin_is_a_place_and_carried_turns() {
+fn joint_origin_combines_position_and_rotated_axes() {
     check_chain(
         &default_options(),
         &[
@@ -67,7 +67,7 @@ fn the_origin_is_a_place_and_carried_turns() {
 }
 
 #[test]
-fn passive_elements_count_unless_ignored() {
+fn passive_joint_forces_are_read_unless_ignored() {
     let joints =
         [("revolute", "<dynamics damping='2' friction='3'/>"), ("prismatic", "<dynamics friction='0'/>")];
     check_chain(
@@ -92,7 +92,7 @@ fn passive_elements_count_unless_ignored() {
 }
 
 #[test]
-fn a_follower_follows_unless_independent() {
+fn mimic_joints_follow_unless_independent() {
     let joints = [
         ("revolute", "<mimic joint='j3' multiplier='2' offset='1'/>"),
         ("fixed", "<mimic joint='nobody'/>"),
@@ -120,7 +120,7 @@ fn a_follower_follows_unless_independent() {
 }
 
 #[test]
-fn a_follower_needs_somebody_to_follow() {
+fn mimic_joint_without_leader_is_rejected() {
     let help =
         "= help: to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
     check_import(
@@ -169,7 +169,7 @@ fn a_follower_needs_somebody_to_follow() {
 }
 
 #[test]
-fn a_locked_joint_is_a_weld() {
+fn locked_joint_becomes_a_weld() {
     let options =
         FileOptions { inputs: InputOption::Joints, ..options_with_locked_joints(&["j1", "j3", "j4"]) };
     check_chain(
@@ -186,7 +186,7 @@ fn a_locked_joint_is_a_weld() {
          Weld j4: l3 -> l4
          left out the coupling of j4, which is locked",
     );
-    check_with(
+    check_with_options(
         &options_with_locked_joints(&["j", "elbow"]),
         &chain_of_links(&[("revolute", ""), ("revolute", "")]),
         "unknown joint `j` in `lock`
@@ -197,13 +197,13 @@ fn a_locked_joint_is_a_weld() {
 }
 
 #[test]
-fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
+fn near_round_numbers_are_rounded_on_request_and_reported() {
     let robot = chain_of_links(&[
         ("revolute", "<origin xyz='1e-5 0.5 0' rpy='1.5708 -3.14159 0.3'/><axis xyz='0 -2 1e-4'/>"),
         ("prismatic", "<origin xyz='0.002 0 0' rpy='1.572 0 0'/><axis xyz='1 0 0.01'/>"),
         ("fixed", "<origin rpy='0 -1.571 0'/>"),
     ]);
-    check_with(
+    check_with_options(
         &FileOptions { snap: Some(1e-3), ..default_options() },
         &robot,
         "body l0\nbody l1\nbody l2\nbody l3
@@ -221,7 +221,7 @@ fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
 
 /// Checks that an axis may have any length.
 #[test]
-fn long_axes_are_rounded_by_their_direction() {
+fn joint_axes_of_any_length_are_rounded_by_direction() {
     let robot = chain_of_links(&[("revolute", "<axis xyz='1.7e308 -1.7e308 1e300'/>")]);
     let options = FileOptions { snap: Some(1e-3), ..default_options() };
     let imported = import_text(&robot, &options, &mut Diagnostics::new()).expect("the file is right");
@@ -229,7 +229,7 @@ fn long_axes_are_rounded_by_their_direction() {
 }
 
 #[test]
-fn what_follows_a_locked_joint_stands_at_its_offset() {
+fn mimic_of_a_locked_joint_is_fixed_at_its_offset() {
     let follow = "<mimic joint='j6' offset='0.5'/>";
     check_chain(
         &options_with_locked_joints(&["j6"]),
@@ -260,7 +260,7 @@ fn what_follows_a_locked_joint_stands_at_its_offset() {
 }
 
 #[test]
-fn a_locked_slide_moves_along_the_turned_axis() {
+fn locked_slide_is_displaced_along_its_rotated_axis() {
     // Yaw 1, pitch 2 and roll 3 about successive axes: the third column of R_z(1) R_y(2) R_x(3).
     let inside = "<origin rpy='3 2 1'/><axis xyz='0 0 1'/><mimic joint='j2' offset='1'/>";
     let text = chain_of_links(&[("prismatic", inside), ("revolute", "")]);
@@ -275,9 +275,9 @@ fn a_locked_slide_moves_along_the_turned_axis() {
 }
 
 #[test]
-fn a_slide_cannot_stand_infinitely_far_away() {
+fn infinite_joint_offsets_are_rejected() {
     let inside = "<origin xyz='1.7e308 0 0'/><mimic joint='j2' offset='1.7e308'/>";
-    check_with(
+    check_with_options(
         &options_with_locked_joints(&["j2"]),
         &chain_of_links(&[("prismatic", inside), ("revolute", "")]),
         "r.urdf:3:14: joint `j1` has an infinite position",
@@ -285,7 +285,7 @@ fn a_slide_cannot_stand_infinitely_far_away() {
 }
 
 #[test]
-fn a_joint_says_what_it_joins_and_how() {
+fn joint_without_parent_child_or_type_is_rejected() {
     check_robot(
         "<link name='a'/>\n<joint/>\n<joint name='j' type='revolut'><parent/><child link=''/></joint>",
         r#"r.urdf:3:1: `<joint>` without `name`, `type`
@@ -317,7 +317,7 @@ fn a_joint_says_what_it_joins_and_how() {
 
 /// An axis or origin in wrong notation is an error and not replaced by the default.
 #[test]
-fn parts_of_joints_are_attributes_of_their_elements() {
+fn joint_child_elements_written_as_attributes_are_rejected() {
     let elements = "= help: a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin \
                     xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
     let axis = "= help: expected `<axis xyz=\"…\"/>`";
@@ -378,7 +378,7 @@ fn parts_of_joints_are_attributes_of_their_elements() {
 
 /// Limits of a joint with several coordinates, and the leader of a joint that the user locks, are listed.
 #[test]
-fn what_a_joint_cannot_have_is_listed() {
+fn unsupported_joint_properties_are_listed() {
     let ignored_elements = |options: &FileOptions, text: &str| {
         let imported = import_text(text, options, &mut Diagnostics::new()).expect("a robot");
         imported.left_out
@@ -397,10 +397,10 @@ fn what_a_joint_cannot_have_is_listed() {
     assert_eq!(ignored_elements(&options_with_locked_joints(&["j1"]), &follower), [""; 0]);
 }
 
-/// Checks a joint that follows a locked one: it is held at its offset, which its placement as a field
-/// contains, rotated by 0.5 rad about the axis after roll, pitch and yaw.
+/// Checks that a joint which follows a locked joint is locked at its offset, with its placement rotated by
+/// 0.5 rad about the axis.
 #[test]
-fn placements_of_held_joints_have_their_rotation() {
+fn fixed_mimic_joints_include_their_rotation() {
     let figures = FileParameters { word: test_name("placement"), of: Some(vec![test_name("j2")]) };
     for (axis, rpy, expected) in [
         ("1 0 0", "0.1 0 0", [0.6, 0.0, 0.0]),

@@ -9,7 +9,7 @@ fn check_inertial(inside: &str, expected: &str) {
 }
 
 #[test]
-fn a_link_has_mass_centre_and_inertia() {
+fn link_inertial_has_mass_centre_and_inertia() {
     check_inertial(
         &format!(r#"<origin xyz="0 -0 .5"/><mass value=" 2.5e0 "/>{INERTIA}"#),
         "body a mass=2.5 com=[0, 0, 0.5] inertia=[[1, 2, 3], [2, 4, 5], [3, 5, 6]]
@@ -23,7 +23,7 @@ fn a_link_has_mass_centre_and_inertia() {
 }
 
 #[test]
-fn an_inertial_frame_turns_the_inertia() {
+fn inertial_frame_rotates_the_inertia() {
     check_inertial(
         &format!(r#"<origin rpy="1 2 3"/><mass value="1"/>{INERTIA}"#),
         "body a mass=1 inertia=[[1, 2, 3], [2, 4, 5], [3, 5, 6]].rotated(z(3), y(2), x(1))
@@ -37,7 +37,7 @@ fn an_inertial_frame_turns_the_inertia() {
 }
 
 #[test]
-fn zeros_are_as_good_as_nothing() {
+fn zero_inertial_is_no_inertia() {
     let zeros = r#"<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>"#;
     let inside = format!(r#"<origin xyz="1 0 0" rpy="1 0 0"/><mass value="0"/>{zeros}"#);
     check_inertial(&inside, "body a\nWeld root_joint: ground -> a");
@@ -46,7 +46,7 @@ fn zeros_are_as_good_as_nothing() {
 }
 
 #[test]
-fn a_mass_that_the_model_refuses_comes_with_its_place() {
+fn invalid_mass_is_reported_at_its_source_position() {
     let text =
         format!("<robot><link name='a'>\n <inertial><mass value='-1'/>{INERTIA}</inertial></link></robot>");
     let imported = import_text(&text, &default_options(), &mut Diagnostics::new());
@@ -56,15 +56,15 @@ fn a_mass_that_the_model_refuses_comes_with_its_place() {
 
 /// If mass properties are not needed, errors in them are ignored.
 #[test]
-fn inertia_may_be_left_out() {
+fn inertia_errors_are_ignored_for_kinematics() {
     let options = FileOptions { inertias: Inertias::None, ..default_options() };
     let text = "<robot><link name='a'><inertial><mass value='x'/></inertial></link></robot>";
-    check_with(&options, text, "body a\nWeld root_joint: ground -> a");
+    check_with_options(&options, text, "body a\nWeld root_joint: ground -> a");
 }
 
 #[test]
-fn what_is_missing_is_shown() {
-    check_with(
+fn missing_attributes_are_named_in_the_error() {
+    check_with_options(
         &FileOptions { base: Base::Free, ..default_options() },
         "<robot>\n<link name='a'><inertial></inertial></link></robot>",
         r#"r.urdf:2:16: `<inertial>` without `<mass>`
@@ -82,7 +82,7 @@ fn what_is_missing_is_shown() {
 }
 
 #[test]
-fn slips_of_the_hand_are_not_ignored() {
+fn misspelt_elements_are_rejected() {
     check_robot(
         "<link name='a'><inertal/><visual/><anything/></link>",
         "r.urdf:2:16: unknown element `<inertal>`
@@ -108,7 +108,7 @@ fn slips_of_the_hand_are_not_ignored() {
 }
 
 #[test]
-fn an_element_stands_once() {
+fn duplicate_elements_are_rejected() {
     check_inertial(
         &format!("<mass value='1'/>{INERTIA}\n<mass value='2'/>"),
         "r.urdf:3:1: second `<mass>` of one element
@@ -122,7 +122,7 @@ fn an_element_stands_once() {
 }
 
 #[test]
-fn a_number_is_a_finite_number() {
+fn numbers_must_be_finite() {
     for (word, why) in [
         ("NaN", "is not a finite number"),
         ("-inf", "is not a finite number"),
@@ -149,7 +149,7 @@ fn a_number_is_a_finite_number() {
 }
 
 #[test]
-fn every_bad_number_has_its_own_place() {
+fn every_invalid_number_is_reported_at_its_position() {
     check_inertial(
         &format!("<origin xyz='0\n  a  nan'/><mass value='1,5'/>{INERTIA}"),
         "r.urdf:2:39: `a` is not a number
@@ -176,7 +176,7 @@ fn every_bad_number_has_its_own_place() {
 }
 
 #[test]
-fn long_nonsense_is_shortened() {
+fn long_invalid_values_are_shortened_in_messages() {
     let expected = format!(
         "r.urdf:2:39: `{}`… is not a number\n= help: write digits, as in `-0.5` or `1e-3`",
         "x".repeat(60)
@@ -186,7 +186,7 @@ fn long_nonsense_is_shortened() {
 
 /// Links that are fixed to the ground need no valid mass properties, because these appear in no equation.
 #[test]
-fn links_on_the_ground_need_no_inertia() {
+fn links_fixed_to_the_ground_need_no_inertia() {
     let link_without_inertia =
         |name: &str| format!("<link name='{name}'><inertial><mass value='1'/></inertial></link>");
     let links =
@@ -202,8 +202,8 @@ fn links_on_the_ground_need_no_inertia() {
     };
     check_import(&text, &missing_inertia_message(4));
     let free = FileOptions { base: Base::Free, ..default_options() };
-    check_with(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
-    check_with(
+    check_with_options(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
+    check_with_options(
         &options_with_locked_joints(&["b"]),
         &text,
         "body base mass=1\nbody arms mass=1\nbody hand mass=1
@@ -213,7 +213,7 @@ fn links_on_the_ground_need_no_inertia() {
 
 /// Mass properties and poses in wrong notation are errors instead of being ignored silently.
 #[test]
-fn parts_of_links_are_attributes_of_their_elements() {
+fn link_child_elements_written_as_attributes_are_rejected() {
     let parts = "= help: expected `<origin>`, `<mass>` and `<inertia>`";
     let good = format!("<mass value='1'/>{INERTIA}");
     for (inside, expected) in [
@@ -272,7 +272,7 @@ fn parts_of_links_are_attributes_of_their_elements() {
 /// Checks that Unicode whitespace from keyboards and spreadsheets is accepted, and that columns in messages
 /// remain those of the file.
 #[test]
-fn strange_blanks_are_blanks() {
+fn unicode_whitespace_is_accepted() {
     let robot_with_blank = |blank: &str| {
         format!(
             "<robot{blank}name='r'>{blank}<link name='a'><inertial><origin{blank}xyz='0{blank}0 1{blank}'/>{blank}<mass value='{blank}2'/>\
@@ -297,7 +297,7 @@ fn strange_blanks_are_blanks() {
 
 /// Checks that a geometry with two shapes is an error, since one of them would be lost.
 #[test]
-fn second_shapes_of_a_geometry_are_errors() {
+fn second_shape_of_a_geometry_is_rejected() {
     let help = "= help: write a `<collision>` for each shape";
     for (format, shapes, column) in [
         (FileFormat::Urdf, "<sphere radius='1'/><box size='1 1 1'/>", 57),
@@ -309,6 +309,10 @@ fn second_shapes_of_a_geometry_are_errors() {
             FileFormat::Urdf => format!("<robot name='r'>\n{link}\n</robot>"),
             _ => format!("<sdf><model name='m'>\n{link}\n</model></sdf>"),
         };
-        check_with(&options, &text, &format!("r.urdf:2:{column}: second shape of one geometry\n{help}"));
+        check_with_options(
+            &options,
+            &text,
+            &format!("r.urdf:2:{column}: second shape of one geometry\n{help}"),
+        );
     }
 }

@@ -1,9 +1,9 @@
-//! Files that are not XML, not URDF, or hostile.
+//! Tests of files that are not XML, not URDF, or adversarial.
 
 use super::*;
 
 #[test]
-fn malformed_xml_has_a_place() {
+fn malformed_xml_is_reported_at_its_position() {
     for (text, expected) in [
         ("<robot>\n<link></robot>", "r.urdf:2:7: malformed XML: expected `</link>`, found `</robot>`"),
         (
@@ -31,7 +31,7 @@ fn malformed_xml_has_a_place() {
 /// Elements and attributes with prefixes of simulators are skipped, whether the prefix is declared or not.
 /// Other contents keep their source positions and errors.
 #[test]
-fn prefixes_need_no_declaration() {
+fn prefixed_elements_are_skipped_without_declaration() {
     let extensions = "<drake:joint x='1'/><gazebo xsi:y='2'>\n<sensor:camera><ö:b/></sensor:camera></gazebo>";
     let robot_with_extensions = |inside: &str| {
         format!("<?xml version='1.0'?>\n<!-- <r> --> <robot name='r'>{extensions}{inside}</robot>")
@@ -83,14 +83,14 @@ fn prefixes_need_no_declaration() {
 }
 
 #[test]
-fn what_is_no_xml_is_shown_some() {
+fn input_that_is_not_xml_gets_a_format_hint() {
     let help = "= help: a URDF file is XML: `<robot name=\"…\"> … </robot>`";
     check_import("", &format!("r.urdf:1:1: malformed XML: there is no element\n{help}"));
     check_import("solid cube", &format!("r.urdf:1:1: malformed XML: unknown token\n{help}"));
 }
 
 #[test]
-fn another_format_is_named() {
+fn other_robot_format_is_named_in_the_error() {
     for (root, help) in [
         ("sdf", "this is an SDF file: write `sdf = \"…\"` instead of `urdf = \"…\"`"),
         ("mujoco", "this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
@@ -103,7 +103,7 @@ fn another_format_is_named() {
 }
 
 #[test]
-fn a_template_is_refused_once() {
+fn xacro_template_is_rejected_once() {
     let help = "= help: expand the file first: `xacro robot.urdf.xacro > robot.urdf`";
     check_import(
         "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'>\n <xacro:include/> <xacro:arm/></robot>",
@@ -124,7 +124,7 @@ fn a_template_is_refused_once() {
 }
 
 #[test]
-fn templates_of_other_formats_are_refused() {
+fn templates_of_other_formats_are_rejected() {
     for (format, word, text, expected) in [
         (
             FileFormat::Sdf,
@@ -146,12 +146,16 @@ fn templates_of_other_formats_are_refused() {
         ),
     ] {
         let help = format!("= help: expand the file first: `xacro robot.{word}.xacro > robot.{word}`");
-        check_with(&FileOptions { format, ..default_options() }, text, &format!("{expected}\n{help}"));
+        check_with_options(
+            &FileOptions { format, ..default_options() },
+            text,
+            &format!("{expected}\n{help}"),
+        );
     }
 }
 
 #[test]
-fn entities_are_refused() {
+fn xml_entities_are_rejected() {
     let bomb = "<!DOCTYPE robot [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;&a;'>]>\n<robot name='&b;'/>";
     let expected = "a URDF file has no document type and no entities of its own";
     check_import(bomb, &format!("r.urdf:1:1: {expected}"));
@@ -162,7 +166,7 @@ fn entities_are_refused() {
 }
 
 #[test]
-fn deep_nesting_is_refused() {
+fn deeply_nested_xml_is_rejected() {
     let deep = "<a>".repeat(100_000);
     let expected = "r.urdf:1:193: more than 64 nested elements";
     check_import(&deep, expected);
@@ -187,7 +191,7 @@ fn deep_nesting_is_refused() {
 }
 
 #[test]
-fn crowds_of_markup_are_refused() {
+fn excessive_numbers_of_elements_are_rejected() {
     let attributes: String = (0..100).map(|k| format!(" a{k}=''")).collect();
     check_import(&format!("<robot{attributes}/>"), "r.urdf:1:1: element with more than 64 attributes");
     let crowd = "r.urdf:1:1: the file has too many elements, attributes or namespaces for a robot";
@@ -196,12 +200,12 @@ fn crowds_of_markup_are_refused() {
 }
 
 #[test]
-fn a_huge_file_is_refused() {
+fn oversized_file_is_rejected() {
     check_import(&" ".repeat((16 << 20) + 1), "`r.urdf` has 17 MiB, expected at most 16 MiB");
 }
 
 #[test]
-fn places_count_characters() {
+fn source_columns_count_characters() {
     let before = "<!-- änderung\r\n über -->".repeat(50);
     let expected = "r.urdf:52:10: `<link>` without `name`\n= help: expected `<link name=\"…\"/>`";
     check_import(&format!("\u{feff}<robot>\n{before}<link/></robot>"), expected);
@@ -209,7 +213,7 @@ fn places_count_characters() {
 
 /// Like other readers of URDF, the importer accepts leading empty lines and trailing zero bytes.
 #[test]
-fn a_declaration_may_come_late_and_zeros_may_follow() {
+fn blank_lines_and_trailing_zero_bytes_are_accepted() {
     let link = "<robot><link name='a'/>";
     check_import(
         &format!("\n \n<?xml version='1.0'?>{link}</robot>\n\0"),

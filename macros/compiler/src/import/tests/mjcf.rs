@@ -12,20 +12,20 @@ pub(super) fn mjcf_options() -> FileOptions {
 }
 
 /// Compares the result of a file with these elements. The elements begin on the second line.
-pub(super) fn check_model(inside: &str, expected: &str) {
-    check_with(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
+pub(super) fn check_mjcf_elements(inside: &str, expected: &str) {
+    check_with_options(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
 }
 
-/// Compares the result of a body with these elements.
-fn check_body(inside: &str, expected: &str) {
-    check_model(&format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"), expected);
+/// Compares the import of an MJCF body that contains these elements with `expected`.
+fn check_mjcf_body(inside: &str, expected: &str) {
+    check_mjcf_elements(&format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"), expected);
 }
 
 const BALL: &str = "<geom size='.1' mass='1'/>";
 
 #[test]
-fn joints_of_a_body_stand_one_after_the_other() {
-    check_body(
+fn joints_of_one_mjcf_body_are_chained() {
+    check_mjcf_body(
         "<joint name='j' pos='1 0 0'/><joint name='k' type='slide' axis='2 0 0' ref='3'/><geom size='1' mass='5'/>",
         "the root is the ground
          body b_j
@@ -37,8 +37,8 @@ fn joints_of_a_body_stand_one_after_the_other() {
 }
 
 #[test]
-fn what_has_no_name_gets_one() {
-    check_body(
+fn unnamed_mjcf_elements_get_generated_names() {
+    check_mjcf_body(
         "<body><joint type='slide'/></body><body name='body2'/>",
         "the root is the ground
          body b
@@ -51,26 +51,26 @@ fn what_has_no_name_gets_one() {
 }
 
 #[test]
-fn classes_are_handed_down() {
+fn mjcf_default_classes_are_inherited() {
     let classes = "<default><joint damping='1'/><default class='a'><joint armature='2'/><default class='c'><joint type='slide'/></default></default></default>";
     let model_with_body = |inside: &str| {
         format!("{classes}<worldbody><body name='b' childclass='a'>{inside}{BALL}</body></worldbody>")
     };
     let ball = "body b mass=1 inertia=[[0.004000000000000001, 0, 0], [0, 0.004000000000000001, 0], [0, 0, 0.004000000000000001]]";
     let end = "left out geometry of bodies, for contact: 1 shapes";
-    check_model(
+    check_mjcf_elements(
         &model_with_body("<joint name='j'/>"),
         &format!(
             "the root is the ground\n{ball}\nPin j: ground -> b about [0, 0, 1] damping=1\nj: inerter 2 on 1 j\n{end}"
         ),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_body("<joint name='j' class='c' damping='7'/>"),
         &format!(
             "the root is the ground\n{ball}\nSleeve j: ground -> b along [0, 0, 1] damping=7\nj: inerter 2 on 1 j\n{end}"
         ),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_body("<joint name='j' class='d'/>"),
         "r.xml:2:204: unknown class `d`
          = help: expected `a`, `c` or `main`",
@@ -79,7 +79,7 @@ fn classes_are_handed_down() {
 
 /// Unsupported attributes that affect the motion are reported.
 #[test]
-fn what_is_not_supported_is_said() {
+fn unsupported_mjcf_attributes_are_reported() {
     for (inside, at, message, help) in [
         (
             "<joint type='ball' stiffness='1'/>",
@@ -145,12 +145,12 @@ fn what_is_not_supported_is_said() {
     ] {
         let column = "<worldbody><body name=\"b\">".len() + inside.find(at).expect("it stands there") + 1;
         let help = if help.is_empty() { String::new() } else { format!("\n= help: {help}") };
-        check_body(inside, &format!("r.xml:2:{column}: {message}{help}"));
+        check_mjcf_body(inside, &format!("r.xml:2:{column}: {message}{help}"));
     }
 }
 
 #[test]
-fn sections() {
+fn unknown_sections_and_unsupported_options_are_reported() {
     for (inside, expected) in [
         (
             "<worldbdy/>",
@@ -186,12 +186,12 @@ fn sections() {
              write `#[mechanism(…, inputs = joints)]`, or `none`",
         ),
     ] {
-        check_model(inside, expected);
+        check_mjcf_elements(inside, expected);
     }
 }
 
 #[test]
-fn another_format_is_named() {
+fn non_mjcf_file_names_its_format_in_the_error() {
     for (root, help) in [
         ("robot", "this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
         ("sdf", "this is an SDF file: write `sdf = \"…\"` instead of `mjcf = \"…\"`"),
@@ -199,19 +199,19 @@ fn another_format_is_named() {
         ("mujco", "did you mean `mujoco`?"),
     ] {
         let expected = format!("r.xml:1:1: expected `<mujoco>`, found `<{root}>`\n= help: {help}");
-        check_with(&mjcf_options(), &format!("<{root}/>"), &expected);
+        check_with_options(&mjcf_options(), &format!("<{root}/>"), &expected);
     }
 }
 
 #[test]
-fn a_free_base_needs_a_body_that_nothing_holds() {
+fn free_base_requires_a_body_without_joints() {
     let free = FileOptions { base: Base::Free, ..mjcf_options() };
-    check_with(
+    check_with_options(
         &free,
         "<mujoco><worldbody><body name='b'/></worldbody></mujoco>",
         "the root is the ground\nbody b\nFree root_joint: ground -> b",
     );
-    check_with(
+    check_with_options(
         &free,
         "<mujoco><worldbody><body name='b'><joint/></body></worldbody></mujoco>",
         "`base = free` does not fit this file: its outermost body has joints
@@ -220,7 +220,7 @@ fn a_free_base_needs_a_body_that_nothing_holds() {
 }
 
 #[test]
-fn included_files_stand_in_the_place_of_their_elements() {
+fn mjcf_includes_replace_the_include_element() {
     let files = [
         ("parts/arm.xml", "<mujoco>\n<!-- é --><worldbody><include file='hand.xml'/></worldbody></mujoco>"),
         ("hand.xml", "<x><body name='hand'><joint name='j'/></body>\n</x>"),
@@ -262,7 +262,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
 }
 
 #[test]
-fn meshes_that_cannot_be_read() {
+fn unreadable_mesh_files_are_reported() {
     let files = [("a.obj", "v 0 0 0\nf 1 1 1\n"), ("b.stl", "solid ascii"), ("c.dae", "<COLLADA/>")];
     let folder = Folder::new("meshes", &files);
     for (asset, expected) in [
@@ -287,7 +287,7 @@ fn meshes_that_cannot_be_read() {
 }
 
 #[test]
-fn hostile_files_get_an_answer() {
+fn adversarial_mjcf_files_terminate() {
     let deep =
         format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", "<body>".repeat(300), "</body>".repeat(300));
     assert!(import_as_text(&mjcf_options(), &deep).contains("more than 256 nested elements"));
@@ -304,7 +304,7 @@ fn hostile_files_get_an_answer() {
         import_as_text(&mjcf_options(), entity)
             .contains("an MJCF file has no document type and no entities of its own")
     );
-    check_body(
+    check_mjcf_body(
         "<geom size='1e200' mass='1'/><joint axis='1e300 1e300 0'/>",
         "r.xml:2:24: body `b` is too large, too heavy or too far away for floating-point numbers",
     );
@@ -323,7 +323,7 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
   <actuator><motor joint="j" gear="3"/><position tendon="t" kp="2"/><motor site="s" refsite="r" gear="1 2"/></actuator></mujoco>"#;
 
 #[test]
-fn planes_are_touched() {
+fn mjcf_planes_become_contacts() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
     let contacts_with_world = |world: &str| {
         let text = format!(
@@ -380,12 +380,12 @@ fn planes_are_touched() {
 }
 
 #[test]
-fn damage_never_panics() {
+fn damaged_mjcf_never_panics() {
     super::fuzz::damage_gets_an_answer(&mjcf_options(), FILE, "ground");
 }
 
 #[test]
-fn every_beginning_of_a_file_gets_an_answer() {
+fn truncated_mjcf_never_panics() {
     for end in 0..FILE.len() {
         assert!(!import_as_text(&mjcf_options(), &FILE[..end]).contains("the root is"));
     }
@@ -395,7 +395,7 @@ fn every_beginning_of_a_file_gets_an_answer() {
 /// Checks that flags of `<option>` disable the effects that they name. The flag `constraint` disables
 /// couplings, limits and dry friction.
 #[test]
-fn flags() {
+fn mjcf_option_flags_disable_their_effects() {
     let model_with_flags = |flags: &str| {
         format!(
             "<option><flag {flags}/></option><worldbody><body name='b'><joint name='j' range='-1 1' stiffness='5' damping='0.3' frictionloss='2'/>\
@@ -441,8 +441,8 @@ fn flags() {
 /// Joints and mass properties in a `<frame>`: positions and axes as in MuJoCo 4.0.0 (`jnt_pos`, `jnt_axis`,
 /// `body_ipos`).
 #[test]
-fn what_stands_in_a_frame_is_placed_by_it() {
-    check_body(
+fn mjcf_frames_place_their_contents() {
+    check_mjcf_body(
         "<frame pos='1 2 3' euler='0 0 90'><joint name='j' pos='1 0 0' axis='1 0 0'/><inertial pos='1 0 0' mass='1' diaginertia='1 2 2.5'/></frame>",
         "the root is the ground
          body b mass=1 com=[1, 3, 3] inertia=[[2, 0, 0], [0, 1, 0], [0, 0, 2.5]]
@@ -453,8 +453,8 @@ fn what_stands_in_a_frame_is_placed_by_it() {
 /// Axes of a site between two points: z points from the second to the first point, as in MuJoCo 4.0.0
 /// (`site_xmat`).
 #[test]
-fn sites_between_two_points_have_their_axes() {
-    check_body(
+fn sites_between_two_points_have_the_axes_of_mujoco() {
+    check_mjcf_body(
         "<joint name='j'/><site name='s' type='capsule' size='.1' fromto='0 0 0 2 0 0'/>",
         "the root is the ground
          body b
@@ -481,8 +481,8 @@ fn sites_between_two_points_have_their_axes() {
 
 /// Missing entries of an attribute are taken from the defaults: sizes as in MuJoCo 4.0.0 (`geom_size`).
 #[test]
-fn lists_are_completed_by_defaults() {
-    check_model(
+fn short_attribute_lists_are_completed_by_defaults() {
+    check_mjcf_elements(
         "<default><geom type='box' size='1 2 3'/></default><worldbody><body name='b'><geom size='.5' mass='3'/></body></worldbody>",
         "the root is the ground
          body b mass=3 inertia=[[13, 0, 0], [0, 9.25, 0], [0, 0, 4.25]]
@@ -493,23 +493,24 @@ fn lists_are_completed_by_defaults() {
 
 /// Checks that files that MuJoCo rejects are rejected, with one error for each fault.
 #[test]
-fn what_mujoco_refuses() {
-    let body =
+fn files_that_mujoco_rejects_are_rejected() {
+    let body_with_joint =
         |joint: &str| format!("<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>");
-    let model_with_motor = |said: &str| format!("{}<actuator><motor {said}/></actuator>", body(""));
+    let model_with_motor =
+        |said: &str| format!("{}<actuator><motor {said}/></actuator>", body_with_joint(""));
     let model_with_fixed_tendon =
-        |inside: &str| format!("{}<tendon><fixed {inside}</fixed></tendon>", body(""));
+        |inside: &str| format!("{}<tendon><fixed {inside}</fixed></tendon>", body_with_joint(""));
     for (text, message) in [
         (
-            format!("<compiler autolimits='false'/>{}", body("range='0 1'")),
+            format!("<compiler autolimits='false'/>{}", body_with_joint("range='0 1'")),
             "`range` without `limited` has no effect",
         ),
         (
             format!("<compiler autolimits='false'/>{}", model_with_motor("joint='j' ctrlrange='0 1'")),
             "`ctrlrange` without `ctrllimited` has no effect",
         ),
-        (body("range='0 x' limited='true'"), "`x` is not a number"),
-        (body("limited='true'"), "`limited=\"true\"` without `range`"),
+        (body_with_joint("range='0 x' limited='true'"), "`x` is not a number"),
+        (body_with_joint("limited='true'"), "`limited=\"true\"` without `range`"),
         (model_with_motor(""), "an actuator without a target"),
         (
             model_with_motor("joint='j' site='s'"),
@@ -544,8 +545,8 @@ fn what_mujoco_refuses() {
         assert_eq!(answer.matches("r.xml:").count(), 1, "{answer}");
     }
     for text in [
-        body("range='0 0' limited='auto'"),
-        format!("<compiler autolimits='false'/>{}", body("range='0 1' limited='false'")),
+        body_with_joint("range='0 0' limited='auto'"),
+        format!("<compiler autolimits='false'/>{}", body_with_joint("range='0 1' limited='false'")),
         "<compiler alignfree='true'/><worldbody><body><freejoint align='false'/><geom size='1'/></body>\
          </worldbody>"
             .to_string(),
@@ -558,22 +559,22 @@ fn what_mujoco_refuses() {
     }
 }
 
-/// Joints and mass of the world move nothing.
+/// Joints and masses of the MJCF world have no effect on the mechanism.
 #[test]
-fn the_world_does_not_move() {
+fn joints_and_mass_of_the_world_have_no_effect() {
     let help = "= help: move it into a `<body>`";
     for (inside, found) in [
         ("<joint/>", "r.xml:2:12: `<joint>` of the world, which does not move"),
         ("<frame><freejoint/></frame>", "r.xml:2:19: `<freejoint>` of the world, which does not move"),
         ("<inertial pos='0 0 0' mass='1'/>", "r.xml:2:12: `<inertial>` of the world, which does not move"),
     ] {
-        check_model(&format!("<worldbody>{inside}</worldbody>"), &format!("{found}\n{help}"));
+        check_mjcf_elements(&format!("<worldbody>{inside}</worldbody>"), &format!("{found}\n{help}"));
     }
 }
 
 /// Sites without a neighbour and pulleys that no site follows are errors, as in MuJoCo 4.0.0.
 #[test]
-fn parts_of_a_path_without_length_are_errors() {
+fn tendon_paths_without_length_are_rejected() {
     let help = "= help: a tendon and each part behind a pulley has two sites";
     let (a, b, pulley) = ("<site site='a'/>", "<site site='b'/>", "<pulley divisor='2'/>");
     for (path, element, column) in [
@@ -583,7 +584,7 @@ fn parts_of_a_path_without_length_are_errors() {
         (format!("{a}{b}{pulley}{a}"), "<site>", 87),
         (format!("{a}{b}{pulley}{pulley}{a}{b}"), "<pulley>", 66),
     ] {
-        check_model(
+        check_mjcf_elements(
             &format!(
                 "<tendon><spatial stiffness='100'>{path}</spatial></tendon>\n\
                  <worldbody><site name='a'/><body><joint/>{BALL}<site name='b' pos='1 0 0'/></body></worldbody>"
@@ -593,9 +594,9 @@ fn parts_of_a_path_without_length_are_errors() {
     }
 }
 
-/// Requested contacts that the file does not contain.
+/// Requested contacts with planes that the file does not contain are reported.
 #[test]
-fn planes_that_nothing_touches() {
+fn requested_planes_without_contacts_are_reported() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
     let contacts_with = |bits: &str| {
         let text = format!(

@@ -28,7 +28,7 @@ fn test_name(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }
 }
 
-/// Temporary folder of files for one test.
+/// Temporary folder for the files of one test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -83,7 +83,7 @@ fn options_with_locked_joints(joints: &[&str]) -> FileOptions {
 }
 
 /// Compares the result for `text` with `expected`. Indentation and empty lines are ignored.
-fn check_with(options: &FileOptions, text: &str, expected: &str) {
+fn check_with_options(options: &FileOptions, text: &str, expected: &str) {
     let trim_lines = |text: &str| -> String {
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
         lines.map(|line| format!("{line}\n")).collect()
@@ -93,7 +93,7 @@ fn check_with(options: &FileOptions, text: &str, expected: &str) {
 }
 
 fn check_import(text: &str, expected: &str) {
-    check_with(&default_options(), text, expected);
+    check_with_options(&default_options(), text, expected);
 }
 
 /// Compares the result for elements inside `<robot>`. The elements begin on the second line.
@@ -106,7 +106,7 @@ fn import_text(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Optio
     import_file(text, Path::new(""), options, cx)
 }
 
-/// Returns the description as text, or the errors.
+/// Returns the imported description as text, or the error messages.
 fn import_as_text(options: &FileOptions, text: &str) -> String {
     let mut cx = Diagnostics::new();
     let imported = import_text(text, options, &mut cx);
@@ -151,7 +151,7 @@ fn render_body(body: &Body) -> String {
 }
 
 fn render_joint(joint: &Joint) -> String {
-    let (parent, child) = (render_end(&joint.parent), render_end(&joint.child));
+    let (parent, child) = (render_endpoint(&joint.parent), render_endpoint(&joint.child));
     let mut line = format!("{:?} {}: {parent} -> {child}", joint.kind, joint.name.text);
     for (word, axes) in [("about", &joint.about), ("along", &joint.along)] {
         for axis in axes {
@@ -203,14 +203,15 @@ fn render_drive(drive: &Drive) -> String {
     format!("{}: {law} on {on}", drive.name.text)
 }
 
-fn render_end(end: &Endpoint) -> String {
+fn render_endpoint(end: &Endpoint) -> String {
     let at = end.at.iter().map(|at| format!(".at({})", render_expr(at)));
-    let rotated = (!end.rotated.is_empty()).then(|| format!(".rotated({})", render_list(&end.rotated)));
+    let rotated =
+        (!end.rotated.is_empty()).then(|| format!(".rotated({})", render_expressions(&end.rotated)));
     let words = std::iter::once(end.body.text.clone()).chain(at).chain(rotated);
     words.collect()
 }
 
-fn render_list(list: &[Expr]) -> String {
+fn render_expressions(list: &[Expr]) -> String {
     list.iter().map(render_expr).collect::<Vec<_>>().join(", ")
 }
 
@@ -218,10 +219,12 @@ fn render_expr(expr: &Expr) -> String {
     assert!(expr.place.file.is_some(), "every expression has its place in the file");
     match &expr.kind {
         ExprKind::Number(value) => value.to_string(),
-        ExprKind::Array(items) => format!("[{}]", render_list(items)),
-        ExprKind::Call(function, arguments) => format!("{}({})", function.text, render_list(arguments)),
+        ExprKind::Array(items) => format!("[{}]", render_expressions(items)),
+        ExprKind::Call(function, arguments) => {
+            format!("{}({})", function.text, render_expressions(arguments))
+        }
         ExprKind::Method(object, method, arguments) => {
-            format!("{}.{}({})", render_expr(object), method.text, render_list(arguments))
+            format!("{}.{}({})", render_expr(object), method.text, render_expressions(arguments))
         }
         ExprKind::Name(name) => name.replace('\u{1}', ""),
         ExprKind::Field(base, member) => format!("{}.{}", render_expr(base), member.text),

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn joints_come_depth_first_in_alphabetical_order() {
+fn joints_are_ordered_depth_first_and_alphabetically() {
     let links: String = ["tip", "a", "b", "c", "base"].map(massless_link).concat();
     let joints = [
         joint_element("second", "revolute", "base", "b", ""),
@@ -27,9 +27,9 @@ fn joints_come_depth_first_in_alphabetical_order() {
 }
 
 #[test]
-fn the_root_is_held_or_free() {
+fn root_link_is_fixed_or_free() {
     let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
-    check_with(
+    check_with_options(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
         "body any & name\nFree root_joint: ground -> any & name",
@@ -45,7 +45,7 @@ fn the_root_is_held_or_free() {
 }
 
 #[test]
-fn what_is_not_mechanics_is_ignored() {
+fn elements_without_mechanics_are_ignored() {
     check_import(
         r#"<?xml version="1.0"?> <!-- <robot> --> <robot name="r" xmlns:drake="d" version="1.0">
            <material name="grey"><color rgba="0 0 0 1"/></material>
@@ -59,7 +59,7 @@ fn what_is_not_mechanics_is_ignored() {
 }
 
 #[test]
-fn names_are_given_once() {
+fn duplicate_names_are_rejected() {
     let text = [massless_link("a"), massless_link("b"), massless_link("a")].join("\n");
     let joints =
         [joint_element("j", "fixed", "a", "b", ""), joint_element("j", "fixed", "b", "a", "")].join("\n");
@@ -85,7 +85,7 @@ fn names_are_given_once() {
     );
     let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
     let both = [massless_link("ground"), massless_link("ground_link")].concat();
-    check_with(
+    check_with_options(
         &free,
         &format!("<robot>{both}{}</robot>", joint_element("j", "fixed", "ground", "ground_link", "")),
         "body ground_link2
@@ -110,7 +110,7 @@ fn names_are_given_once() {
 }
 
 #[test]
-fn joints_join_links_that_are_there() {
+fn joints_to_missing_links_are_rejected() {
     let joints =
         [joint_element("j", "fixed", "base", "arms", ""), joint_element("k", "fixed", "arm", "arm", "")]
             .join("\n");
@@ -125,7 +125,7 @@ fn joints_join_links_that_are_there() {
 
 /// Files with joints from `world` need not declare this link.
 #[test]
-fn the_world_is_known() {
+fn link_named_world_needs_no_declaration() {
     let links = massless_link("a") + &massless_link("b");
     let joints =
         [joint_element("j", "fixed", "world", "a", ""), joint_element("k", "fixed", "world", "b", "")]
@@ -147,7 +147,7 @@ fn the_world_is_known() {
 }
 
 #[test]
-fn a_link_hangs_from_one_joint() {
+fn link_with_two_parent_joints_is_rejected() {
     let links = ["a", "b", "c"].map(massless_link).concat();
     let joints = [
         joint_element("ab", "fixed", "a", "b", ""),
@@ -165,7 +165,7 @@ fn a_link_hangs_from_one_joint() {
 /// Checks that the first of two joints with one child belongs to the tree, unless its parent hangs from the
 /// child.
 #[test]
-fn joints_close_loops() {
+fn second_parent_joint_closes_a_loop() {
     let options = FileOptions { close_loops: true, ..default_options() };
     let robot_with_joints = |joints: &[String]| {
         format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(massless_link).concat(), joints.concat())
@@ -176,15 +176,15 @@ fn joints_close_loops() {
     let expected_tree =
         |joints: &str| format!("body a\nbody b\nbody c\nWeld root_joint: ground -> a\n{joints}");
     let last = expected_tree("Weld ab: a -> b\nWeld ac: a -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
+    check_with_options(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
     let first = expected_tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
+    check_with_options(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
     let without_root = import_as_text(&options, &robot_with_joints(&[bc, cb]));
     assert!(without_root.contains("links `b`, `c` form a cycle"), "{without_root}");
 }
 
 #[test]
-fn there_is_one_root() {
+fn several_root_links_are_rejected() {
     let links = ["a", "b", "c", "d"].map(massless_link).join("\n");
     check_robot(
         &(links.clone() + &joint_element("j", "fixed", "a", "b", "")),
@@ -200,7 +200,7 @@ fn there_is_one_root() {
 }
 
 #[test]
-fn links_do_not_hang_from_one_another() {
+fn circular_parent_links_are_rejected() {
     let links = ["a", "b", "c"].map(massless_link).concat();
     let joints = [
         joint_element("ba", "fixed", "b", "a", ""),
@@ -217,7 +217,7 @@ fn links_do_not_hang_from_one_another() {
 }
 
 #[test]
-fn a_long_chain_needs_no_stack() {
+fn long_chains_of_links_fit_the_stack() {
     let joints = vec![("revolute", "<mimic joint='j1000'/>"); 999];
     let text = chain_of_links(&[joints, vec![("revolute", "")]].concat());
     let imported = import_text(&text, &default_options(), &mut Diagnostics::new());
@@ -225,7 +225,7 @@ fn a_long_chain_needs_no_stack() {
 }
 
 #[test]
-fn a_crowd_is_refused() {
+fn too_many_links_are_rejected() {
     let crowd: String = (0..2000).map(|k| massless_link(&format!("l{k}"))).collect();
     let column = 1 + (0..1024).map(|k| massless_link(&format!("l{k}")).len()).sum::<usize>();
     check_robot(&crowd, &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"));

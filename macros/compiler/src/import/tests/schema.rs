@@ -36,10 +36,10 @@ const LISTS: [(&str, &str); 4] = [
     ("*target", "joint=k; jointinparent=k; site=s; slidersite=s; cranksite=s; tendon=t"),
 ];
 
-/// MJCF elements that are rejected, with all their attributes.
+/// MJCF elements that are rejected together with all their attributes.
 const REFUSED: [&str; 2] = ["adhesion", "orientation"];
 
-/// Returns the imported description as text, or the errors.
+/// Returns the imported MJCF description as text, or the error messages.
 fn import_mjcf_as_text(text: &str) -> String {
     let mut cx = Diagnostics::new();
     match import_text(text, &mjcf_options(), &mut cx) {
@@ -58,7 +58,7 @@ fn results_with_and_without(file: &str, attribute: &str, value: &str) -> [String
 }
 
 #[test]
-fn each_attribute_that_may_change_a_motion_is_read_or_refused() {
+fn attributes_that_affect_motion_are_read_or_rejected() {
     let mut silent = Vec::new();
     let (mut shown, mut at): (BTreeMap<&str, BTreeSet<&str>>, _) = (BTreeMap::new(), None);
     for line in CASES.lines().skip_while(|line| !line.starts_with('>')).filter(|line| !line.is_empty()) {
@@ -81,7 +81,7 @@ fn each_attribute_that_may_change_a_motion_is_read_or_refused() {
             }
         }
     }
-    for (element, attributes) in schema::read() {
+    for (element, attributes) in schema::read_schema() {
         if REFUSED.iter().any(|kind| element == format!("actuator/{kind}")) {
             let text =
                 format!("<mujoco>{BODIES}<actuator><{}/></actuator></mujoco>", &element["actuator/".len()..]);
@@ -102,8 +102,8 @@ fn each_attribute_that_may_change_a_motion_is_read_or_refused() {
 /// Each element of MuJoCo is in the importer's list of attributes, or in its list of elements that are left
 /// out, which the guide names.
 #[test]
-fn elements_and_attributes_are_those_of_mujoco() {
-    let ours = schema::read();
+fn importer_schema_lists_the_elements_of_mujoco() {
+    let ours = schema::read_schema();
     let list = include_str!("mujoco_schema.txt").replace("\n    ", " ");
     let mut missing = Vec::new();
     for line in list.lines().skip_while(|line| !line.starts_with("mujoco:")) {
@@ -134,7 +134,7 @@ fn elements_and_attributes_are_those_of_mujoco() {
 }
 
 #[test]
-fn attributes_that_change_no_motion_are_accepted() {
+fn attributes_without_effect_on_motion_are_accepted() {
     for (element, attribute) in
         [("joint", "margin"), ("geom", "rgba"), ("site", "user"), ("geom", "castshadow")]
     {
@@ -154,7 +154,7 @@ fn attributes_that_change_no_motion_are_accepted() {
 }
 
 #[test]
-fn what_mjcf_does_not_have_is_refused() {
+fn unknown_mjcf_elements_are_rejected() {
     for (inside, at, message, help) in [
         (
             "<worldbody><body colour='red'/></worldbody>",
@@ -205,7 +205,7 @@ fn what_mjcf_does_not_have_is_refused() {
 }
 
 #[test]
-fn names_are_taken_once() {
+fn duplicate_mjcf_names_are_rejected() {
     for (inside, message) in [
         (
             "<worldbody><site name='s'/><frame><site name='s'/></frame></worldbody>",

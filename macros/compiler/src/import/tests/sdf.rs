@@ -7,13 +7,13 @@ fn sdf_options() -> FileOptions {
 }
 
 /// Compares the result for the elements of a model. The elements begin on the second line.
-fn check_model(inside: &str, expected: &str) {
-    check_with(&sdf_options(), &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"), expected);
+fn check_sdf_model(inside: &str, expected: &str) {
+    check_with_options(&sdf_options(), &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"), expected);
 }
 
 #[test]
-fn what_is_not_said_is_what_the_format_says() {
-    check_model(
+fn omitted_sdf_values_have_the_defaults_of_the_format() {
+    check_sdf_model(
         "<link name='a'/><link name='b'><pose>0 0 2 0 0 0</pose></link><joint name='j' type='revolute'>\
          <parent>a</parent><child>b</child><axis/></joint>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -24,8 +24,8 @@ fn what_is_not_said_is_what_the_format_says() {
 }
 
 #[test]
-fn frames_carry_joints_and_joints_close_loops() {
-    check_model(
+fn sdf_frames_place_joints_and_joints_close_loops() {
+    check_sdf_model(
         "<link name='a'/><frame name='f' attached_to='a'><pose>1 0 0 0 0 0</pose></frame><link name='b'/>\
          <link name='c'/><joint name='i' type='fixed'><parent>f</parent><child>b</child></joint>\
          <joint name='j' type='ball'><parent>a</parent><child>c</child></joint>\
@@ -46,8 +46,8 @@ fn frames_carry_joints_and_joints_close_loops() {
 }
 
 #[test]
-fn what_stands_in_the_world_is_listed() {
-    check_with(
+fn static_models_of_the_world_are_listed() {
+    check_with_options(
         &sdf_options(),
         "<sdf><world name='w'><gravity>0 0 -1</gravity><model name='f'><static>1</static><link name='f'/>\
          </model><model name='m'><link name='a'/></model></world></sdf>",
@@ -58,7 +58,7 @@ fn what_stands_in_the_world_is_listed() {
 }
 
 #[test]
-fn poses_name_frames_that_there_are() {
+fn sdf_poses_relative_to_missing_frames_are_rejected() {
     let model_with_pose = |pose: &str| {
         format!(
             "<link name='a'>{pose}</link><frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>"
@@ -93,7 +93,7 @@ fn poses_name_frames_that_there_are() {
 }
 
 #[test]
-fn what_is_not_supported_is_said() {
+fn unsupported_sdf_elements_are_reported() {
     let model_with_joint = |inside: &str| {
         format!(
             "<link name='a'/><link name='b'/><joint name='j' {inside}<parent>a</parent><child>b</child>\
@@ -166,12 +166,12 @@ fn what_is_not_supported_is_said() {
              `#[mechanism(…, limits = ignore)]`",
         ),
     ] {
-        check_model(&inside, expected);
+        check_sdf_model(&inside, expected);
     }
 }
 
 #[test]
-fn another_format_is_named() {
+fn non_sdf_file_names_its_format_in_the_error() {
     for (text, expected) in [
         (
             "<robot/>",
@@ -194,7 +194,7 @@ fn another_format_is_named() {
              joints of their world connect: put the others into files of their own",
         ),
     ] {
-        check_with(&sdf_options(), text, expected);
+        check_with_options(&sdf_options(), text, expected);
     }
 }
 
@@ -208,12 +208,12 @@ const FILE: &str = r#"<?xml version="1.0"?><sdf version="1.9"><world name="w"><g
 </model></world></sdf>"#;
 
 #[test]
-fn damage_never_panics() {
+fn damaged_sdf_never_panics() {
     super::fuzz::damage_gets_an_answer(&sdf_options(), FILE, "root_joint");
 }
 
 #[test]
-fn every_beginning_of_a_file_gets_an_answer() {
+fn truncated_sdf_never_panics() {
     for end in 0..FILE.len() {
         assert!(!import_as_text(&sdf_options(), &FILE[..end]).contains("root_joint"));
     }
@@ -223,7 +223,7 @@ fn every_beginning_of_a_file_gets_an_answer() {
 /// The model of an included file replaces the `<include>`, with the name and pose of the `<include>`. The
 /// result equals that of a file which contains the model.
 #[test]
-fn included_models_stand_in_the_place_of_their_elements() {
+fn included_sdf_models_replace_the_include_element() {
     let wheel = "<sdf version='1.9'>\n<model name='wheel'><pose>9 9 9 0 0 0</pose><link name='rim'>\
                  <pose>0 0 1 0 0 0</pose></link></model></sdf>";
     let files = [
@@ -286,7 +286,7 @@ const ONE: &str = "mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
 
 /// The child is rotated by a right angle about z: x of the model is −y of the child and of the joint.
 #[test]
-fn axes_of_old_versions_are_in_the_model() {
+fn old_sdf_joint_axes_are_in_the_model_frame() {
     let model_with_axis = |version: &str, axis: &str| {
         format!(
             "<sdf version='{version}'><model name='m'><link name='a'/><link name='b'>\
@@ -315,9 +315,9 @@ fn axes_of_old_versions_are_in_the_model() {
             "body a {ONE}\nbody b {ONE}\nWeld root_joint: ground -> a\nSleeve j: \
              a.rotated(z(1.5707963267948966)) -> b along {along}"
         );
-        check_with(&sdf_options(), &model_with_axis(version, axis), &expected);
+        check_with_options(&sdf_options(), &model_with_axis(version, axis), &expected);
     }
-    check_with(
+    check_with_options(
         &sdf_options(),
         &model_with_axis("1.7", &of_model),
         "r.sdf:1:204: `<use_parent_model_frame>` has another name since version 1.7 of SDF\n= help: write \
@@ -327,7 +327,7 @@ fn axes_of_old_versions_are_in_the_model() {
 
 /// Included files are interpreted in their own version.
 #[test]
-fn included_files_are_read_in_their_own_version() {
+fn included_sdf_files_keep_their_own_version() {
     let arm_of_version = |version: &str| {
         format!(
             "<sdf version='{version}'><model name='arm'><link name='a'/><link name='b'>\
@@ -353,7 +353,7 @@ fn included_files_are_read_in_their_own_version() {
 /// Poses of versions 1.5 and 1.6 name their reference frame in the attribute `frame`, in inertial frames too,
 /// and links may declare frames.
 #[test]
-fn poses_of_old_versions_name_frames() {
+fn old_sdf_poses_name_their_frame_in_an_attribute() {
     let model_with_poses = |version: &str, pose: &str, inertial: &str| {
         format!(
             "<sdf version='{version}'><model name='m'><link name='a'><pose>0 0 1 0 0 0</pose></link>\
@@ -372,22 +372,22 @@ fn poses_of_old_versions_name_frames() {
     for version in ["1.5", "1.6"] {
         let model_with_inertial_pose = |inertial: &str| model_with_poses(version, placed, inertial);
         let expected_with_com = |com: &str| expected_model("[0, 0, 1]", com);
-        check_with(
+        check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 0, 0]"),
         );
-        check_with(
+        check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame='a'>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 0, -1]"),
         );
-        check_with(
+        check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame='f'>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 3, 0]"),
         );
-        check_with(
+        check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame=''>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 0, 0]"),
@@ -407,7 +407,7 @@ fn poses_of_old_versions_name_frames() {
 
 /// Joints and frames of the world: names in them begin with the name of a model.
 #[test]
-fn joints_of_the_world_hold_models() {
+fn world_joints_fix_sdf_models() {
     let world_with_joint = |inside: &str| {
         format!(
             "<sdf version='1.10'><world name='w'><gravity>0 0 -1</gravity>{inside}<model name='m'>\
@@ -488,7 +488,7 @@ fn joints_of_the_world_hold_models() {
 
 /// A positive `<thread_pitch>`, in rad/m, describes a left-handed thread.
 #[test]
-fn screws_of_old_versions_advance_by_their_thread() {
+fn old_sdf_thread_pitch_is_left_handed() {
     let model_with_thread_pitch = |pitch: &str| {
         format!(
             "<sdf version='1.5'><model name='m'><link name='a'/><link name='b'/><joint name='j' type='screw'>\
@@ -507,7 +507,7 @@ fn screws_of_old_versions_advance_by_their_thread() {
 }
 
 #[test]
-fn versions_are_numbers() {
+fn sdf_version_must_be_a_number() {
     let model = "<model name='m'><link name='a'/></model>";
     for (version, expected) in [
         (
@@ -520,7 +520,7 @@ fn versions_are_numbers() {
              > converted.sdf`",
         ),
     ] {
-        check_with(&sdf_options(), &format!("<sdf version='{version}'>{model}</sdf>"), expected);
+        check_with_options(&sdf_options(), &format!("<sdf version='{version}'>{model}</sdf>"), expected);
     }
     let answer = import_as_text(&sdf_options(), &format!("<gazebo version='1.2'>{model}</gazebo>"));
     assert!(answer.contains("files of versions 1.0 and 1.2 begin so"), "{answer}");
@@ -548,7 +548,7 @@ fn versions_are_numbers() {
 
 /// Gravity is an element of `<physics>` up to version 1.5.
 #[test]
-fn gravity_of_old_worlds_is_that_of_their_physics() {
+fn old_sdf_gravity_is_read_from_physics() {
     let world_of_version = |version: &str| {
         format!(
             "<sdf version='{version}'><world name='w'><physics type='ode'><gravity>0 0 -3</gravity></physics>\
@@ -566,8 +566,8 @@ fn gravity_of_old_worlds_is_that_of_their_physics() {
 
 /// Numbers and words next to comments are read, or an error where a comment divides them.
 #[test]
-fn comments_do_not_hide_values() {
-    check_model(
+fn xml_comments_do_not_hide_values() {
+    check_sdf_model(
         "<link name='a'><pose><!-- m, rad -->0 0 3 0 0 0</pose><inertial><mass><!-- kg -->2</mass></inertial>\
          </link><link name='b'/><joint name='j' type='ball'><parent><!-- link --> a</parent><child>b</child>\
          </joint>",
@@ -582,13 +582,13 @@ fn comments_do_not_hide_values() {
         ("<pose>0 0 3 0 0 0<offset/></pose>", "r.sdf:2:33: unexpected `<offset>` in `<pose>`"),
         ("<inertial><mass>1<!-- -->0</mass></inertial>", "r.sdf:2:41: unexpected text `0` in `<mass>`"),
     ] {
-        check_model(&format!("<link name='a'>{inside}</link>"), &format!("{found}\n{help}"));
+        check_sdf_model(&format!("<link name='a'>{inside}</link>"), &format!("{found}\n{help}"));
     }
 }
 
 /// An element or attribute in the wrong parent element is an error, and does not become the default.
 #[test]
-fn parts_in_the_place_of_others_are_errors() {
+fn misplaced_sdf_elements_are_rejected() {
     let model = "= help: a model holds `<link>`, `<joint>`, `<frame>` and `<model>`";
     let link = "= help: mass properties belong to `<inertial>`, and connections of links to `<joint>`";
     let inertial = "= help: expected `<pose>`, `<mass>` and `<inertia>` with `<ixx>` and so on";
@@ -609,7 +609,7 @@ fn parts_in_the_place_of_others_are_errors() {
             "= help: the first is at r.sdf:2:16",
         ),
     ] {
-        check_model(inside, &format!("{found}\n{help}"));
+        check_sdf_model(inside, &format!("{found}\n{help}"));
     }
     let model_with_joint = |inside: &str| {
         format!(
@@ -636,8 +636,8 @@ fn parts_in_the_place_of_others_are_errors() {
 
 /// A joint that closes a loop is not lost because an end has no name.
 #[test]
-fn ends_without_names_are_errors() {
-    check_model(
+fn loop_joints_with_unnamed_links_are_rejected() {
+    check_sdf_model(
         "<link name='a'/><link name='b'/><joint name='i' type='ball'><parent>a</parent><child>b</child>\
          </joint><joint name='j' type='ball'><parent/><child>b</child></joint>",
         "r.sdf:2:131: `<parent>` without a name
@@ -647,7 +647,7 @@ fn ends_without_names_are_errors() {
 
 #[test]
 fn what_a_joint_cannot_have_is_listed() {
-    check_model(
+    check_sdf_model(
         "<link name='a'/><link name='b'/><link name='c'/><joint name='i' type='screw'><parent>a</parent>\
          <child>b</child><screw_thread_pitch>1</screw_thread_pitch><axis><limit><lower>-1</lower>\
          <upper>2</upper></limit></axis></joint><joint name='j' type='ball'><parent>b</parent>\
@@ -673,7 +673,7 @@ fn what_a_joint_cannot_have_is_listed() {
 
 /// Gravity is that of the world which has the model.
 #[test]
-fn gravity_is_that_of_the_models_world() {
+fn gravity_of_the_world_of_the_model_is_used() {
     let text = "<sdf><world name='a'><gravity>0 0 -1</gravity></world><world name='b'>\
                 <gravity>0 0 -5</gravity><model name='m'><link name='a'/></model></world></sdf>";
     let imported = import_text(text, &sdf_options(), &mut Diagnostics::new()).expect("a robot");

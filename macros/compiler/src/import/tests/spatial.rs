@@ -28,7 +28,7 @@ fn motor_on_cable(around: &str) -> Vec<String> {
 }
 
 #[test]
-fn paths_are_lengths_of_cables() {
+fn spatial_tendon_paths_become_cable_lengths() {
     let ends = "ground.at([0, 0, 1]) / b.at([3, 0, 0])";
     assert_eq!(motor_on_cable(""), [format!("m: input in N on norm(r(({ends})))")]);
     assert_eq!(
@@ -49,7 +49,7 @@ fn paths_are_lengths_of_cables() {
 
 /// A pulley divides the length after it by its divisor; a gear ratio multiplies the whole length.
 #[test]
-fn pulleys_and_gears_are_factors() {
+fn pulleys_and_gears_scale_tendon_lengths() {
     let tendon = "<spatial name='t'><site site='w'/><site site='s'/><pulley divisor='4'/><site site='w'/>\
                   <site site='side'/></spatial>";
     let expected_length = |end: &str| format!("norm(r((ground.at([0, 0, 1]) / b.at([{end}]))))");
@@ -65,7 +65,7 @@ fn pulleys_and_gears_are_factors() {
 
 /// The free length is the length with all joint springs relaxed: here `s` is rotated by 1 rad about y.
 #[test]
-fn springs_are_free_at_rest() {
+fn tendon_springs_are_relaxed_with_relaxed_joints() {
     let drives_with_spring = |more: &str| {
         drive_lines(
             &format!("<spatial name='t' stiffness='5' {more}><site site='w'/><site site='s'/></spatial>"),
@@ -87,7 +87,7 @@ fn springs_are_free_at_rest() {
 }
 
 #[test]
-fn sites_are_pushed_and_turned() {
+fn site_actuators_apply_forces_and_torques() {
     let drives_with_site_motor =
         |words: &str| drive_lines("", &format!("<motor name='m' site='s' {words}/>"));
     assert_eq!(
@@ -116,7 +116,7 @@ fn sites_are_pushed_and_turned() {
 
 /// Unsupported paths are accepted if nothing acts on the tendon.
 #[test]
-fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
+fn unsupported_tendon_paths_are_reported_only_if_used() {
     let side =
         "<spatial name='t'><site site='w'/><geom geom='ball' sidesite='side'/><site site='s'/></spatial>";
     assert_eq!(drive_lines(side, ""), Vec::<String>::new());

@@ -1,19 +1,19 @@
-//! Angles in degrees in formats that use radians.
+//! Tests of angles in degrees in file formats that use radians.
 
 use super::*;
 
-/// The angle 90 rad reduced by full revolutions, rad.
+/// The angle 90 rad, reduced by full revolutions, rad.
 const SAME_TURN: f64 = 2.0354056994857928;
 
 #[test]
-fn what_is_left_within_a_turn_turns_as_far() {
+fn equivalent_angle_has_the_same_sine_and_cosine() {
     let (sin, cos) = 90.0_f64.sin_cos();
     assert!((SAME_TURN.sin() - sin).abs() < 1e-14 && (SAME_TURN.cos() - cos).abs() < 1e-14);
 }
 
-/// Compares the error for `text` with the angle 90 in place of `…`. A rounded full revolution and one and a
-/// half revolutions must not be reported.
-fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
+/// Compares the error message for `text` with the angle 90 in place of `…`. A rounded full revolution and one
+/// and a half revolutions must not be reported.
+fn check_degrees_error(options: &FileOptions, text: &str, place: &str, help: &str) {
     let degrees = text.replace('…', "90");
     let said = format!(
         "{place}: an angle of 90 rad is more than a full turn: 90° are {} rad, 90 rad is the same rotation \
@@ -21,7 +21,7 @@ fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
         std::f64::consts::FRAC_PI_2,
         SAME_TURN,
     );
-    check_with(options, &degrees, &said);
+    check_with_options(options, &degrees, &said);
     for turn in ["6.2832", "-6.283185307179586", "6.3", "9.42477796076938"] {
         let answer = import_as_text(options, &text.replace('…', turn));
         assert!(!answer.contains("full turn"), "{answer}");
@@ -29,7 +29,7 @@ fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
 }
 
 #[test]
-fn degrees_in_a_urdf_are_told_once() {
+fn degrees_in_a_urdf_are_reported_once() {
     let robot_with_origin = |origin: &str| {
         format!(
             "<robot name='r'><link name='a'/><link name='b'><inertial><origin rpy='0 … 0'/><mass value='1'/>\
@@ -38,25 +38,25 @@ fn degrees_in_a_urdf_are_told_once() {
         )
     };
     let help = "`rpy` is in radians: write the angle that is meant, everywhere in the file";
-    check_turns(&default_options(), &robot_with_origin("<origin rpy='0 0 …'/>"), "r.urdf:1:71", help);
+    check_degrees_error(&default_options(), &robot_with_origin("<origin rpy='0 0 …'/>"), "r.urdf:1:71", help);
     let joint = robot_with_origin("<origin xyz='90 0 0' rpy='0 0 …'/>").replacen('…', "1.5", 1);
-    check_turns(&default_options(), &joint, "r.urdf:2:59", help);
+    check_degrees_error(&default_options(), &joint, "r.urdf:2:59", help);
 }
 
 #[test]
-fn degrees_in_an_sdf_say_so() {
+fn degrees_in_an_sdf_are_reported() {
     let options = FileOptions { format: FileFormat::Sdf, path: test_name("r.sdf"), ..default_options() };
     let model_with_pose =
         |pose: &str| format!("<sdf><model name='m'><link name='a'>{pose}</link></model></sdf>");
     let help = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
                 everywhere in the file";
-    check_turns(&options, &model_with_pose("<pose>90 0 0 … 0 0</pose>"), "r.sdf:1:43", help);
+    check_degrees_error(&options, &model_with_pose("<pose>90 0 0 … 0 0</pose>"), "r.sdf:1:43", help);
     let answer = import_as_text(&options, &model_with_pose("<pose degrees='true'>0 0 0 0 0 90</pose>"));
     assert!(answer.contains("body a mass=1"), "{answer}");
 }
 
 #[test]
-fn degrees_in_an_mjcf_are_what_the_file_says() {
+fn degrees_in_an_mjcf_follow_its_compiler_option() {
     let options = FileOptions { format: FileFormat::Mjcf, path: test_name("r.xml"), ..default_options() };
     let model_with_angle_unit = |unit: &str, turn: &str| {
         format!(
@@ -67,7 +67,7 @@ fn degrees_in_an_mjcf_are_what_the_file_says() {
     let help = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, or \
                 `angle=\"degree\"`";
     for (turn, place) in [("euler='0 … 0'", "r.xml:2:23"), ("axisangle='0 0 20 …'", "r.xml:2:27")] {
-        check_turns(&options, &model_with_angle_unit("radian", turn), place, help);
+        check_degrees_error(&options, &model_with_angle_unit("radian", turn), place, help);
         let answer = import_as_text(&options, &model_with_angle_unit("degree", &turn.replace('…', "90")));
         assert!(answer.contains("body b mass=1"), "{answer}");
     }

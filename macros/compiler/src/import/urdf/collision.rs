@@ -13,21 +13,21 @@ use crate::import::robot::FileCollision;
 use crate::syntax::{MeshVertices, Shape};
 use std::path::Path;
 
-/// Shapes of collision geometry that are supported.
+/// Names of the URDF shapes that are supported as collision geometry.
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
 
 /// Reads all collision geometry of a link. Paths of meshes are relative to `folder`.
 pub(super) fn read_collisions(link: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Vec<FileCollision> {
     let parts = child_elements(link).filter(|node| node.tag_name().name() == "collision");
-    parts.filter_map(|part| read_part(part, folder, cx)).collect()
+    parts.filter_map(|part| read_collision(part, folder, cx)).collect()
 }
 
-fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileCollision> {
+fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileCollision> {
     let [origin, geometry] = known_children(node, ["origin", "geometry"], cx);
     let origin = read_origin(origin, node, cx);
     let geometry = required_child(geometry, node, "geometry", &[], cx)?;
     let [sphere, cuboid, cylinder, capsule, mesh] = known_children(geometry, SHAPES, cx);
-    report_several(&[sphere, cuboid, cylinder, capsule, mesh], cx);
+    report_additional_shapes(&[sphere, cuboid, cylinder, capsule, mesh], cx);
     let mut vertices = None;
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
         (Some(sphere), ..) => {
@@ -38,7 +38,7 @@ fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileColli
             check_attributes(cuboid, &["size"], &[], cx);
             let size: Placed<[f64; 3]> = read_numbers_attribute(cuboid, "size", cx)?;
             for x in size.value {
-                check_positive(x, &size.place, cx)?;
+                require_positive(x, &size.place, cx)?;
             }
             Shape::Cuboid(size.value)
         }
@@ -58,7 +58,7 @@ fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileColli
                 true => read_numbers_attribute(mesh, "scale", cx)?.value,
                 false => [1.0; 3],
             };
-            let paths = mesh::candidates(folder, &path.text);
+            let paths = mesh::candidate_paths(folder, &path.text);
             vertices = Some(MeshVertices::scaled(path, paths, scale));
             Shape::Mesh
         }
@@ -72,8 +72,8 @@ fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileColli
     Some(FileCollision { origin, shape, mesh: vertices, place: element_position(node, cx) })
 }
 
-/// Reports the shapes of a geometry after the first one.
-fn report_several(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
+/// Reports shapes of a URDF geometry in addition to the first one.
+fn report_additional_shapes(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
     if let Some(second) = shapes.iter().flatten().nth(1) {
         let help = "write a `<collision>` for each shape";
         cx.report_error(&element_position(*second, cx), "second shape of one geometry", |d| d.add_help(help));
@@ -82,10 +82,10 @@ fn report_several(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
 
 fn length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {
     let read = read_number_attribute(node, attribute, cx)?;
-    check_positive(read.value, &read.place, cx)
+    require_positive(read.value, &read.place, cx)
 }
 
-fn check_positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
+fn require_positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
     if x <= 0.0 {
         let help = "sizes of collision geometry are lengths in m";
         cx.report_error(place, format!("this length must be positive, but it is {x}"), |d| d.add_help(help));

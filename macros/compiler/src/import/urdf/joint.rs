@@ -5,7 +5,7 @@ use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_only, element_position, known_children, read_name_attribute,
+    Node, check_attributes, check_contents, element_position, known_children, read_name_attribute,
     read_number_attribute, read_numbers_attribute, required_child,
 };
 use crate::import::imported::Placed;
@@ -24,13 +24,13 @@ const TYPES: [(&str, JointKind); 7] = [
     ("spherical", JointKind::Ball),
 ];
 
-/// Child elements of `<joint>` that are read.
+/// Child elements of the URDF element `<joint>` that are read.
 const PARTS: [&str; 7] = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
 
 const ELEMENTS: &str = "a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin \
                         xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
 
-/// Attributes of `<dynamics>` that parametrise the controllers of other tools.
+/// Attributes of the URDF element `<dynamics>` that parametrise controllers of other tools.
 const OF_CONTROLLERS: [&str; 4] = ["D", "K", "mu_coulomb", "mu_viscous"];
 
 /// Reads a joint. Returns `None` if its name, parent or child is missing. Adds the `mimic` of a fixed joint
@@ -43,12 +43,12 @@ pub(super) fn read_joint(
 ) -> Option<FileJoint> {
     check_attributes(node, &["name", "type"], &[], cx);
     let joint = read_name_attribute(node, "name", cx);
-    let kind = read_type(node, cx);
+    let kind = read_joint_type(node, cx);
     let [origin, parent, child, axis, dynamics, mimic, limit] = known_children(node, PARTS, cx);
-    misplaced::check_misplaced(node, &PARTS, ELEMENTS, cx);
+    misplaced::report_misplaced_contents(node, &PARTS, ELEMENTS, cx);
     let origin = read_origin(origin, node, cx);
-    let parent = read_end(parent, node, "parent", cx);
-    let child = read_end(child, node, "child", cx);
+    let parent = read_end_link(parent, node, "parent", cx);
+    let child = read_end_link(child, node, "child", cx);
     // Exporters write an axis of zeros and damping into fixed joints.
     let (word, kind) = kind.unwrap_or(("fixed", JointKind::Weld));
     let moves = kind != JointKind::Weld;
@@ -86,7 +86,7 @@ pub(super) fn read_joint(
     })
 }
 
-fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
+fn read_joint_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
     let found = node.attribute_node("type")?;
     let known = TYPES.iter().find(|(word, _)| *word == found.value());
     if known.is_none() {
@@ -98,9 +98,9 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
 }
 
 /// Reads the name of the parent or child link of a joint.
-fn read_end(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
+fn read_end_link(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
     let end = required_child(end, node, which, &["link"], cx)?;
-    check_only(end, &["link"], &[], &[], cx);
+    check_contents(end, &["link"], &[], &[], cx);
     read_name_attribute(end, "link", cx)
 }
 
@@ -113,7 +113,7 @@ fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<
     // Some exporters add an identity orientation to the axis.
     let has_rpy =
         axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
-    check_only(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
+    check_contents(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
     let axis = read_numbers_attribute(axis, "xyz", cx).unwrap_or(default_axis(element_position(axis, cx)));
     if axis.value == [0.0; 3] {
         cx.report_error(&axis.place, "axis of zero length has no direction", |d| d);
@@ -121,12 +121,12 @@ fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<
     axis
 }
 
-/// Reads damping and friction, in this order.
+/// Reads damping and friction coefficients of a URDF joint, in this order.
 fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut Cx<'_>) -> [Option<Expr>; 2] {
     let Some(node) = node else {
         return [None, None];
     };
-    check_only(node, &[], &["damping", "friction"], &OF_CONTROLLERS, cx);
+    check_contents(node, &[], &["damping", "friction"], &OF_CONTROLLERS, cx);
     ["damping", "friction"].map(|which| {
         let found = read_number_attribute(node, which, cx).filter(|found| found.value != 0.0)?;
         if found.value < 0.0 {
@@ -143,7 +143,7 @@ fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut C
 const IGNORE_PASSIVE: &str = "to ignore damping and friction, write `#[mechanism(…, passive = ignore)]`";
 
 fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Mimic> {
-    check_only(node, &["joint"], &["multiplier", "offset"], &[], cx);
+    check_contents(node, &["joint"], &["multiplier", "offset"], &[], cx);
     let multiplier = read_number_attribute(node, "multiplier", cx).map_or(1.0, |found| found.value);
     let offset = read_number_attribute(node, "offset", cx).map_or(0.0, |found| found.value);
     Some(Mimic { joint: read_name_attribute(node, "joint", cx)?, multiplier, offset })

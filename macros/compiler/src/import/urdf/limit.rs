@@ -1,14 +1,14 @@
 //! `<limit>` of a joint → bounds of its coordinate, velocity and force.
 
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, check_only, read_number_attribute};
+use crate::import::element::{Node, check_contents, read_number_attribute};
 use crate::import::imported::Placed;
 use crate::import::robot::{FileLimits, IGNORE_LIMITS};
 use crate::syntax::Name;
 
 const BOUNDS: [&str; 4] = ["lower", "upper", "velocity", "effort"];
 
-/// Attributes that other tools read. They bound other quantities than the joint's coordinate, velocity and
+/// URDF attributes of other tools that bound quantities other than the joint's coordinate, velocity and
 /// force.
 const OF_OTHERS: [&str; 10] = [
     "acceleration",
@@ -31,7 +31,7 @@ pub(super) fn read_limits(
     cx: &mut Cx<'_>,
 ) -> FileLimits {
     let Some(node) = node else { return FileLimits::default() };
-    check_only(node, &[], &BOUNDS, &OF_OTHERS, cx);
+    check_contents(node, &[], &BOUNDS, &OF_OTHERS, cx);
     let ends = !continuous && ["lower", "upper"].iter().any(|which| node.has_attribute(*which));
     let mut end = |which: &str, infinite: &str| ends.then(|| read_bound(node, which, infinite, cx)).flatten();
     let (lower, upper) = (end("lower", "-inf"), end("upper", "inf"));

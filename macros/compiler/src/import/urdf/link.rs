@@ -1,17 +1,17 @@
-//! Conversion of a `<link>` element to a [`Body`].
+//! Conversion of a URDF `<link>` element to a [`Body`].
 
 use super::origin::read_origin;
 use crate::diag::nearest_candidate;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, check_only, child_elements, element_position, known_children, quoted_tag,
+    Node, check_attributes, check_contents, child_elements, element_position, known_children, quoted_tag,
     read_name_attribute, read_number_attribute, required_child,
 };
 use crate::import::misplaced;
-use crate::import::robot::{Origin, bare_link};
+use crate::import::robot::{Origin, massless_link};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias};
 
-/// Attributes of `<inertia>`: the entries of the inertia matrix.
+/// Attributes of the URDF element `<inertia>`: the entries of the inertia matrix.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 
 /// Redundant entries that some exporters write although the matrix is symmetric, each with its symmetric
@@ -22,11 +22,11 @@ const BELOW_DIAGONAL: [(&str, &str); 3] = [("iyx", "ixy"), ("izx", "ixz"), ("izy
 /// the two differently.
 const ASYMMETRY: f64 = 0.01;
 
-/// Child elements that `<inertial>` may have.
+/// Child elements that the URDF element `<inertial>` may have.
 const PARTS: [&str; 3] = ["origin", "mass", "inertia"];
 
-/// Reads a link. Returns `None` if it has no name. Mass properties are skipped if the mechanism needs none,
-/// and may be incomplete for a link that is fixed to the ground (`stands`).
+/// Reads a URDF link; `None` if it has no name. Mass properties are skipped if the mechanism needs none, and
+/// may be incomplete for a link fixed to the ground (`stands`).
 pub(super) fn read_link(
     node: Node<'_>,
     stands: impl FnOnce(&str) -> bool,
@@ -34,7 +34,7 @@ pub(super) fn read_link(
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
     check_attributes(node, &["name"], &[], cx);
-    misplaced::check_misplaced(
+    misplaced::report_misplaced_contents(
         node,
         &["inertial"],
         "a link has mass properties by `<inertial>`, and its position by a joint",
@@ -46,7 +46,7 @@ pub(super) fn read_link(
         _ => known_children(node, ["inertial"], cx),
     };
     let stands = name.as_ref().is_some_and(|name| stands(&name.text));
-    let mut body = bare_link(name?);
+    let mut body = massless_link(name?);
     if let Some(inertial) = inertial {
         read_inertial(inertial, stands, &mut body, cx);
     }
@@ -56,7 +56,7 @@ pub(super) fn read_link(
 /// Reads mass, centre of mass and inertia. If all values are zero, the body has no mass properties.
 fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>) {
     let [origin, mass, inertia] = known_children(node, PARTS, cx);
-    check_parts(node, cx);
+    check_inertial_contents(node, cx);
     let origin = read_origin(origin, node, cx);
     let mut found = |child, element, attributes: &[&str]| match stands {
         true => child,
@@ -64,7 +64,7 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
     };
     let (mass, inertia) = (found(mass, "mass", &["value"]), found(inertia, "inertia", &INERTIA));
     if let Some(mass) = mass {
-        check_only(mass, &["value"], &[], &[], cx);
+        check_contents(mass, &["value"], &[], &[], cx);
         body.mass = read_number_attribute(mass, "value", cx).map(|m| Expr::number_at(m.value, &m.place));
     }
     if let Some(inertia) = inertia {
@@ -77,7 +77,7 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
 }
 
 /// Reports contents of `<inertial>` other than its known child elements.
-fn check_parts(node: Node<'_>, cx: &mut Cx<'_>) {
+fn check_inertial_contents(node: Node<'_>, cx: &mut Cx<'_>) {
     let help = "expected `<origin>`, `<mass>` and `<inertia>`";
     for child in child_elements(node).filter(|child| !PARTS.contains(&child.tag_name().name())) {
         if nearest_candidate(child.tag_name().name(), &PARTS).is_none() {
@@ -85,7 +85,7 @@ fn check_parts(node: Node<'_>, cx: &mut Cx<'_>) {
             cx.report_error(&element_position(child, cx), message, |d| d.add_help(help));
         }
     }
-    misplaced::check_misplaced(node, &PARTS, help, cx);
+    misplaced::report_misplaced_contents(node, &PARTS, help, cx);
 }
 
 fn is_zero(expr: Option<&Expr>) -> bool {
@@ -95,7 +95,7 @@ fn is_zero(expr: Option<&Expr>) -> bool {
 /// Reads the inertia matrix, transformed from the axes of the inertial frame to those of the link. Returns
 /// `None` if the matrix is zero.
 fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr> {
-    check_only(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
+    check_contents(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
     let read = INERTIA.map(|entry| read_number_attribute(node, entry, cx));
     let largest = read.iter().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.value.abs()));
     for (entry, other) in BELOW_DIAGONAL {

@@ -1,4 +1,4 @@
-//! `<robot>` → bodies and joints in coordinate order.
+//! Import of URDF: `<robot>` → bodies and joints in coordinate order.
 //!
 //! The whole file is read before its topology is checked: joints may precede their links, and all errors of
 //! one kind are reported together. The topology is checked only if every element could be read, because a
@@ -27,18 +27,18 @@ pub(super) fn read_root_element(
     options: &FileOptions,
     cx: &mut Cx<'_>,
 ) -> Option<Imported> {
-    if !check_root(node, cx) {
+    if !check_root_element(node, cx) {
         return None;
     }
     let mut robot = read_robot(node, folder, options, cx)?;
     robot::check_names(&robot, options.format, cx);
-    robot::declare_world(&mut robot);
+    robot::declare_world_link(&mut robot);
     robot::rename_ground(&mut robot, options.base);
     if options.close_loops && !cx.has_errors() {
         robot::close_loops(&mut robot, cx);
     }
-    robot::check_ends(&robot, options.format, cx);
-    robot::check_locks(&robot.joints, &options.lock, cx);
+    robot::check_joint_ends(&robot, options.format, cx);
+    robot::check_locked_names(&robot.joints, &options.lock, cx);
     if cx.has_errors() {
         return None;
     }
@@ -52,14 +52,14 @@ pub(super) fn read_root_element(
         .map(ToString::to_string)
         .collect::<Vec<_>>();
     let closing = std::mem::take(&mut robot.closing);
-    let mut imported = robot::assemble(robot, &order, motions, options, cx);
-    robot::make_fields(&mut imported, &standing, options, cx);
+    let mut imported = robot::assemble_mechanism(robot, &order, motions, options, cx);
+    robot::make_value_fields(&mut imported, &standing, options, cx);
     imported.joints.extend(closing);
     (!cx.has_errors()).then_some(imported)
 }
 
 /// Returns true if the root element is `<robot>`; otherwise reports an error.
-fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
+fn check_root_element(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     let name = node.tag_name().name();
     if name == "robot" {
         return true;
@@ -77,7 +77,7 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
     let mut counts = [0, 0];
     let standing = standing::links_fixed_to_ground(node, options);
     let mut robot = Robot::default();
-    misplaced::check_misplaced(
+    misplaced::report_misplaced_contents(
         node,
         &["link", "joint"],
         "expected `<link>` and `<joint>`, which describe all moving parts",

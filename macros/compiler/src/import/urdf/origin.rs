@@ -1,7 +1,7 @@
 //! Conversion of an element `<origin xyz="…" rpy="…"/>` to an [`Origin`].
 
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_only, check_radians, element_position, read_numbers_attribute};
+use crate::import::element::{Node, check_contents, check_radians, element_position, read_numbers_attribute};
 use crate::import::imported::Placed;
 use crate::import::robot::Origin;
 
@@ -20,7 +20,7 @@ pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'
             d.add_help("expected `rpy=\"roll pitch yaw\"`")
         });
     } else {
-        check_only(node, &[], &["xyz", "rpy"], &[], cx);
+        check_contents(node, &[], &["xyz", "rpy"], &[], cx);
     }
     let xyz = read_numbers_attribute(node, "xyz", cx).unwrap_or(no_xyz);
     let rpy = read_numbers_attribute(node, "rpy", cx).unwrap_or(no_rpy);

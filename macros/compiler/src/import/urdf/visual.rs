@@ -7,15 +7,15 @@ use crate::import::imported::Placed;
 use crate::import::robot::{FileVisual, Origin};
 use crate::syntax::{Mesh, Shape};
 
-/// Reads all visual geometry of a link.
+/// Reads all visual geometry of a URDF link.
 pub(super) fn read_visuals(link: Node<'_>, cx: &Cx<'_>) -> Vec<FileVisual> {
     child_elements(link)
         .filter(|node| node.tag_name().name() == "visual")
-        .filter_map(|part| read_part(part, cx))
+        .filter_map(|part| read_visual(part, cx))
         .collect()
 }
 
-fn read_part(node: Node<'_>, cx: &Cx<'_>) -> Option<FileVisual> {
+fn read_visual(node: Node<'_>, cx: &Cx<'_>) -> Option<FileVisual> {
     let find_child_by_tag = |name: &str| child_elements(node).find(|child| child.tag_name().name() == name);
     let attribute_of_origin = |name| {
         let value = find_child_by_tag("origin")
@@ -52,7 +52,7 @@ fn read_shape(node: Node<'_>) -> Option<(Shape, Option<Mesh>)> {
     Some((shape, None))
 }
 
-/// Parses a positive finite length.
+/// Parses a length of a URDF shape, which must be positive and finite.
 fn parse_length(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0)
 }

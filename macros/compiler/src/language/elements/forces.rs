@@ -12,22 +12,22 @@ use Key::{
 /// A row of the table of force elements.
 #[derive(Debug)]
 pub struct ForceRow {
-    /// Name of the element's type.
+    /// Name of the force element's type.
     pub name: &'static str,
-    /// Names of the element in other tools.
+    /// Names of the force element in other tools.
     pub synonyms: &'static str,
     /// Whether the element can act on a coordinate, a body or a length: `on = …`.
     pub on: bool,
     /// Whether the element can act between two points: `between = (…, …)`.
     pub between: bool,
-    /// Arguments in addition to the places of action, in the order in which messages list them.
+    /// Arguments of the element after the points on which it acts, in the order in which messages list them.
     pub arguments: &'static [Key],
-    /// Alternative arguments for the law, of which one is given. If none is given, messages ask for the last
-    /// one.
+    /// Alternative arguments for the force law, exactly one of which is given. If it is missing, messages ask
+    /// for the last one.
     pub laws: &'static [Key],
-    /// Arguments that must be given, with an example each.
+    /// Arguments that the element requires, with an example value for each.
     pub required: &'static [(Key, &'static str)],
-    /// Conditions on which arguments are given together.
+    /// Conditions on which arguments may or must occur together.
     pub relations: &'static [Relation],
     /// Names of the stretch and the speed in the expression of the law.
     pub locals: Locals,
@@ -41,24 +41,24 @@ pub struct ForceRow {
     pub pieces: Option<[PieceKind; 2]>,
     /// Whether the element is drawn only between two points.
     pub drawn_between: bool,
-    /// Names that other tools use for the arguments.
+    /// Names that other tools use for the arguments of the element.
     pub words: Words,
-    /// Example of a declaration.
+    /// Example of a declaration of the force element.
     pub example: &'static str,
 }
 
-/// Variables that the expression of a law may use.
+/// Variables that the expression of a force law may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Locals {
-    /// The expression of the law has no variables.
+    /// The expression of the force law has no variables of its own.
     None,
-    /// `stretch` and `length`.
+    /// The force law may use the variables `stretch` and `length`.
     Stretch,
-    /// `speed`.
+    /// The force law may use the variable `speed`.
     Speed,
 }
 
-/// Row with default values, from which other rows are derived.
+/// Row of the table with default values, from which other rows are derived.
 const PLAIN: ForceRow = ForceRow {
     name: "",
     synonyms: "",
@@ -79,9 +79,9 @@ const PLAIN: ForceRow = ForceRow {
 };
 
 table! {
-    /// A force element, or an input that acts.
+    /// Force element of the language, or an input that acts as a force.
     ForceKind: ForceRow {
-        /// A spring.
+        /// Spring: a force that depends on displacement.
         Spring = ForceRow {
             name: "Spring",
             synonyms: "torsionspring torsionalspring rotationalspring linearspring coilspring elastic \
@@ -113,7 +113,7 @@ table! {
             example: "#[acts(on = joint, stiffness = k)]",
             ..PLAIN
         };
-        /// A dashpot.
+        /// Dashpot: a force proportional to the relative velocity.
         Dashpot = ForceRow {
             name: "Dashpot",
             synonyms: "damper viscousdamper damping shock shockabsorber resistance drag",
@@ -224,7 +224,7 @@ table! {
     }
 }
 
-/// Words for the arguments of gravity and of attraction.
+/// Names of other tools for the arguments of gravity and of attraction.
 const ATTRACTING: Words = &[
     ("g constantg gravitationalconstant gamma", "constant"),
     ("gm standardgravitationalparameter parameter", "mu"),
@@ -233,14 +233,14 @@ const ATTRACTING: Words = &[
 ];
 
 impl ForceKind {
-    /// Returns the names of all arguments, as messages list them.
+    /// Returns the names of all arguments of the element, in the order of messages.
     pub fn argument_names(self) -> Vec<&'static str> {
         let row = self.row();
         let targets = [("on", row.on), ("between", row.between)].into_iter().filter(|(_, takes)| *takes);
         targets.map(|(word, _)| word).chain(row.arguments.iter().map(|key| key.name())).collect()
     }
 
-    /// Returns the name with its article: `an Inerter`.
+    /// Returns the type name with its indefinite article: `an Inerter`.
     pub fn name_with_article(self) -> String {
         super::word_with_article(self.name())
     }

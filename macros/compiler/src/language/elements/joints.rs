@@ -8,30 +8,30 @@ use CoordinateNames::Plain;
 /// Row of the table of joints.
 #[derive(Debug)]
 pub struct JointRow {
-    /// Name of the joint's type.
+    /// Name of the joint's type in the language.
     pub name: &'static str,
-    /// Words of other tools, without the word `joint`.
+    /// Names of the joint type in other tools, without the word `joint`.
     pub synonyms: &'static str,
     /// Arguments of the joint in addition to its two ends.
     pub arguments: &'static [&'static str],
-    /// Names and kinds of the coordinates.
+    /// Names of the joint's coordinates, and whether they are angles.
     pub coordinates: CoordinateNames,
     /// Piece of the drawing, and the argument whose first axis the piece shows.
     pub piece: Option<(PieceKind, Option<DrawnAxis>)>,
-    /// Example of a declaration.
+    /// Example of a declaration of the joint.
     pub example: &'static str,
 }
 
-/// Coordinates of a joint.
+/// Coordinates that a type of joint has.
 #[derive(Clone, Copy, Debug)]
 pub enum CoordinateNames {
     /// Plain coordinates by name (empty for the name of the joint), with true for an angle.
     Plain(&'static [(&'static str, bool)]),
-    /// Plain coordinates along the given axes, two or three.
+    /// Plain coordinates along the two or three given axes.
     PerAxis(&'static [(&'static str, bool)]),
-    /// A unit quaternion.
+    /// The joint's coordinates are a unit quaternion.
     Ball,
-    /// A position and a unit quaternion.
+    /// The joint's coordinates are a position and a unit quaternion.
     Free,
 }
 
@@ -68,7 +68,7 @@ const fn joint_row(
 }
 
 table! {
-    /// A kind of joint.
+    /// Type of joint in the language.
     JointKind: JointRow {
         /// Rotation about an axis (revolute, hinge).
         Pin = joint_row("Pin",
@@ -91,7 +91,7 @@ table! {
         /// Successive rotations about two axes.
         Universal = joint_row("Universal", "cardan hooke gimbal cv",
             &["about"], Plain(&[("first", true), ("second", true)]), BALL, ABOUT);
-        /// All rotations (spherical).
+        /// Rotation about all axes (spherical joint).
         Ball = joint_row("Ball", "spherical socket ballsocket ballandsocket quaternion",
             &[], CoordinateNames::Ball, BALL, BARE);
         /// Two translations and a rotation about their normal (dual sleeve-pin).
@@ -101,11 +101,11 @@ table! {
         Stage = joint_row("Stage",
             "xystage xyzstage xy xyz cartesian gantry translation3d",
             &["along"], CoordinateNames::PerAxis(&[("x", false), ("y", false), ("z", false)]), SLIDE, ALONG);
-        /// All motions (six degrees of freedom).
+        /// All motions (free joint with six degrees of freedom).
         Free = joint_row("Free",
             "floating floatingbase freebase sixdof 6dof freeflyer freeflying unconstrained bushing",
             &[], CoordinateNames::Free, None, BARE);
-        /// No motion (fixed).
+        /// No motion (fixed joint).
         Weld = joint_row("Weld", "fixed rigid weld welded locked lock glue fix",
             &[], Plain(&[]), None, BARE);
     }
@@ -154,7 +154,7 @@ impl JointKind {
         plain.iter().any(|(name, angle)| *name == coordinate && *angle)
     }
 
-    /// Returns the name with its article: `a Pin`.
+    /// Returns the type name with its indefinite article: `a Pin`.
     pub fn name_with_article(self) -> String {
         format!("a {}", self.name())
     }

@@ -5,14 +5,14 @@ use ArgumentQuantity::{
     Coordinate, Damping, Direction, Energy, Fixed, Force, HertzStiffness, Inertance, Load, Speed, Stiffness,
 };
 
-/// Row of the table of arguments.
+/// Row of the table of arguments of elements.
 #[derive(Debug)]
 pub struct KeyRow {
-    /// Name of the argument.
+    /// Name of the element's argument.
     pub name: &'static str,
-    /// Names in other tools; the elements list them.
+    /// Names of the argument in other tools; the rows of the elements list them.
     pub synonyms: &'static str,
-    /// Quantity that the argument expects.
+    /// Quantity that the element's argument expects.
     pub quantity: ArgumentQuantity,
 }
 
@@ -20,17 +20,17 @@ pub struct KeyRow {
 /// acts.
 #[derive(Debug)]
 pub enum ArgumentQuantity {
-    /// Stiffness: force per displacement.
+    /// The argument is a stiffness: force per displacement.
     Stiffness,
-    /// Force by displacement to the power of 3/2.
+    /// The argument is a Hertz stiffness: force by displacement to the power of 3/2.
     HertzStiffness,
-    /// Damping: force per velocity.
+    /// The argument is a damping coefficient: force per velocity.
     Damping,
-    /// Inertance: force per acceleration.
+    /// The argument is an inertance: force per acceleration.
     Inertance,
-    /// A force or a torque.
+    /// The argument is a force, or a torque on an angle.
     Force,
-    /// Coordinate or distance on which the element acts.
+    /// The argument is an energy of the coordinate or distance on which the element acts.
     Energy,
     /// Rate of the coordinate or distance on which the element acts.
     Coordinate,
@@ -40,7 +40,7 @@ pub enum ArgumentQuantity {
     Fixed(Dimension, &'static str),
     /// Value of a force or a torque; without it the element is an input.
     Direction,
-    /// The value of a force or a torque; without it the element is an input.
+    /// The argument is the value of a force or a torque; without it the element is an input.
     Load,
 }
 
@@ -51,39 +51,39 @@ const fn key_row(name: &'static str, quantity: ArgumentQuantity) -> KeyRow {
 table! {
     /// An argument of a force element, a contact, a limit or a pair of slipping surfaces.
     Key: KeyRow {
-        /// Stiffness of a spring.
+        /// Argument `stiffness`: stiffness of a spring.
         Stiffness = key_row("stiffness", Stiffness);
         /// Force, as an expression of the stretch or the speed.
         Force = key_row("force", Force);
-        /// Energy, as an expression of the stretch.
+        /// Argument `energy`: energy as an expression of the stretch.
         Energy = key_row("energy", Energy);
         /// Length at which the force of a spring is zero.
         FreeLength = key_row("free_length", Coordinate);
         /// Angle at which the torque of a spring is zero.
         FreeAngle = key_row("free_angle", Coordinate);
-        /// Coefficient of a dashpot.
+        /// Argument `damping`: coefficient of a dashpot.
         Damping = key_row("damping", Damping);
-        /// Inertance of an inerter.
+        /// Argument `inertance`: inertance of an inerter.
         Inertance = key_row("inertance", Inertance);
-        /// Force of sliding friction.
+        /// Argument `coulomb`: force of sliding friction.
         Coulomb = key_row("coulomb", Force);
-        /// Force at breakaway.
+        /// Argument `stiction`: force at breakaway.
         Stiction = key_row("stiction", Force);
         /// Speed at which the force has fallen from breakaway to sliding.
         StribeckSpeed = key_row("stribeck_speed", Speed);
-        /// Viscous coefficient.
+        /// Argument `viscous`: coefficient of viscous friction.
         Viscous = key_row("viscous", Damping);
-        /// Speed of the regularisation.
+        /// Argument `speed`: speed of the regularisation of friction.
         Speed = key_row("speed", Speed);
-        /// Gravitational constant, for two bodies with mass.
+        /// Argument `constant`: gravitational constant, for two bodies with mass.
         Constant = key_row("constant", Fixed(GRAVITATION, ""));
-        /// Gravitational parameter of the attracting body.
+        /// Argument `mu`: gravitational parameter of the attracting body.
         Mu = key_row("mu", Fixed(ATTRACTION, ""));
-        /// Force times the square of the distance.
+        /// Argument `strength`: force times the square of the distance.
         Strength = key_row("strength", Fixed(STRENGTH, ""));
-        /// Coefficient of friction while surfaces slide.
+        /// Argument `friction`: coefficient of friction while surfaces slide.
         Friction = key_row("friction", PLAIN_NUMBER);
-        /// Coefficient of friction at rest.
+        /// Argument `stiction` of contacts: coefficient of friction at rest.
         StaticFriction = key_row("stiction", PLAIN_NUMBER);
         /// Maximum friction moment about the normal per unit normal force.
         TorsionalFriction = key_row("torsional", METERS);
@@ -91,23 +91,23 @@ table! {
         RollingFriction = key_row("rolling", METERS);
         /// Coefficient of restitution: `e`, a ratio of velocities, or `poisson(e)`, a ratio of impulses.
         Restitution = key_row("restitution", PLAIN_NUMBER);
-        /// Stiffness of round bodies (Hertz).
+        /// Argument `hertz`: stiffness of round bodies in contact (Hertz).
         Hertz = key_row("hertz", HertzStiffness);
-        /// Dissipation per speed of approach (Hunt and Crossley).
+        /// Argument `dissipation`: dissipation per speed of approach (Hunt and Crossley).
         Dissipation = key_row("dissipation", Fixed(SLOWNESS, "s/m"));
-        /// Lower bound of a limit.
+        /// Argument `from`: lower bound of a limit.
         From = key_row("from", Coordinate);
-        /// Upper bound of a limit.
+        /// Argument `to`: upper bound of a limit.
         To = key_row("to", Coordinate);
-        /// Maximum speed, in both directions.
+        /// Argument `max_speed`: maximum speed of a coordinate in both directions.
         MaxSpeed = key_row("max_speed", Speed);
-        /// Maximum force or torque, in both directions.
+        /// Argument `max_effort`: maximum force or torque in both directions.
         MaxEffort = key_row("max_effort", Force);
-        /// Direction of a force on a body.
+        /// Argument `along`: direction of a force on a body.
         Along = key_row("along", Direction);
-        /// Direction of a torque on a body.
+        /// Argument `about`: direction of a torque on a body.
         About = key_row("about", Direction);
-        /// Value of a force or a torque.
+        /// Argument `value`: value of a force or a torque.
         Value = key_row("value", Load);
     }
 }
@@ -115,18 +115,18 @@ table! {
 const PLAIN_NUMBER: ArgumentQuantity = Fixed(PLAIN, "1");
 const METERS: ArgumentQuantity = Fixed(LENGTH, "m");
 
-/// A condition on which arguments are given together.
+/// Condition on which arguments of an element may or must occur together.
 #[derive(Debug)]
 pub struct Relation {
-    /// Argument at which a violation is reported.
+    /// Argument at which a violation of the condition is reported.
     pub key: Key,
-    /// True if the argument needs one of the others, false if it excludes them.
+    /// True if the argument needs one of the other arguments, false if it excludes them.
     pub needs: bool,
     /// Arguments to which the condition refers.
     pub others: &'static [Key],
-    /// The error; `NAME` is the name of the element.
+    /// Error message of a violation; `NAME` is replaced by the name of the element.
     pub message: &'static str,
-    /// Help that the error message gives.
+    /// Help line of the error message.
     pub help: &'static str,
 }
 

@@ -16,31 +16,31 @@ use super::Words;
 use joints::JOINT_WORDS;
 use words::{ENDS, MATRIX, PLACED};
 
-/// Type of an element.
+/// Type of an element of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
-    /// A rigid body.
+    /// Element type `Body`: a rigid body.
     Body,
-    /// A point mass.
+    /// Element type `Particle`: a point mass.
     Particle,
-    /// A joint.
+    /// Element type of a joint.
     Joint(JointKind),
-    /// A force element or an input that acts.
+    /// Element type of a force element, or of an input that acts as a force.
     Force(ForceKind),
-    /// Any other element.
+    /// Any other element type, such as a frame or a constraint.
     Other(OtherKind),
 }
 
 const BODY: &str = "Body";
 const PARTICLE: &str = "Particle";
 
-/// Words of other tools for a body and a particle.
+/// Names of other tools for the types of bodies and particles.
 const MASSIVE: Words = &[
     ("link rigidbody body3d part segment solid linkage inertial multibody", BODY),
     ("pointmass masspoint bob bead", PARTICLE),
 ];
 
-/// Words of other tools for the arguments of a body.
+/// Names of other tools for the arguments of a body.
 const BODY_WORDS: Words = &[
     ("m weight masse", "mass"),
     ("cog cm cg centre center centerofmass centreofmass massoffset cofm comoffset", "com"),
@@ -58,7 +58,7 @@ const BODY_WORDS: Words = &[
     ),
 ];
 
-/// Words of other tools for the arguments of a particle.
+/// Names of other tools for the arguments of a particle.
 const PARTICLE_WORDS: Words = &[
     ("m weight", "mass"),
     ("position pos xyz r where point location place", "at"),
@@ -67,7 +67,7 @@ const PARTICLE_WORDS: Words = &[
 ];
 
 impl ElementKind {
-    /// Returns the element with this type name.
+    /// Returns the element type with this name.
     pub fn of_name(name: &str) -> Option<ElementKind> {
         match name {
             BODY => Some(ElementKind::Body),
@@ -88,7 +88,7 @@ impl ElementKind {
             .chain(OtherKind::names())
     }
 
-    /// Returns the name of the type.
+    /// Returns the name of the element type.
     pub fn element_name(self) -> &'static str {
         match self {
             ElementKind::Body => BODY,
@@ -99,7 +99,7 @@ impl ElementKind {
         }
     }
 
-    /// Returns the name with its article: `an Inerter`.
+    /// Returns the type name with its indefinite article: `an Inerter`.
     pub fn name_with_article(self) -> String {
         word_with_article(self.element_name())
     }
@@ -121,7 +121,7 @@ impl ElementKind {
         massive.chain(JointKind::synonyms()).chain(ForceKind::synonyms()).chain(OtherKind::synonyms())
     }
 
-    /// Returns the words of other tools for the arguments of an element.
+    /// Returns the names of other tools for the arguments of an element.
     pub fn argument_synonyms(self) -> Words {
         match self {
             ElementKind::Body => BODY_WORDS,

@@ -11,21 +11,21 @@ use Key::{
 /// A row of the table of other elements.
 #[derive(Debug)]
 pub struct OtherRow {
-    /// The name of the type.
+    /// Name of the element's type.
     pub name: &'static str,
-    /// Words of other tools for the type.
+    /// Names of the element type in other tools.
     pub synonyms: &'static str,
-    /// The attributes that belong to it.
+    /// Attributes that the element type can have.
     pub attributes: &'static [&'static str],
-    /// Names of the arguments that belong to this element alone, before the others.
+    /// Names of arguments that only this element has; messages list them first.
     pub own: &'static [&'static str],
-    /// The other arguments, in the order in which messages list them.
+    /// Further arguments of the element, in the order in which messages list them.
     pub arguments: &'static [Key],
-    /// Arguments that must be given, with an example each.
+    /// Arguments that the element requires, with an example value for each.
     pub required: &'static [(Key, &'static str)],
-    /// Conditions on which arguments are given together.
+    /// Conditions on which arguments may or must occur together.
     pub relations: &'static [Relation],
-    /// Words of other tools for its arguments.
+    /// Names of the element's arguments in other tools.
     pub words: Words,
     /// Example of a declaration of the element.
     pub example: &'static str,
@@ -54,23 +54,23 @@ const fn row(
 table! {
     /// An element other than a body, a joint or a force element.
     OtherKind: OtherRow {
-        /// Generalized coordinate that belongs to no joint.
+        /// Element type `Coordinate`: a generalized coordinate that belongs to no joint.
         Coordinate = row("Coordinate",
             "symbol symbols dynamicsymbol dynamicsymbols generalizedcoordinate generalisedcoordinate \
              variable dof unknown",
             &[], &[], "name: Coordinate");
-        /// Input of the mechanism: an entry of `u`.
+        /// Element type `Input`: an entry of `u`.
         Input = row("Input", "control signal command controlinput inputs", &[], &[], "name: Input");
-        /// A frame.
+        /// Element type `Frame`: a named frame.
         Frame = row("Frame", "referenceframe axes coordinatesystem csys basis",
             &["frame"], &[], "#[frame(ground, z(angle))]");
-        /// A point.
+        /// Element type `Point`: a named point of a body.
         Point = OtherRow {
             own: &["on", "at"],
             ..row("Point", "site marker location position landmark waypoint",
             &["point"], POINT, "#[point(on = body, at = length * x)]")
         };
-        /// A limit of a coordinate.
+        /// Element type `Limit`: limits of a coordinate.
         Limit = OtherRow {
             own: &["on"],
             arguments: &[From, To, MaxSpeed, MaxEffort, Restitution],
@@ -83,21 +83,21 @@ table! {
             ..row("Limit", "limits range bounds jointlimit jointlimits",
             &["limit"], LIMIT, "#[limit(on = joint, from = a, to = b)]")
         };
-        /// A potential energy.
+        /// Element type `Potential`: a potential energy.
         Potential = row("Potential", "potentialenergy energy", &["energy"], &[], "#[energy(expression)]");
-        /// A Rayleigh dissipation function.
+        /// Element type `Rayleigh`: a Rayleigh dissipation function.
         Rayleigh = row("Rayleigh", "dissipation dissipationfunction rayleighdissipation",
             &["dissipation"], &[], "#[dissipation(expression)]");
-        /// A constraint on the configuration.
+        /// Element type `Holonomic`: a constraint on the configuration.
         Holonomic = row("Holonomic", "holonomicconstraint equation loop closure distance",
             &["constraint"], &[], "#[constraint(norm(r(tip / base)) = length)]");
-        /// A constraint on the velocity.
+        /// Element type `Nonholonomic`: a constraint on the velocity.
         Nonholonomic = row("Nonholonomic", "nonholonomicconstraint skate noslip",
             &["constraint"], &[], "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]");
-        /// Two surfaces that roll on each other.
+        /// Element type `Rolling`: two surfaces that roll on each other.
         Rolling = row("Rolling", "",
             &["constraint"], ROLLING, "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]");
-        /// Two surfaces that slip on each other, with friction.
+        /// Element type `Slipping`: two surfaces that slip on each other, with friction.
         Slipping = OtherRow {
             arguments: &[Friction, Speed],
             required: &[(Friction, "mu")],
@@ -105,7 +105,7 @@ table! {
             "",
             &["constraint"], &[], "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]")
         };
-        /// A unilateral contact.
+        /// Element type `Contact`: a unilateral contact.
         Contact = OtherRow {
             arguments: &[
                 Friction,
@@ -123,32 +123,32 @@ table! {
             "",
             &["contact"], CONTACT, "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]")
         };
-        /// A state of first order.
+        /// Element type `State`: a state of first order.
         State = OtherRow {
             own: &["rate"],
             ..row("State", "", &["state"], &[], "#[state(rate = (command - level) / lag)]")
         };
-        /// An equilibrium.
+        /// Element type `Equilibrium`: a configuration about which equations are linearised.
         Equilibrium = row("Equilibrium", "", &["equilibrium"], &[], "#[equilibrium(joint = angle)]");
-        /// A generalized speed.
+        /// Element type `Speed`: a generalized speed.
         Speed = row("Speed",
             "generalizedspeed generalisedspeed quasivelocity quasicoordinate pseudovelocity motionvariable \
              speeds",
             &["speed"], &[], "#[speed(rate(psi) * sin(theta))]");
-        /// Named scalar: a definition or an output.
+        /// Element type `Scalar`: a named scalar, which is a definition or an output.
         Scalar = row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
-        /// Named vector.
+        /// Element type `Vector`: a named vector.
         Vector = OtherRow {
             own: AXES,
             ..row("Vector", "vector3 vec3 vector3d vec",
             &["define", "output"], AXES_WORDS, "#[output(expression)]")
         };
-        /// Named matrix.
+        /// Element type `Matrix`: a named matrix.
         Matrix = OtherRow {
             own: AXES,
             ..row("Matrix", "", &["define", "output"], AXES_WORDS, "#[output(expression)]")
         };
-        /// A free-body diagram.
+        /// Element type `FreeBody`: the free-body diagram of a body.
         FreeBody = OtherRow {
             own: AXES,
             ..row("FreeBody", "", &["output"], AXES_WORDS, "#[output(body)]")
@@ -156,7 +156,7 @@ table! {
     }
 }
 
-/// Words of other tools for the arguments of a contact.
+/// Names of other tools for the arguments of a contact.
 const CONTACT: Words = &[
     ("mu muk coefficient frictioncoefficient coulomb kinetic kineticfriction sliding", "friction"),
     ("mus static staticfriction breakaway stick fs", "stiction"),
@@ -171,7 +171,7 @@ const CONTACT: Words = &[
     ),
 ];
 
-/// Words of other tools for the arguments of a limit.
+/// Names of other tools for the arguments of a limit.
 const LIMIT: Words = &[
     (ON, "on"),
     ("lower low min minimum least start lowerlimit", "from"),
@@ -184,19 +184,19 @@ const LIMIT: Words = &[
     ),
 ];
 
-/// Words of other tools for the arguments of a point.
+/// Names of other tools for the arguments of a point.
 const POINT: Words = &[("body parent frame link", "on"), ("pos position xyz offset location r vector", "at")];
 
-/// Words for the axes of an output's components.
+/// Names of other tools for the argument with the axes of an output's components.
 const AXES_WORDS: Words = &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];
 
-/// Words of other tools for the arguments of rolling surfaces.
+/// Names of other tools for the arguments of rolling surfaces.
 const ROLLING: Words = &[(
     "friction speed",
     "surfaces with friction slip: declare a `Slipping` with `slips(…)` in place of `rolls(…)`",
 )];
 
-/// Argument with the axes of an output's components.
+/// Name of the argument with the axes of an output's components.
 const AXES: &[&str] = &["resolved_in"];
 
 /// Conditions on the arguments of rigid and of compliant contact surfaces, which exclude each other.
@@ -232,7 +232,7 @@ const RIGID: &str = "`NAME` is rigid and has no compliance";
 const ADD_STIFFNESS: &str = "add `stiffness = …`, N/m, for compliant surfaces";
 
 impl OtherKind {
-    /// Returns the names of all arguments, as messages list them.
+    /// Returns the names of all arguments of the element, in the order of messages.
     pub fn argument_names(self) -> Vec<&'static str> {
         let row = self.row();
         row.own.iter().copied().chain(row.arguments.iter().map(|key| key.name())).collect()

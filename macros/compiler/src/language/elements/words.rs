@@ -1,16 +1,16 @@
-//! Help for arguments of other tools that several elements share.
+//! Help texts for arguments of other tools that several elements share.
 
 /// Names of other tools for the argument `on`.
 pub const ON: &str = "joint joints body bodies target coordinate applied frame";
 
-/// Help for a point that is written as an argument of its own.
+/// Help text for a point that is written as a separate argument.
 pub const AT: &str = "the point is written after the body: `on = body.at(length * x)`";
 
-/// Help for limits that are declared for an input.
+/// Help text for limits that are declared for an input.
 pub const SATURATION: &str = "inputs have no limits: bound the value in the controller, or write `value = \
                               max(min(u, high), low)`";
 
-/// Help for an inertance in an element other than `Inerter`.
+/// Help text for an inertance in an element other than `Inerter`.
 pub const NO_INERTANCE: &str = "resistance to accelerations is a separate `Inerter`";
 
 /// Help for the position of a joint as an argument.
@@ -22,7 +22,7 @@ pub const TURNED: &str = "axes are rotated at the end of the joint: `parent.rota
 /// Help for limits as arguments of a joint, whose name is `NAME`.
 pub const LIMITED: &str = "a limit is a separate field: `#[limit(on = NAME, from = a, to = b)] range: Limit`";
 
-/// Help for a gear ratio as an argument.
+/// Help text for a gear ratio as an argument.
 pub const RATIO: &str =
     "a ratio of two coordinates is a constraint: `#[constraint(second + ratio * first = 0)] gear: Holonomic`";
 
@@ -30,7 +30,7 @@ pub const RATIO: &str =
 pub const ENDS: &str =
     "a body is connected by a joint, a separate field: `#[joint(parent -> child, about = z)] hinge: Pin`";
 
-/// Help for single moments of inertia as arguments.
+/// Help text for single moments of inertia as arguments.
 pub const MATRIX: &str =
     "moments of inertia are given together: `inertia = diagonal(xx, yy, zz)`, or a 3×3 matrix";
 

@@ -31,7 +31,7 @@ fn texts_around_pass(pass: &Pass, mut program: Program) -> [Vec<String>; 2] {
 }
 
 #[test]
-fn factor() {
+fn factor_pass_extracts_common_factors() {
     let [before, after] =
         texts_around_pass(&FACTOR, select_without_passes(|[a, b, c, d, ..]| vec![a * b + c * a + a * d]));
     assert_eq!(before, ["t0 = a * b", "t1 = a * c", "t2 = t0 + t1", "t3 = a * d", "t4 = t2 + t3", "-> t4"]);
@@ -39,7 +39,7 @@ fn factor() {
 }
 
 #[test]
-fn negations() {
+fn negations_pass_reduces_negations() {
     let [before, after] =
         texts_around_pass(&NEGATIONS, select_without_passes(|[a, b, c, d, ..]| vec![-((a - b) * c) * d]));
     assert_eq!(before, ["t0 = a - b", "t1 = c * t0", "t2 = d * t1", "t3 = -t2", "-> t3"]);
@@ -47,7 +47,7 @@ fn negations() {
 }
 
 #[test]
-fn chain() {
+fn chain_pass_begins_sums_with_products() {
     let [before, after] =
         texts_around_pass(&CHAIN, select_without_passes(|[a, b, c, d, e, ..]| vec![a + (b * c + d * e)]));
     assert_eq!(before, ["t0 = b * c", "t1 = d * e", "t2 = t0 + t1", "t3 = a + t2", "-> t3"]);
@@ -55,7 +55,7 @@ fn chain() {
 }
 
 #[test]
-fn share_subsums() {
+fn share_subsums_pass_shares_common_terms() {
     let program = select_without_passes(|[a, b, c, d, e, ..]| vec![(a + c) + b, (a + d) + b, (b + e) + a]);
     let [before, after] = texts_around_pass(&SHARE_SUBSUMS, program);
     assert_eq!(before.len(), 7);
@@ -63,7 +63,7 @@ fn share_subsums() {
 }
 
 #[test]
-fn reassociate() {
+fn reassociate_pass_adds_late_terms_last() {
     let [before, after] =
         texts_around_pass(&REASSOCIATE, select_without_passes(|[a, b, c, d, e, ..]| vec![a / b + c + d + e]));
     assert_eq!(before, ["t0 = a / b", "t1 = c + t0", "t2 = d + t1", "t3 = e + t2", "-> t3"]);
@@ -71,7 +71,7 @@ fn reassociate() {
 }
 
 #[test]
-fn fuse() {
+fn fuse_pass_forms_multiply_add_instructions() {
     let [_, after] = texts_around_pass(
         &FUSE,
         select_without_passes(|[a, b, c, d, e, ..]| vec![a * b + c, a - d * e, (a * d) * (a * d) - b]),
@@ -89,7 +89,7 @@ fn fuse() {
 }
 
 #[test]
-fn schedule() {
+fn schedule_pass_reorders_instructions() {
     let [before, after] =
         texts_around_pass(&SCHEDULE, select_without_passes(|[a, b, c, d, ..]| vec![c + d, a / b / c / d]));
     assert_eq!(before, ["t0 = c + d", "t1 = a / b", "t2 = t1 / c", "t3 = t2 / d", "-> t0, t3"]);
@@ -98,7 +98,7 @@ fn schedule() {
 
 /// Applies all passes, in the order of the pipeline, to an equation of motion like a pendulum's.
 #[test]
-fn the_whole_pipeline() {
+fn whole_pipeline_compiles_an_equation_of_motion() {
     let g = Graph::new();
     let [m, l, gravity, q, v, tau] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
     let acceleration = (tau - m * gravity * l * q.sin() - v) / (m * l * l);

@@ -1,25 +1,25 @@
 //! Pairs of terms that several sums have in common.
 
-use super::{Key, Terms};
+use super::{TermKey, Terms};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Index of the pairs of terms that several sums have in common.
 #[derive(Default)]
-pub(super) struct Pairs {
+pub(super) struct SharedPairs {
     /// Indices of the sums that contain each pair.
-    lists: BTreeMap<Pair, Vec<usize>>,
+    lists: BTreeMap<TermPair, Vec<usize>>,
     /// Pairs by the number of sums that contain them.
-    shared: BTreeSet<(usize, Reverse<Pair>)>,
+    shared: BTreeSet<(usize, Reverse<TermPair>)>,
 }
 
-impl Pairs {
-    /// Returns the pairs of the sums, given the number of atoms.
-    pub(super) fn from_sums(sums: &[Terms], atoms: usize) -> Pairs {
-        let index_of_key = |key: Key| match key {
-            Key::One => 0,
-            Key::Atom(a) => 1 + a,
-            Key::Sum(s) => 1 + atoms + s,
+impl SharedPairs {
+    /// Collects the pairs of terms of all sums, given the number of atoms.
+    pub(super) fn from_sums(sums: &[Terms], atoms: usize) -> SharedPairs {
+        let index_of_key = |key: TermKey| match key {
+            TermKey::One => 0,
+            TermKey::Atom(a) => 1 + a,
+            TermKey::Sum(s) => 1 + atoms + s,
         };
         // A term with a single use is not part of a shared pair.
         let mut uses = vec![0_u32; 1 + atoms + sums.len()];
@@ -32,16 +32,16 @@ impl Pairs {
             common.clear();
             common.extend(terms.iter().filter(|(key, _)| uses[index_of_key(*key)] > 1));
             for (i, a) in common.iter().enumerate() {
-                all.extend(common[i + 1..].iter().map(|b| (Pair::new(*a, *b), k)));
+                all.extend(common[i + 1..].iter().map(|b| (TermPair::new(*a, *b), k)));
             }
         }
-        let mut pairs = Pairs::default();
+        let mut pairs = SharedPairs::default();
         pairs.add(all);
         pairs
     }
 
     /// Adds pairs that no sum contained before, each with a sum that contains it.
-    pub(super) fn add(&mut self, mut pairs: Vec<(Pair, usize)>) {
+    pub(super) fn add(&mut self, mut pairs: Vec<(TermPair, usize)>) {
         pairs.sort_unstable();
         for same in pairs.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1) {
             self.shared.insert((same.len(), Reverse(same[0].0)));
@@ -50,7 +50,7 @@ impl Pairs {
     }
 
     /// Removes a sum from the list of a pair.
-    pub(super) fn remove_sum_from_pair(&mut self, pair: Pair, sum: usize) {
+    pub(super) fn remove_sum_from_pair(&mut self, pair: TermPair, sum: usize) {
         let Some(list) = self.lists.get_mut(&pair) else { return };
         self.shared.remove(&(list.len(), Reverse(pair)));
         list.retain(|other| *other != sum);
@@ -61,7 +61,7 @@ impl Pairs {
 
     /// Removes the pair that the most sums share, the first one among equals, and returns it with these sums.
     /// Returns `None` if no pair is shared.
-    pub(super) fn take_most_shared(&mut self) -> Option<(Pair, Vec<usize>)> {
+    pub(super) fn take_most_shared(&mut self) -> Option<(TermPair, Vec<usize>)> {
         let (_, Reverse(pair)) = self.shared.pop_last()?;
         Some((pair, self.lists.remove(&pair)?))
     }
@@ -70,24 +70,24 @@ impl Pairs {
 /// Pair of terms: the numbers of two keys and the ratio of their coefficients, packed into one integer (bits
 /// 96 to 127, bits 64 to 95, and the lower half).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Pair(u128);
+pub(super) struct TermPair(u128);
 
-impl Pair {
+impl TermPair {
     /// Returns the pair of two terms in ascending order, except that the number 1 comes second, because a sum
     /// begins with a value.
-    pub(super) fn new(a: (Key, f64), b: (Key, f64)) -> Pair {
+    pub(super) fn new(a: (TermKey, f64), b: (TermKey, f64)) -> TermPair {
         let [x, y] = [a.0.key_number(), b.0.key_number()];
         let swap = x == 0 || (y != 0 && y < x);
         let ((x, c), (y, d)) = if swap { ((y, b.1), (x, a.1)) } else { ((x, a.1), (y, b.1)) };
-        Pair(u128::from(x) << 96 | u128::from(y) << 64 | u128::from((d / c).to_bits()))
+        TermPair(u128::from(x) << 96 | u128::from(y) << 64 | u128::from((d / c).to_bits()))
     }
 
-    /// Returns the number of the pair's first key.
+    /// Returns the number of the first key of a pair of terms.
     pub(super) fn first_key(self) -> u32 {
         (self.0 >> 96) as u32
     }
 
-    /// Returns the number of the pair's second key.
+    /// Returns the number of the second key of a pair of terms.
     pub(super) fn second_key(self) -> u32 {
         (self.0 >> 64) as u32
     }

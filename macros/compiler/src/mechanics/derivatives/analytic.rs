@@ -35,7 +35,7 @@ pub fn inverse_dynamics<'g>(
     let columns: Vec<Vec<Column<'g>>> =
         joints.iter().zip(&motions).map(|(j, m)| derivative_columns(j, m)).collect();
     let twists: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
-    let wrenches = rnea::wrenches(model, joints, v, Some(a));
+    let wrenches = rnea::link_wrenches(model, joints, v, Some(a));
     let sums = subtree_sums(model, joints, &twists, &wrenches, 2.0);
     derivative_entries(model, joints, &columns, &sums, most)
 }
@@ -83,12 +83,13 @@ fn derivative_entries<'g>(
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = ForceDerivatives { by_q: zero_matrix(), by_v: zero_matrix() };
     let paths = Paths::new(joints, most);
-    let mut entries = Entries { columns, all: columns.concat(), links: paths.links_of_freedoms(), sums, out };
+    let mut entries =
+        DerivativeEntries { columns, all: columns.concat(), links: paths.links_of_freedoms(), sums, out };
     paths.propagate_to_root(&mut entries);
     entries.out
 }
 
-struct Entries<'a, 'g> {
+struct DerivativeEntries<'a, 'g> {
     /// Columns of the degrees of freedom of each link; the field `all` holds the same columns in one list.
     columns: &'a [Vec<Column<'g>>],
     all: Vec<Column<'g>>,
@@ -97,12 +98,12 @@ struct Entries<'a, 'g> {
     out: ForceDerivatives<'g>,
 }
 
-impl<'g> Visitor<'g> for Entries<'_, 'g> {
-    type Item = Changes<'g>;
+impl<'g> Visitor<'g> for DerivativeEntries<'_, 'g> {
+    type Item = DofContribution<'g>;
 
-    fn start(&mut self, dof: usize) -> Changes<'g> {
+    fn start(&mut self, dof: usize) -> DofContribution<'g> {
         let (own, link) = (&self.all[dof], self.links[dof]);
-        let mut changes = Changes::new(own, &self.sums[link]);
+        let mut changes = DofContribution::new(own, &self.sums[link]);
         for row in &self.columns[link] {
             self.out.add(row, own, row.subspace.dot(&changes.by_q), row.subspace.dot(&changes.by_v));
         }
@@ -110,7 +111,7 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
         changes
     }
 
-    fn visit(&mut self, group: &LaneGroup<Changes<'g>>) {
+    fn visit(&mut self, group: &LaneGroup<DofContribution<'g>>) {
         for other in &self.columns[group.link] {
             let [above, below] =
                 group.item.derivatives_with_ancestor(&other.map(&|e| group.repeat_for_members(e)));
@@ -128,7 +129,7 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
 
 /// Contribution of one degree of freedom to the entries with its ancestors, as wrenches about an ancestor's
 /// origin in the ancestor's axes.
-struct Changes<'g> {
+struct DofContribution<'g> {
     /// Change of the wrench with the displacement of the degree of freedom.
     by_q: Spatial<'g>,
     /// Change of the wrench with the velocity of the degree of freedom.
@@ -139,9 +140,9 @@ struct Changes<'g> {
     moment: Vec3<'g>,
 }
 
-impl<'g> Changes<'g> {
-    fn new(column: &Column<'g>, sum: &Subtree<'g>) -> Changes<'g> {
-        Changes {
+impl<'g> DofContribution<'g> {
+    fn new(column: &Column<'g>, sum: &Subtree<'g>) -> DofContribution<'g> {
+        DofContribution {
             by_q: momentum(&sum.inertia, &column.second).plus(&sum.map(&column.first)),
             by_v: sum.map(&column.subspace).plus(&momentum(&sum.inertia, &column.rate)),
             momentum: momentum(&sum.inertia, &column.subspace),
@@ -159,9 +160,9 @@ impl<'g> Changes<'g> {
     }
 }
 
-impl<'g> Propagated<'g> for Changes<'g> {
+impl<'g> Propagated<'g> for DofContribution<'g> {
     fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
-        Changes {
+        DofContribution {
             by_q: self.by_q.zip_with(&other.by_q, f),
             by_v: self.by_v.zip_with(&other.by_v, f),
             momentum: self.momentum.zip_with(&other.momentum, f),
@@ -170,7 +171,7 @@ impl<'g> Propagated<'g> for Changes<'g> {
     }
 
     fn to_parent(&self, joint: &Joint<'g>) -> Self {
-        Changes {
+        DofContribution {
             by_q: self.by_q.to_parent(joint),
             by_v: self.by_v.to_parent(joint),
             momentum: self.momentum.to_parent(joint),

@@ -10,11 +10,11 @@ use crate::mechanism::Model;
 /// as an upward acceleration of the ground.
 #[derive(Clone, Copy)]
 pub struct State<'g> {
-    /// Velocity of the origin, in the frame's own axes.
+    /// Velocity of the frame's origin, in the frame's own axes.
     pub v: Vec3<'g>,
-    /// Angular velocity, in the frame's own axes.
+    /// Angular velocity of the frame, in the frame's own axes.
     pub w: Vec3<'g>,
-    /// Angular acceleration, in the frame's own axes.
+    /// Angular acceleration of the frame, in the frame's own axes.
     pub dw: Vec3<'g>,
     /// Classical acceleration of the origin, minus gravity, in the frame's own axes.
     pub a: Vec3<'g>,
@@ -48,9 +48,9 @@ impl<'g> State<'g> {
 /// Motion of a link, and of the parent's point at the link's origin, both in link axes.
 #[derive(Clone, Copy)]
 pub struct LinkMotion<'g> {
-    /// Motion of the link itself.
+    /// Motion of the link's own frame.
     pub own: State<'g>,
-    /// Motion of the parent's point at the link's origin.
+    /// Motion of the point of the parent that coincides with the link's origin.
     pub parent: State<'g>,
 }
 
@@ -88,7 +88,7 @@ pub fn link_motions<'g>(
 /// link and all descendants.
 #[derive(Clone, Copy)]
 pub struct Column<'g> {
-    /// Index of the degree of freedom in `v`.
+    /// Index in `v` of the degree of freedom to which the column belongs.
     pub index: usize,
     /// Joint velocity per unit of the entry of `v`.
     pub ratio: f64,
@@ -105,7 +105,7 @@ pub struct Column<'g> {
 }
 
 impl<'g> Column<'g> {
-    /// Applies a function to all expressions of the column.
+    /// Applies a function to all expressions of a derivative column.
     pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Column<'g> {
         let map_components = |s: &Spatial<'g>| Spatial { linear: s.linear.map(f), angular: s.angular.map(f) };
         Column {

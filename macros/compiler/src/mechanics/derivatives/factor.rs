@@ -18,17 +18,17 @@ pub struct Factor<'g> {
     /// Nonzero off-diagonal entries of `U`, a column for each entry of `v`; `None` if `U` is the transpose of
     /// `L`.
     columns: Option<Vec<Vec<(usize, Expr<'g>)>>>,
-    /// Diagonal of `D⁻¹`, in the order of `v`.
+    /// Diagonal of `D⁻¹` in the factorisation, in the order of `v`.
     inverse: Vec<Expr<'g>>,
 }
 
 impl<'g> Factor<'g> {
-    /// Factorises a mass matrix, which may be unsymmetric.
+    /// Factorises a mass matrix, which may be unsymmetric, in an order from leaves to root.
     pub fn new(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
         let order = elimination_order(joints, mass.len());
         let n = mass.len();
         match (0..n).all(|i| (0..i).all(|j| mass[i][j] == mass[j][i])) {
-            true => Factor::in_order(mass, &order),
+            true => Factor::factorise_in_order(mass, &order),
             false => Factor::factorise_unsymmetric(mass, &order),
         }
     }
@@ -57,7 +57,7 @@ impl<'g> Factor<'g> {
     }
 
     /// Factorises the symmetric block of the entries of `v` in `order`, which lists leaves before the root.
-    pub fn in_order(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
+    pub fn factorise_in_order(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
         let mut m = mass.clone();
         let mut rows = vec![Vec::new(); m.len()];
         let mut inverse: Vec<Expr<'g>> = (0..m.len()).map(|k| m[k][k].num(1.0)).collect();
@@ -82,7 +82,7 @@ impl<'g> Factor<'g> {
         Factor { order: order.to_vec(), rows, columns: None, inverse }
     }
 
-    /// Returns the solution `M⁻¹ r` of a linear system.
+    /// Returns the solution `M⁻¹ r` of a linear system with the factorised matrix.
     pub fn solve_factored(&self, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.apply_remaining_factors(self.apply_first_factor(r))
     }
@@ -98,7 +98,7 @@ impl<'g> Factor<'g> {
         r
     }
 
-    /// Returns `L⁻¹ D⁻¹ r`.
+    /// Returns `L⁻¹ D⁻¹ r`, the remaining steps of a solution.
     fn apply_remaining_factors(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         for &k in self.order.iter().rev() {
             r[k] = self.rows[k].iter().fold(r[k] * self.inverse[k], |x, (i, factor)| x - *factor * r[*i]);
@@ -132,9 +132,9 @@ impl<'g> Factor<'g> {
     pub fn inverse(&self) -> Matrix<'g> {
         let n = self.rows.len();
         if self.columns.is_some() {
-            let unit =
+            let unit_column =
                 |c: usize| (0..n).map(|k| self.inverse[k].num(if k == c { 1.0 } else { 0.0 })).collect();
-            let columns: Matrix<'g> = (0..n).map(|c| self.solve_factored(unit(c))).collect();
+            let columns: Matrix<'g> = (0..n).map(|c| self.solve_factored(unit_column(c))).collect();
             return (0..n).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
         }
         let mut out: Matrix<'g> = self.inverse.iter().map(|d| vec![d.zero(); n]).collect();

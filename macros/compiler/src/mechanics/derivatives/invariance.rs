@@ -21,12 +21,12 @@ use crate::mechanism::{Inertia, Link, Model, Motion, Quantity};
 /// Columns of a matrix that invariance determines, each with its index.
 type Columns<'g> = Vec<(usize, Vec<Expr<'g>>)>;
 
-/// Columns of `∂v̇/∂q` and `∂v̇/∂v` that invariance determines.
+/// Columns of `∂v̇/∂q` and `∂v̇/∂v` that invariance under displacements of a free base determines.
 #[derive(Default)]
 pub struct InvariantColumns<'g> {
-    /// Columns of `∂v̇/∂q` that invariance determines.
+    /// Columns of `∂v̇/∂q` that invariance under displacements determines.
     pub by_q: Columns<'g>,
-    /// Columns of `∂v̇/∂v` that invariance determines.
+    /// Columns of `∂v̇/∂v` that invariance under displacements determines.
     pub by_v: Columns<'g>,
 }
 
@@ -34,16 +34,19 @@ pub struct InvariantColumns<'g> {
 pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> InvariantColumns<'g> {
     let mut found = InvariantColumns::default();
     let free_base_of_link = |base: usize| match model.links[base] {
-        Link { parent: None, motion: Motion::Free { q, v }, .. } => Some(Base { link: base, q: q.0, v: v.0 }),
+        Link { parent: None, motion: Motion::Free { q, v }, .. } => {
+            Some(FreeBase { link: base, q: q.0, v: v.0 })
+        }
         _ => None,
     };
-    let bases: Vec<Base> = (0..joints.len()).filter_map(free_base_of_link).collect();
+    let bases: Vec<FreeBase> = (0..joints.len()).filter_map(free_base_of_link).collect();
     if bases.is_empty() {
         return found;
     }
     let others = NoninertialTerms::new(model, joints);
-    for base in
-        bases.into_iter().filter(|base| base.carries_all_uniformly(model, joints) && others.let_fall(base.v))
+    for base in bases
+        .into_iter()
+        .filter(|base| base.carries_all_uniformly(model, joints) && others.falls_freely(base.v))
     {
         let v = base.v;
         let block_columns = |first: usize, block: Mat3<'g>| {
@@ -55,11 +58,11 @@ pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Invaria
                 (first + k, column)
             })
         };
-        if are_free(&others.forces.by_q, v + 3) {
+        if are_zero_columns(&others.forces.by_q, v + 3) {
             let gravity = joints[base.link].rotation.to_child(model.gravity);
             found.by_q.extend(block_columns(v + 3, Mat3::skew(gravity)));
         }
-        if are_free(&others.forces.by_v, v) {
+        if are_zero_columns(&others.forces.by_v, v) {
             let w = Vec3([3, 4, 5].map(|k| Quantity::Velocity(v + k).expr(model.graph)));
             found.by_v.extend(block_columns(v, Mat3::skew(-w)));
         }
@@ -68,13 +71,13 @@ pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Invaria
 }
 
 /// A link that moves freely relative to the ground, with the first indices of its coordinates and velocities.
-struct Base {
+struct FreeBase {
     link: usize,
     q: usize,
     v: usize,
 }
 
-impl Base {
+impl FreeBase {
     /// Returns whether the masses, gravity and joints of all other links are independent of the pose and the
     /// velocity of the base, whether or not these links are descendants of the base.
     fn carries_all_uniformly<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
@@ -137,13 +140,13 @@ impl<'g> NoninertialTerms<'g> {
 
     /// Returns true if no inertia except that of the links acts on the linear acceleration of the base whose
     /// velocities begin at `v`.
-    fn let_fall(&self, v: usize) -> bool {
+    fn falls_freely(&self, v: usize) -> bool {
         !self.inertial[v..v + 3].contains(&true)
     }
 }
 
 /// Returns true if the three columns from `first` on are zero.
-fn are_free(of: &[Vec<Expr<'_>>], first: usize) -> bool {
+fn are_zero_columns(of: &[Vec<Expr<'_>>], first: usize) -> bool {
     of.iter().all(|row| row[first..first + 3].iter().all(|e| e.is_zero()))
 }
 

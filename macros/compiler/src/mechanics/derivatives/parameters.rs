@@ -16,7 +16,7 @@ pub fn inverse_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'
     parameter_derivatives(model, &rnea::inverse_dynamics(model, joints, &velocity_symbols(model), Some(&a)))
 }
 
-/// Returns the columns of `∂τ/∂p` of the input forces.
+/// Returns the columns of `∂τ/∂p` of the input forces, one for each parameter `p`.
 pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
     parameter_derivatives(model, &forces::generalized_forces(model, joints))
 }

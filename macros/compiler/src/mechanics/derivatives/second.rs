@@ -27,7 +27,7 @@ use super::super::crba::{Matrix, momentum};
 use super::super::{acceleration_symbols, constraints, rnea, velocity_symbols};
 use super::columns::{Column, cross, derivative_columns, link_motions};
 use super::subtree::{Subtree, of_body, subtree_sums};
-use super::{analytic, is_analytic, symbolic};
+use super::{analytic, has_constant_subspaces, symbolic};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
 use crate::mechanics::passive::passive_forces;
@@ -55,32 +55,32 @@ pub fn factor_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// Returns the second derivatives of `λᵀ τ` of inverse dynamics by recursion, in up to `most` lanes, or
 /// `None` if a motion subspace is not constant in link axes.
-pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Option<Hessian<'g>> {
-    if !is_analytic(model) {
+pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Option<Hessian<'g>> {
+    if !has_constant_subspaces(model) {
         return None;
     }
     let (v, a, lambda) = (velocity_symbols(model), acceleration_symbols(model), factor_symbols(model));
     let motions = link_motions(model, joints, &v, &a);
     let virtual_twists = twists(model, joints, &lambda);
-    let columns: Vec<Vec<Directions<'g>>> = joints
+    let columns: Vec<Vec<ColumnDirections<'g>>> = joints
         .iter()
         .zip(&motions)
         .map(|(joint, motion)| {
             let ground = Spatial::zero(model);
             let above = joint.parent.map_or(ground, |p| joint.twist_to_child(&virtual_twists[p.0]));
-            let directions =
-                |column: Column<'g>| Directions { factor: cross(&above, &column.subspace), column };
-            derivative_columns(joint, motion).into_iter().map(directions).collect()
+            let directions_of_column =
+                |column: Column<'g>| ColumnDirections { factor: cross(&above, &column.subspace), column };
+            derivative_columns(joint, motion).into_iter().map(directions_of_column).collect()
         })
         .collect();
     let own: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
-    let wrenches = rnea::wrenches(model, joints, &v, Some(&a));
+    let wrenches = rnea::link_wrenches(model, joints, &v, Some(&a));
     let sums = subtree_sums(model, joints, &own, &wrenches, 2.0);
     let sums = contract_subtree_sums(model, joints, (&own, &virtual_twists), sums);
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = Hessian { qq: zero_matrix(), qv: zero_matrix(), vv: zero_matrix(), qa: zero_matrix() };
     let paths = Paths::new(joints, most);
-    let mut entries = Entries {
+    let mut entries = HessianEntries {
         columns: &columns,
         all: columns.concat(),
         links: paths.links_of_freedoms(),
@@ -94,19 +94,19 @@ pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) ->
 }
 
 /// Returns the second derivatives of `λᵀ τ` of inverse dynamics by differentiation.
-pub fn by_differentiation<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Hessian<'g> {
+pub fn hessian_by_differentiation<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Hessian<'g> {
     let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
-    of_power(model, &tau, &factor_symbols(model))
+    hessian_of_power(model, &tau, &factor_symbols(model))
 }
 
 /// Returns the second derivatives of the power of springs, dashpots, friction, potentials and loads.
 fn passive_hessian<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Hessian<'g> {
-    of_power(model, &passive_forces(model, true), lambda)
+    hessian_of_power(model, &passive_forces(model, true), lambda)
 }
 
 /// Returns the second derivatives of `λᵀ τ` for forces `tau` that are given as expressions.
-pub fn of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) -> Hessian<'g> {
+pub fn hessian_of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) -> Hessian<'g> {
     let zero = model.graph.zero();
     let power = tau.iter().zip(lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
     let first = symbolic::force_derivatives(model, &[power]);
@@ -124,13 +124,13 @@ pub fn of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) ->
 
 /// Second derivatives of the power `λᵀ τ` of the input forces.
 pub struct InputHessian<'g> {
-    /// Second derivatives with respect to the state.
+    /// Second derivatives with respect to configuration and velocity.
     pub state: Hessian<'g>,
     /// Mixed derivatives with respect to configuration (rows) and input (columns).
     pub qu: Matrix<'g>,
     /// Mixed derivatives with respect to velocity (rows) and input (columns).
     pub vu: Matrix<'g>,
-    /// Second derivatives with respect to the inputs.
+    /// Second derivatives with respect to pairs of inputs.
     pub uu: Matrix<'g>,
 }
 
@@ -144,7 +144,7 @@ pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
     let transposed_matrix =
         |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
     InputHessian {
-        state: of_power(model, tau, &lambda),
+        state: hessian_of_power(model, tau, &lambda),
         qu: transposed_matrix(mixed.by_q),
         vu: transposed_matrix(mixed.by_v),
         uu: symbolic::by_input(model, &by_u),
@@ -161,7 +161,7 @@ pub struct ConstraintHessian<'g> {
 
 /// Returns the second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)` at constant accelerations `a`.
 /// The arguments of the generated function are the multipliers `λ`, then `w`, `z` and `y`.
-pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
+pub fn hessian_of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
     let argument_expressions = |block: Supplied, n: usize| -> Vec<Expr<'g>> {
         (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect()
@@ -180,9 +180,9 @@ pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
         rows.iter().zip(biases).map(|(row, bias)| dot_product(row, &a) + bias).collect();
     let sum = dot_product(&z, &accelerated) + dot_product(&y, &constraints::constraint_velocities(model))
         - dot_product(&lambda, &along);
-    let by_q = symbolic::by_configuration(model, &along);
+    let by_q = symbolic::configuration_derivatives(model, &along);
     let q_lambda = (0..nv).map(|i| by_q.iter().map(|row| -row[i]).collect()).collect();
-    ConstraintHessian { state: of_power(model, &[sum], &[model.graph.one()]), q_lambda }
+    ConstraintHessian { state: hessian_of_power(model, &[sum], &[model.graph.one()]), q_lambda }
 }
 
 /// Symmetrises the configuration block `m`. If axes rotate, the result of two successive displacements
@@ -205,20 +205,20 @@ pub fn symmetrise_block<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
 
 /// Column of a degree of freedom together with `Ω`, the change of the virtual twists with its displacement.
 #[derive(Clone, Copy)]
-struct Directions<'g> {
+struct ColumnDirections<'g> {
     column: Column<'g>,
     factor: Spatial<'g>,
 }
 
-impl<'g> Directions<'g> {
-    fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Directions<'g> {
+impl<'g> ColumnDirections<'g> {
+    fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> ColumnDirections<'g> {
         let factor = Spatial { linear: self.factor.linear.map(f), angular: self.factor.angular.map(f) };
-        Directions { column: self.column.map(f), factor }
+        ColumnDirections { column: self.column.map(f), factor }
     }
 }
 
 /// Sums over one link and its descendants, including sums of the virtual twists.
-struct Sums<'g> {
+struct SubtreeSums<'g> {
     plain: Subtree<'g>,
     /// Momentum `P = Σ I W` at the virtual twists.
     momentum: Spatial<'g>,
@@ -228,13 +228,13 @@ struct Sums<'g> {
     tensor: Sym3<'g>,
 }
 
-impl<'g> Sums<'g> {
+impl<'g> SubtreeSums<'g> {
     /// Returns the moment of `Q X + X ×* P`, which has no force.
     fn mapped_moment_with_momentum(&self, x: &Spatial<'g>) -> Vec3<'g> {
         self.mapped_moment(x) + x.angular.cross(self.momentum.angular) + x.linear.cross(self.momentum.linear)
     }
 
-    /// Returns the moment of `Q X`.
+    /// Returns the moment of the wrench `Q X` for a spatial vector `X`.
     fn mapped_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
         x.linear.cross(self.momentum.linear) + self.tensor * x.angular
     }
@@ -245,14 +245,14 @@ fn contract_subtree_sums<'g>(
     joints: &[Joint<'g>],
     (own, virtual_twists): (&[Spatial<'g>], &[Spatial<'g>]),
     sums: Vec<Subtree<'g>>,
-) -> Vec<Sums<'g>> {
+) -> Vec<SubtreeSums<'g>> {
     let mut changes: Vec<Inertia<'g>> = Vec::with_capacity(joints.len());
     let mut wrenches: Vec<[Spatial<'g>; 2]> = Vec::with_capacity(joints.len());
     for ((link, own), w) in model.links.iter().zip(own).zip(virtual_twists) {
         let p = momentum(&link.inertia, w);
         let zero = Vec3::zero(model.graph);
         let n = of_body(&link.inertia, own, 2.0).transposed_map(w);
-        changes.push(change_of(&link.inertia, w, p.linear));
+        changes.push(inertia_rate(&link.inertia, w, p.linear));
         wrenches.push([p, Spatial { linear: zero, angular: n }]);
     }
     for (k, joint) in joints.iter().enumerate().rev() {
@@ -266,7 +266,7 @@ fn contract_subtree_sums<'g>(
     let parts = changes.into_iter().zip(wrenches);
     sums.into_iter()
         .zip(parts)
-        .map(|(plain, (change, [momentum, moment]))| Sums {
+        .map(|(plain, (change, [momentum, moment]))| SubtreeSums {
             plain,
             momentum,
             moment: moment.angular,
@@ -277,7 +277,7 @@ fn contract_subtree_sums<'g>(
 
 /// Returns `(W×)ᵀ I + I (W×)` of a body with the momentum `p` at the twist `W = (a, b)`: zero mass, the first
 /// moment `−p`, and the tensor `h aᵀ + a hᵀ − 2 (h · a) + J [b]× − [b]× J`.
-fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g> {
+fn inertia_rate<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g> {
     let (h, a, b, j) = (body.moment, w.linear, w.angular, &body.tensor);
     let lever = (h.dot(a)) * 2.0;
     // Row i of J [b]× is (column i of J) × b.
@@ -294,21 +294,21 @@ fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g
     }
 }
 
-struct Entries<'a, 'g> {
+struct HessianEntries<'a, 'g> {
     /// Columns of the degrees of freedom of each link; the field `all` holds the same columns in one list.
-    columns: &'a [Vec<Directions<'g>>],
-    all: Vec<Directions<'g>>,
+    columns: &'a [Vec<ColumnDirections<'g>>],
+    all: Vec<ColumnDirections<'g>>,
     links: &'a [usize],
-    sums: &'a [Sums<'g>],
+    sums: &'a [SubtreeSums<'g>],
     out: Hessian<'g>,
 }
 
-impl<'g> Visitor<'g> for Entries<'_, 'g> {
-    type Item = Changes<'g>;
+impl<'g> Visitor<'g> for HessianEntries<'_, 'g> {
+    type Item = DofContribution<'g>;
 
-    fn start(&mut self, dof: usize) -> Changes<'g> {
+    fn start(&mut self, dof: usize) -> DofContribution<'g> {
         let (own, sums) = (self.all[dof], &self.sums[self.links[dof]]);
-        let changes = Changes::new(&own, sums);
+        let changes = DofContribution::new(&own, sums);
         let out = &mut self.out;
         for other in &self.columns[self.links[dof]] {
             let [qq, _, vq, _, _, aq] = changes.entries_with_ancestor(other);
@@ -324,7 +324,7 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
         changes
     }
 
-    fn visit(&mut self, group: &LaneGroup<Changes<'g>>) {
+    fn visit(&mut self, group: &LaneGroup<DofContribution<'g>>) {
         for other in &self.columns[group.link] {
             let met = group.item.entries_with_ancestor(&other.map(&|e| group.repeat_for_members(e)));
             for (part, entry) in met.into_iter().enumerate() {
@@ -355,15 +355,15 @@ impl<'g> Hessian<'g> {
     fn add_entry(
         &mut self,
         block: for<'h> fn(&'h mut Hessian<'g>) -> &'h mut Matrix<'g>,
-        row: &Directions<'g>,
-        column: &Directions<'g>,
+        row: &ColumnDirections<'g>,
+        column: &ColumnDirections<'g>,
         entry: Expr<'g>,
     ) {
         let (row, column) = (&row.column, &column.column);
         block(self)[row.index][column.index] += entry * entry.num(row.ratio * column.ratio);
     }
 
-    /// Adds another Hessian, entry by entry.
+    /// Adds another Hessian to this one, entry by entry.
     fn add(&mut self, other: &Hessian<'g>) {
         let blocks = [
             (&mut self.qq, &other.qq),
@@ -381,7 +381,7 @@ impl<'g> Hessian<'g> {
 
 /// Contribution of one degree of freedom to the entries with its ancestors, as wrenches about an ancestor's
 /// origin in the ancestor's axes. Moments are wrenches without force.
-struct Changes<'g> {
+struct DofContribution<'g> {
     /// Wrench `I Ψ̈ + B Ψ̇ + S ×* F`: change with the displacement.
     by_q: Spatial<'g>,
     /// Virtual wrench `I Ω + S ×* P`: change with the displacement.
@@ -396,12 +396,12 @@ struct Changes<'g> {
     momentum: Spatial<'g>,
 }
 
-impl<'g> Changes<'g> {
-    fn new(own: &Directions<'g>, sums: &Sums<'g>) -> Changes<'g> {
+impl<'g> DofContribution<'g> {
+    fn new(own: &ColumnDirections<'g>, sums: &SubtreeSums<'g>) -> DofContribution<'g> {
         let (column, plain) = (&own.column, &sums.plain);
         let s = &column.subspace;
         let momentum_of_twist = |x: &Spatial<'g>| momentum(&plain.inertia, x);
-        Changes {
+        DofContribution {
             by_q: momentum_of_twist(&column.second)
                 .plus(&plain.map(&column.first))
                 .plus(&analytic::cross_force(s, &plain.wrench)),
@@ -418,7 +418,7 @@ impl<'g> Changes<'g> {
     /// Returns the six entries with a degree of freedom of an ancestor, by the variation of this degree of
     /// freedom and that of the other: displacement and displacement; displacement and velocity; velocity and
     /// displacement; velocity and velocity; displacement and acceleration; acceleration and displacement.
-    fn entries_with_ancestor(&self, other: &Directions<'g>) -> [Expr<'g>; 6] {
+    fn entries_with_ancestor(&self, other: &ColumnDirections<'g>) -> [Expr<'g>; 6] {
         let Column { subspace, first, second, rate, .. } = &other.column;
         [
             other.factor.dot(&self.by_q) + second.dot(&self.factored) + first.angular.dot(self.moment_by_q),
@@ -431,9 +431,9 @@ impl<'g> Changes<'g> {
     }
 }
 
-impl<'g> Propagated<'g> for Changes<'g> {
+impl<'g> Propagated<'g> for DofContribution<'g> {
     fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
-        Changes {
+        DofContribution {
             by_q: self.by_q.zip_with(&other.by_q, f),
             factored: self.factored.zip_with(&other.factored, f),
             moment_by_q: self.moment_by_q.zip_with(&other.moment_by_q, f),
@@ -444,7 +444,7 @@ impl<'g> Propagated<'g> for Changes<'g> {
     }
 
     fn to_parent(&self, joint: &Joint<'g>) -> Self {
-        Changes {
+        DofContribution {
             by_q: self.by_q.to_parent(joint),
             factored: self.factored.to_parent(joint),
             moment_by_q: self.moment_by_q.to_parent(joint),

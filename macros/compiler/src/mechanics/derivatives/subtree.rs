@@ -27,17 +27,17 @@ pub struct Subtree<'g> {
 impl<'g> Subtree<'g> {
     /// Returns the velocity map of a motion `x`: a force and a moment.
     pub fn map(&self, x: &Spatial<'g>) -> Spatial<'g> {
-        Spatial { linear: x.angular.cross(self.momentum), angular: without_trace(&self.moments) * -x.angular }
+        Spatial { linear: x.angular.cross(self.momentum), angular: minus_trace(&self.moments) * -x.angular }
     }
 
     /// Returns the transposed velocity map of `x`: a moment without force.
     pub fn transposed_map(&self, x: &Spatial<'g>) -> Vec3<'g> {
-        self.momentum.cross(x.linear) + without_trace(&self.moments.transpose()) * -x.angular
+        self.momentum.cross(x.linear) + minus_trace(&self.moments.transpose()) * -x.angular
     }
 }
 
 /// Returns the matrix minus its trace times the identity, `K − tr K`.
-fn without_trace<'g>(k: &Mat3<'g>) -> Mat3<'g> {
+fn minus_trace<'g>(k: &Mat3<'g>) -> Mat3<'g> {
     let sum_of_other_diagonals = |i: usize| k.0[(i + 1) % 3][(i + 1) % 3] + k.0[(i + 2) % 3][(i + 2) % 3];
     Mat3::from_fn(|i, j| if i == j { -sum_of_other_diagonals(i) } else { k.0[i][j] })
 }

@@ -11,7 +11,7 @@ use crate::mechanism::{Model, Quantity};
 
 /// Returns the derivatives of expressions with respect to configuration and velocity.
 pub fn force_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {
-    ForceDerivatives { by_q: by_configuration(model, e), by_v: by_velocity(model, e) }
+    ForceDerivatives { by_q: configuration_derivatives(model, e), by_v: velocity_derivatives(model, e) }
 }
 
 /// Returns the derivatives of springs, dashpots, friction, potentials and loads.
@@ -31,15 +31,16 @@ pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>)
 
 /// Returns a column for each velocity: the time derivative of the expressions when that velocity is one and
 /// all other velocities are zero.
-pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+pub fn configuration_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> =
         (0..model.nq()).map(|k| configuration_rate(model.configuration_space(), k)).collect();
     let turning = rotation_rates(model.configuration_space());
     let configuration_derivative = |i: usize| {
         let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
-        let seed =
+        let rate_seed =
             |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.differentiate(*rate));
-        let own = rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero()).collect::<Vec<_>>();
+        let own =
+            rates.iter().enumerate().map(rate_seed).filter(|(_, rate)| !rate.is_zero()).collect::<Vec<_>>();
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_configuration(i));
         let known = turning.iter().map(|(entry, rate)| (*entry, by.differentiate(*rate))).collect::<Vec<_>>();
         Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph)
@@ -48,7 +49,7 @@ pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     derivative_columns(e, (0..model.nv()).map(configuration_derivative))
 }
 
-fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+fn velocity_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let velocity_derivative = |k: usize| {
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_velocity(k));
         let own = [(Quantity::Velocity(k).symbol(), model.graph.one())];

@@ -81,13 +81,14 @@ impl Trunk {
                 limbs[limb].velocities.push(k);
             }
         }
-        let is_apart = |i: usize, j: usize| {
+        let has_no_mass_coupling = |i: usize, j: usize| {
             limb_of[i] == limb_of[j] || is_trunk[i] || is_trunk[j] || mass[i][j].is_zero()
         };
         let n = mass.len();
         let velocities = order.into_iter().filter(|k| is_trunk[*k]).collect();
         let several = limbs.iter().map(|limb| limb.identical).sum::<usize>() > 1;
-        (several && (0..n).all(|i| (0..i).all(|j| is_apart(i, j)))).then_some(Trunk { velocities, limbs })
+        (several && (0..n).all(|i| (0..i).all(|j| has_no_mass_coupling(i, j))))
+            .then_some(Trunk { velocities, limbs })
     }
 
     /// Returns the partition in which all velocities belong to the trunk.
@@ -119,7 +120,7 @@ pub fn divided_inverse_terms<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g
     let zero_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
     let mut inverses: Matrix<'g> = mass.iter().map(zero_row).collect();
     for limb in &trunk.limbs {
-        let inverse = Factor::in_order(mass, &limb.velocities).inverse();
+        let inverse = Factor::factorise_in_order(mass, &limb.velocities).inverse();
         for &i in &limb.velocities {
             inverses[i].clone_from_slice(&inverse[i]);
         }
@@ -136,7 +137,7 @@ pub struct Inverse<'a, 'g> {
 }
 
 impl<'a, 'g> Inverse<'a, 'g> {
-    /// Computes the blocks of the inverse.
+    /// Computes the blocks of the inverse mass matrix for trunk and limbs.
     pub fn new(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
         let n = mass.len();
         let Some(zero) = mass.first().and_then(|row| row.first()).map(|e| e.zero()) else {
@@ -145,7 +146,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
         let mut parts = vec![vec![zero; n]; n];
         let mut rest = mass.clone();
         for limb in &trunk.limbs {
-            let inverse = Factor::in_order(mass, &limb.velocities).inverse();
+            let inverse = Factor::factorise_in_order(mass, &limb.velocities).inverse();
             for &i in &limb.velocities {
                 parts[i].clone_from_slice(&inverse[i]);
                 for &t in &trunk.velocities {
@@ -160,14 +161,14 @@ impl<'a, 'g> Inverse<'a, 'g> {
                 }
             }
         }
-        let inverse = Factor::in_order(&rest, &trunk.velocities).inverse();
+        let inverse = Factor::factorise_in_order(&rest, &trunk.velocities).inverse();
         for &t in &trunk.velocities {
             parts[t].clone_from_slice(&inverse[t]);
         }
         Inverse { trunk, parts }
     }
 
-    /// Returns the product `M⁻¹ r`.
+    /// Returns the product `M⁻¹ r` from the blocks for trunk and limbs.
     pub fn solve_divided(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut x = r.to_vec();
@@ -216,7 +217,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
     }
 }
 
-/// Returns the sum of products over some indices.
+/// Returns the sum of products of two lists over some indices.
 fn sum_of_products<'g>(
     over: &[usize],
     of: impl Fn(usize) -> (Expr<'g>, Expr<'g>),

@@ -39,7 +39,7 @@ pub(super) struct OrientedBox<'g> {
     center: Vec3<'g>,
 }
 
-/// A candidate separating direction of two boxes.
+/// Candidate direction along which two boxes may be separated.
 #[derive(Clone, Copy)]
 struct SeparatingDirection<'g> {
     /// Separation of the boxes along the direction, negative if they overlap.
@@ -79,7 +79,7 @@ fn minimum<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
     a.minimum_or_maximum(Extreme::Min, b)
 }
 
-/// Returns the value that a selector of three selects.
+/// Returns the one of three values that a selector (0 or 1 for each) picks.
 fn select_of_three<'g>(which: &[Expr<'g>; 3], values: [Expr<'g>; 3]) -> Expr<'g> {
     values[0] * which[0] + values[1] * which[1] + values[2] * which[2]
 }
@@ -88,13 +88,13 @@ fn select_axis<'g>(which: &[Expr<'g>; 3], axes: &[Vec3<'g>; 3]) -> Vec3<'g> {
     axes[0] * which[0] + axes[1] * which[1] + axes[2] * which[2]
 }
 
-/// Returns the selector of the cyclically next axis.
+/// Returns the selector of the cyclically next of three axes.
 fn next_axis<'g>(which: &[Expr<'g>; 3]) -> [Expr<'g>; 3] {
     let [a, b, c] = *which;
     [c, a, b]
 }
 
-/// Multiplies a selector by a factor.
+/// Multiplies the three entries of a selector by a factor.
 fn scaled<'g>(which: [Expr<'g>; 3], factor: Expr<'g>) -> [Expr<'g>; 3] {
     which.map(|x| x * factor)
 }
@@ -266,7 +266,7 @@ impl<'g> BoxPair<'g> {
         (select_box(&self.b, &self.a), select_box(&self.a, &self.b))
     }
 
-    /// Returns the contact of two edges.
+    /// Returns the contact between an edge of each box.
     fn edge_contact(&self, edge: &SeparatingDirection<'g>) -> PointContact<'g> {
         let (c, one) = (self.center_offset(), self.size.num(1.0));
         let own = select_axis(&edge.first, &self.a.axes);
@@ -292,11 +292,11 @@ impl<'g> BoxPair<'g> {
 
 /// A face of a box, with its normal and the directions of its sides.
 pub(super) struct Face<'g> {
-    /// Outward normal, and directions of the sides.
+    /// Outward normal of the face, and directions of its sides.
     pub(super) axes: [Vec3<'g>; 3],
     /// Distance of the face from the centre of the box, and of the sides from the centre of the face.
     pub(super) half: [Expr<'g>; 3],
-    /// Size of the boxes.
+    /// Length scale of the two boxes, m.
     size: Expr<'g>,
 }
 

@@ -1,4 +1,4 @@
-//! Contact points of spheres, capsules and boxes with cylinders.
+//! Contact points of spheres, capsules and boxes with cylinders that have end faces.
 //!
 //! The distance of a point from a cylinder with two ends has a closed form. A capsule touches it at spheres
 //! around points of its axis: the nearest point, and the ends of the parts of the axis that are next to the
@@ -21,7 +21,7 @@ use crate::expr::{Expr, Extreme, Function, Vec3};
 const ON_SURFACE: f64 = 1e-9;
 /// Number of bisections for the nearest point of a line.
 const BISECTIONS: usize = 24;
-/// Number of steps of false position after the bisections.
+/// Number of steps of the false position method after the bisections.
 const FALSE_POSITIONS: usize = 2;
 
 /// Smallest difference of slopes in false position, which excludes a division by zero.
@@ -29,21 +29,21 @@ const LEAST_RISE: f64 = 1e-30;
 /// Number of alternating projections that determine the nearest corner of a box.
 const PROJECTIONS: usize = 6;
 
-/// Cylinder with two ends, in common axes.
+/// Cylinder with two end faces, in common axes of both bodies.
 #[derive(Clone, Copy)]
 pub(super) struct Drum<'g> {
     pub(super) radius: Expr<'g>,
-    /// Half of the length.
+    /// Half of the cylinder's length, m.
     pub(super) half: Expr<'g>,
     pub(super) axis: Vec3<'g>,
 }
 
-/// Position of a point relative to a cylinder.
+/// Position of a point relative to a cylinder's side and end faces.
 struct DrumPoint<'g> {
     /// Signed distances from the side and from the nearer end.
     side: Expr<'g>,
     end: Expr<'g>,
-    /// Outward normals there.
+    /// Outward normals of the cylinder's side and end at the point.
     radial: Vec3<'g>,
     axial: Vec3<'g>,
 }
@@ -288,14 +288,14 @@ pub(super) fn capsule_on_pipe<'g>(
     touches.collect()
 }
 
-/// Returns a contact at a point with this normal.
+/// Returns a candidate contact with this gap, point and normal.
 fn contact<'g>(gap: Expr<'g>, point: Vec3<'g>, normal: Vec3<'g>) -> PointContact<'g> {
     let (first, second) = tangents_of(normal);
     let axes = [("normal", normal), ("first", first), ("second", second)];
     PointContact { gap, point, axes, conditions: Vec::new() }
 }
 
-/// Returns the selector of the largest of three values.
+/// Returns the selector (0 or 1 for each) of the largest of three values.
 fn largest(values: [Expr<'_>; 3]) -> [Expr<'_>; 3] {
     let [x, y, z] = values;
     let one = x.num(1.0);

@@ -1,4 +1,4 @@
-//! Surfaces in contact, as pieces of the drawing.
+//! Drawing of surfaces in contact.
 
 use super::surface::{Surface, SurfaceForm};
 use crate::diag::Diagnostics;

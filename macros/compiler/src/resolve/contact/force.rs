@@ -1,4 +1,4 @@
-//! Forces and moments at contacts, as functions in outputs.
+//! Contact forces and friction moments as functions in output expressions.
 
 use super::unilateral::CandidatePoint;
 use crate::diag::Diagnostics;

@@ -1,4 +1,4 @@
-//! Functions of expressions that contacts of several surfaces use.
+//! Functions of expressions that several kinds of contact use.
 
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::kinematics::perpendicular_directions;

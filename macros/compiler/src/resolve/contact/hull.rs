@@ -19,7 +19,7 @@ use crate::syntax::{self, ExprKind};
 /// Distance from a face below which a point is treated as part of it, relative to the size of the hull.
 const ON_FACE: f64 = 1e-9;
 
-/// Example of a hull, for errors.
+/// Example of a hull in error messages.
 const EXAMPLE: &str = "write at least four points that are not in one plane, as in `hull([0 * x, 0.1 * x, \
                        0.1 * y, 0.1 * z])`, or the path of a mesh, as in `hull(\"foot.stl\")`";
 

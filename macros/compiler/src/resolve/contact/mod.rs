@@ -37,11 +37,11 @@ use surface::{Surface, SurfaceForm};
 
 /// A contact at a point, in the axes of the link that carries both bodies.
 struct PointContact<'g> {
-    /// Signed distance of the surfaces, m.
+    /// Signed distance of the two surfaces, m.
     gap: Expr<'g>,
     /// Contact point, relative to the centre of the first surface.
     point: Vec3<'g>,
-    /// Normal and two tangents, with their names.
+    /// Normal and two tangents of the contact, with their names.
     axes: [(&'static str, Vec3<'g>); 3],
     /// Distances that vanish when the coordinates of a surface given by its points are those of the contact,
     /// with their names.
@@ -55,9 +55,9 @@ struct SurfacePair<'g> {
     b: Surface<'g>,
     on_a: Relative<'g>,
     on_b: Relative<'g>,
-    /// Position of the first surface.
+    /// Position of the reference point of the first surface.
     center: Moving<'g>,
-    /// Position of the second surface.
+    /// Position of the reference point of the second surface.
     base: Moving<'g>,
 }
 
@@ -128,7 +128,7 @@ impl<'g> Builder<'_, 'g> {
         place
     }
 
-    /// Parses a pair only to report its errors.
+    /// Parses the pair of surfaces of a constraint only to report its errors.
     pub fn check_pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
         let _ = self.pair(constraint, cx);
     }
@@ -239,7 +239,7 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> SurfaceForm<'g> {
-    /// Whether the surface can roll on another one.
+    /// Whether the surface can roll on the other surface.
     fn rolls_on(&self, b: &SurfaceForm<'g>) -> bool {
         let rollers = b.id().map_or(&[][..], |id| id.row().rollers);
         self.id().is_some_and(|id| rollers.contains(&id))

@@ -13,13 +13,13 @@ use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{Allowed, ContactLoads, Context};
 use crate::syntax::{self, WrittenArguments};
 
-/// Default slip speed below which friction is regularised, m/s.
+/// Default slip speed below which friction of compliant contacts is regularised, m/s.
 const DEFAULT_SLIP_SPEED: f64 = 1e-3;
 
 /// Offset under the square root of the penetration, m, which keeps its derivative finite at zero.
 const ROOT_OFFSET: f64 = 1e-30;
 
-/// Stiffness and dissipation of a compliant contact.
+/// Stiffness and dissipation of a compliant contact, as expressions.
 pub(super) struct CompliantContact<'g> {
     stiffness: Expr<'g>,
     hertz: bool,
@@ -28,7 +28,7 @@ pub(super) struct CompliantContact<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Reads stiffness and dissipation; `None` after an error.
+    /// Reads stiffness and dissipation of a compliant contact; `None` after an error.
     pub(super) fn read_compliance(
         &self,
         given: &WrittenArguments,

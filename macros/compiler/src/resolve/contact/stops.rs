@@ -10,7 +10,7 @@ use crate::resolve::scope::{Allowed, Context};
 use crate::syntax;
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds the stops at the bounds of a limit.
+    /// Adds contacts for the stops at the bounds of a limit.
     pub(super) fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
         let (restitution, of_impulses) = self.restitution(&limit.arguments, &limit.name.text, cx);
         let (Some(restitution), Some((limited, rate, turns))) = (restitution, self.stop_value(limit, cx))

@@ -14,46 +14,46 @@ use std::f64::consts::FRAC_PI_2;
 /// Form of a surface; vectors and lengths in body axes.
 #[derive(Clone)]
 pub enum SurfaceForm<'g> {
-    /// Rim of a disk: radius, axis.
+    /// Surface that is the rim of a disk, with radius and axis.
     Circle(Expr<'g>, Vec3<'g>),
     /// Tyre: radius of its centre line, radius of its section, axis.
     Torus(Expr<'g>, Expr<'g>, Vec3<'g>),
-    /// Sphere: radius.
+    /// Surface of a sphere, with its radius.
     Sphere(Expr<'g>),
-    /// Ellipsoid: semi-axes along the body's axes.
+    /// Surface of an ellipsoid, with the semi-axes along the body's axes.
     Ellipsoid([Expr<'g>; 3]),
-    /// Plane: normal, towards the body that rolls on it.
+    /// Plane, with its normal towards the body that touches it.
     Plane(Vec3<'g>),
-    /// Inside of a sphere: radius.
+    /// Inside of a sphere, with its radius.
     Bowl(Expr<'g>),
-    /// Outside of a cylinder of infinite length: radius, axis.
+    /// Outside of a cylinder of infinite length, with radius and axis.
     Cylinder(Expr<'g>, Vec3<'g>),
-    /// Cylinder with two ends: radius, length, axis.
+    /// Outside of a cylinder with two end faces, with radius, length and axis.
     Drum(Expr<'g>, Expr<'g>, Vec3<'g>),
-    /// Inside of a cylinder: radius, axis.
+    /// Inside of a cylinder, with radius and axis.
     Tube(Expr<'g>, Vec3<'g>),
     /// Outside of a cone: half angle, axis from the apex into the cone.
     Cone(Expr<'g>, Vec3<'g>),
     /// Inside of a cone: half angle, axis from the apex to the opening.
     Funnel(Expr<'g>, Vec3<'g>),
-    /// Surface given by its points.
+    /// Parametric surface, given by the position of its points.
     Sheet(Sheet<'g>),
-    /// Height as a function of x and y.
+    /// Terrain, given by the height as a function of x and y.
     Terrain(Box<Terrain<'g>>),
-    /// Point; only in unilateral contacts.
+    /// Point as a degenerate surface, for unilateral contacts only.
     Point,
-    /// Box: its lengths along the body's axes.
+    /// Box, with the lengths of its edges along the body's axes.
     Cuboid([Expr<'g>; 3]),
     /// Cylinder between two hemispheres: radius, distance of their centres, axis.
     Capsule(Expr<'g>, Expr<'g>, Vec3<'g>),
-    /// Convex hull of points.
+    /// Convex hull of points fixed in the body.
     Hull(ConvexHull<'g>),
 }
 
 /// Surface given by its points as expressions of two coordinates, in body axes relative to its position.
 #[derive(Clone)]
 pub struct Sheet<'g> {
-    /// Point of the surface.
+    /// Position of the surface point as a function of the surface parameters.
     pub point: Vec3<'g>,
     /// Derivatives of the point by the coordinates; their cross product points towards the body that rolls.
     pub tangents: [Vec3<'g>; 2],
@@ -62,18 +62,18 @@ pub struct Sheet<'g> {
 /// Convex hull of points in body axes.
 #[derive(Clone)]
 pub struct ConvexHull<'g> {
-    /// The vertices; if they depend on parameters, all points.
+    /// Vertices of the hull; if they depend on parameters, all given points.
     pub vertices: Vec<Vec3<'g>>,
     /// Faces and edges; `None` if the points depend on parameters.
     pub shape: Option<Hull>,
 }
 
-/// A surface with its pose.
+/// Surface of a body with its pose.
 #[derive(Clone)]
 pub struct Surface<'g> {
     /// Frame at the centre, at the apex or at a point of the surface.
     pub frame: Placed<'g>,
-    /// Form of the surface.
+    /// Form of the surface with its dimensions.
     pub form: SurfaceForm<'g>,
 }
 

@@ -38,7 +38,7 @@ struct TerrainPoint<'g> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Parses a terrain with this height.
+    /// Parses a terrain with this expression of the height.
     pub(super) fn terrain(&self, height: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terrain<'g>> {
         let g = self.scope.graph;
         let symbols = [0, 1].map(|k| Quantity::Given(Supplied::Position, k).symbol());

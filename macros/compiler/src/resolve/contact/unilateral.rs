@@ -28,14 +28,14 @@ const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ell
                                hulls whose points are numbers; points, spheres, capsules, cuboids and \
                                hulls on a terrain";
 
-/// Help for unsupported contacts of cylinders.
+/// Help text for unsupported contacts of cylinders.
 const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, can approximate a cylinder";
 
 /// Coefficients of friction and restitution of a contact.
 #[derive(Clone, Copy)]
 pub(super) struct ContactCoefficients<'g> {
     pub(super) friction: Expr<'g>,
-    /// Coefficient of static friction.
+    /// Coefficient of static friction of the contact.
     pub(super) stiction: Expr<'g>,
     /// Maximum friction moment about the normal per unit normal force, m.
     pub(super) torsional: Expr<'g>,
@@ -46,9 +46,9 @@ pub(super) struct ContactCoefficients<'g> {
     pub(super) of_impulses: bool,
 }
 
-/// A point where two surfaces may touch.
+/// Point at which two surfaces may touch, with its gap and directions.
 pub(super) struct CandidatePoint<'g> {
-    /// Signed distance, m.
+    /// Signed distance of the surfaces at the point, m.
     pub(super) gap: Expr<'g>,
     /// Normal and two tangents, towards the first surface, each with the velocity along it.
     pub(super) rates: [(Vec3<'g>, Expr<'g>); 3],
@@ -56,7 +56,7 @@ pub(super) struct CandidatePoint<'g> {
     pub(super) angular_rates: [Expr<'g>; 3],
     /// Link in whose axes the directions are expressed.
     pub(super) ancestor: Option<LinkId>,
-    /// Position of the point.
+    /// Position of the contact point.
     pub(super) place: Terms<'g>,
 }
 
@@ -370,7 +370,7 @@ impl<'g> Builder<'_, 'g> {
         Some(vec![self.surface(e, &format!("write `{}`", OtherKind::Contact.row().example), cx)?])
     }
 
-    /// Returns the points where a pair may touch.
+    /// Returns the points at which a pair of surfaces may touch.
     fn candidate_contacts(&self, pair: &SurfacePair<'g>) -> Vec<PointContact<'g>> {
         let g = self.scope.graph;
         let rotate_a = |v| self.first_direction(pair, v).value;

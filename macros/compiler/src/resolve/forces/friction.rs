@@ -11,7 +11,7 @@ use crate::syntax::{self, Action, Key};
 /// Default regularisation speed of friction, m/s or rad/s.
 const FRICTION_SPEED: f64 = 0.01;
 
-/// Returns the force of a friction element.
+/// Returns the force of a dry or viscous friction element.
 pub fn friction_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,

@@ -7,7 +7,7 @@ use crate::resolve::element_forces::Forces;
 use crate::resolve::terms::{ActedOn, Stretch};
 use crate::syntax::{self, Action, ExprKind, Key, Target};
 
-/// Returns the force of an attraction between two points.
+/// Returns the inverse-square force of an attraction between two points.
 pub fn attraction_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,

@@ -8,7 +8,7 @@ use crate::resolve::element_forces::Forces;
 use crate::resolve::terms::ActedOn;
 use crate::syntax::{self, Action, Key};
 
-/// Returns the force of an inerter.
+/// Returns the force of an inerter as `Forces`.
 pub fn inerter_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,
@@ -18,7 +18,7 @@ pub fn inerter_force<'g>(
     inertance_force(b, b.stretch_on(on)?.rate, action.get(Key::Inertance)?, cx)
 }
 
-/// Returns the force of an inertance on a rate.
+/// Returns the force of an inertance on the rate of a length.
 pub fn inertance_force<'g>(
     b: &Builder<'_, 'g>,
     rate: Expr<'g>,

@@ -28,7 +28,7 @@ pub fn load<'g>(b: &Builder<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> O
     }
 }
 
-/// Returns a force or a torque with a value.
+/// Returns a force or torque element whose value is an expression.
 fn value_on<'g>(
     b: &Builder<'_, 'g>,
     on: &Expr,
@@ -159,7 +159,7 @@ fn input_force<'g>(
     Some(Forces { input: Some(input), ..Forces::default() })
 }
 
-/// Returns an input as a force on a rate.
+/// Returns an input as a force along a rate.
 pub fn input_load<'g>(b: &Builder<'_, 'g>, name: &str, rate: Value<'g>) -> Option<Forces<'g>> {
     let k = b.model.inputs.iter().position(|(known, _)| known == name)?;
     let force = Quantity::Input(k).expr(b.scope.graph);

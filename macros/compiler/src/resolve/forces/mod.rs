@@ -1,4 +1,4 @@
-//! Force elements and inputs, with their targets and parameters.
+//! Resolution of force elements and inputs, with their targets and parameters.
 
 mod dashpot;
 mod friction;
@@ -23,7 +23,7 @@ use crate::mechanism::Input;
 use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target as On};
 
 impl<'g> Builder<'_, 'g> {
-    /// Resolves force elements on coordinates, which need no positions.
+    /// Checks force elements on coordinates, which need no positions of bodies.
     pub fn check_actions(&self, cx: &mut Diagnostics) {
         for action in &self.description.actions {
             let on_joint = match &action.on {

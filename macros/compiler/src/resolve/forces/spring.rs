@@ -17,11 +17,11 @@ use std::collections::BTreeSet;
 /// Maximum power of the stretch in a spring's force for which the energy is found by integration.
 const HIGHEST_POWER: usize = 9;
 
-/// Force law of a spring, as written.
+/// Force law of a spring, as the user wrote it.
 pub enum Law<'e> {
-    /// Force proportional to the stretch, with this stiffness.
+    /// Spring force proportional to the stretch, with this stiffness.
     Linear(&'e syntax::Expr),
-    /// Force as an expression of `stretch`.
+    /// Spring force as an expression of `stretch`.
     Force(&'e syntax::Expr),
     /// Energy as an expression of `stretch`; the force is its derivative.
     Energy(&'e syntax::Expr),
@@ -51,7 +51,7 @@ pub fn spring_force<'g>(
     spring_law(b, stretch, &law, free, cx)
 }
 
-/// Returns the force of a spring with any law.
+/// Returns the force of a spring with any force law.
 pub fn spring_law<'g>(
     b: &Builder<'_, 'g>,
     stretch: Stretch<'g>,

@@ -17,57 +17,57 @@ use std::collections::BTreeMap;
 /// Reason why two dimensions must be equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason<'a> {
-    /// Attribute `#[unit(…)]` of a parameter.
+    /// The attribute `#[unit(…)]` of a parameter states the dimension.
     Unit,
-    /// Expected dimension of an argument or a field.
+    /// An argument or a field expects the dimension.
     Place,
-    /// Argument of a function that expects a plain number.
+    /// An argument of a function must be a plain number.
     Argument,
-    /// Terms of a sum.
+    /// Terms of a sum must have equal dimensions.
     Sum(BinaryOp),
-    /// Components of a vector.
+    /// Components of a vector must have equal dimensions.
     Components,
-    /// Arguments that a function compares, with the function's name.
+    /// Arguments that a function compares must have equal dimensions; the name of the function.
     Compared(&'a str),
-    /// Pieces of a piecewise law.
+    /// Pieces of a piecewise law must have equal dimensions.
     Pieces,
 }
 
 /// Origin of an equation between dimensions.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin<'a> {
-    /// Reason for the equation.
+    /// Reason for the equation between dimensions.
     pub reason: Reason<'a>,
     /// Expression at which an error is reported: the whole operation, an argument, or a component.
     pub expression: &'a Expr,
-    /// Other expression of the comparison, if there is one.
+    /// Second expression of the comparison, if there is one.
     pub compared_with: Option<&'a Expr>,
 }
 
-/// An equation that contradicts earlier ones.
+/// Equation between dimensions that contradicts earlier ones.
 #[derive(Clone, Debug)]
 pub struct Mismatch<'a> {
-    /// Origin of the equation.
+    /// Origin of the contradictory equation.
     pub origin: Origin<'a>,
-    /// Dimension of `origin.expression`, or of the second operand.
+    /// Found dimension: that of `origin.expression`, or of the second operand.
     pub found: Dimension,
-    /// Expected dimension, or the dimension of the first operand.
+    /// Expected dimension: that of the context, or of the first operand.
     pub expected: Dimension,
 }
 
 /// Meaning of a name for the inference of units.
 #[derive(Clone, Debug)]
 pub enum Meaning {
-    /// Parameter or definition.
+    /// The name is a parameter or a definition, whose dimension is an unknown.
     Named(Variable, Anchor),
-    /// Coordinate or input.
+    /// The name is a coordinate or an input, whose dimension is known.
     Moving(Dimension, Anchor),
 }
 
-/// Maximum number of contradictions that are recorded.
+/// Maximum number of contradictions between dimensions that are recorded.
 const MAX_MISMATCHES: usize = 32;
 
-/// State of the inference of units.
+/// State of the inference of units in a mechanism.
 pub struct Inference<'a> {
     /// Equations between dimensions that have been found so far.
     pub system: System,
@@ -78,7 +78,7 @@ pub struct Inference<'a> {
     pub tables: BTreeMap<String, Vec<Variable>>,
     /// Local names of the current expression, such as `stretch`.
     pub locals: Vec<(&'static str, Dimension)>,
-    /// Origin of the equation that determined each unknown.
+    /// Origin of the equation that determined each unknown dimension.
     pub origins: BTreeMap<Variable, Origin<'a>>,
     /// Notation of each unknown's unit where its name is the whole expression.
     pub hints: BTreeMap<Variable, String>,
@@ -88,9 +88,9 @@ pub struct Inference<'a> {
     /// Dimensions that are plain numbers unless constrained otherwise. If the first of a pair is plain, so is
     /// the second.
     pub plain_defaults: Vec<(Dimension, Option<Dimension>)>,
-    /// Contradictions that have been found so far.
+    /// Contradictions between dimensions that have been found so far.
     pub mismatches: Vec<Mismatch<'a>>,
-    /// Whether the limit of work was exceeded.
+    /// Whether the limit on the work of the inference was exceeded.
     pub limit_exceeded: bool,
 }
 

@@ -198,7 +198,7 @@ fn solve_dimensions<'a>(places: DimensionedExpressions<'a>, inference: &mut Infe
     others.into_iter().for_each(|task| solve_one(task, inference));
 }
 
-/// Infers dimensions from one expression.
+/// Infers dimensions from one expression and its expected dimension.
 fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
     let value = inference.expect_dimension(task.e, &task.dimension, task.unit, Reason::Place);
@@ -319,7 +319,7 @@ fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (Str
     (unit, rate)
 }
 
-/// Returns the unit of a generalized speed.
+/// Returns the unit of a generalized speed as text.
 fn speed_unit(v: Variable, inference: &mut Inference<'_>) -> String {
     let dimension = Dimension::unknown_dimension(v);
     match inference.system.resolve(&dimension) {

@@ -22,13 +22,13 @@ pub struct Task<'a> {
     pub dimension: Dimension,
     /// Notation of the unit in this context; empty for the default.
     pub unit: &'static str,
-    /// Local names of the expression.
+    /// Local names of the expression, with their dimensions.
     pub locals: Vec<(&'static str, Dimension)>,
 }
 
 /// All expressions of a description, with their expected dimensions.
 pub struct DimensionedExpressions<'a> {
-    /// Definitions, each after those that it uses.
+    /// Definitions, each after the definitions that it uses.
     pub definitions: Vec<Task<'a>>,
     /// All other expressions with expected dimensions.
     pub tasks: Vec<Task<'a>>,
@@ -40,9 +40,9 @@ pub struct DimensionedExpressions<'a> {
 
 /// Coordinate on which an element does work, and its force.
 struct Work {
-    /// Dimension of the coordinate or the distance.
+    /// Dimension of the coordinate or distance on which the element acts.
     coordinate: Dimension,
-    /// Dimension of the force or the torque.
+    /// Dimension of the element's force or torque.
     force: Dimension,
     /// Notation of the units of force, stiffness, damping, inertance, coordinate and speed.
     units: [&'static str; 6],
@@ -52,7 +52,7 @@ const LINEAR_UNITS: [&str; 6] = ["N", "N/m", "N·s/m", "kg", "m", "m/s"];
 const ANGULAR_UNITS: [&str; 6] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²", "rad", "rad/s"];
 
 impl Work {
-    /// Returns the work on a coordinate of this dimension.
+    /// Returns the work of a force on a coordinate of this dimension; `None` for an unknown one.
     fn new(coordinate: Dimension) -> Option<Work> {
         let units = match (coordinate.is_plain(), coordinate.is_known()) {
             (true, _) => ANGULAR_UNITS,
@@ -174,7 +174,7 @@ impl<'a> DimensionedExpressions<'a> {
         }
     }
 
-    /// Adds rotations: `z(angle)`, `eigenaxis(n, angle)`, or a matrix.
+    /// Adds the arguments of rotations `z(angle)`, `eigenaxis(n, angle)`, or a matrix, with their dimensions.
     fn add_rotations(&mut self, steps: &'a [Expr]) {
         for step in steps {
             match &step.kind {
@@ -275,7 +275,7 @@ impl<'a> DimensionedExpressions<'a> {
         }
     }
 
-    /// Adds the arguments that are written for an element.
+    /// Adds the written arguments of an element with their dimensions.
     fn add_written(&mut self, written: &'a WrittenArguments, work: &Work, locals: Locals) {
         let [force, stiffness, damping, inertance, coordinate, speed] = work.units;
         let q = &work.coordinate;
@@ -333,7 +333,7 @@ impl<'a> DimensionedExpressions<'a> {
         pair.iter().for_each(|surface| self.add_surface(surface));
     }
 
-    /// Adds a surface of a body, or a point.
+    /// Adds the arguments of a surface of a body, or of a point, with their dimensions.
     fn add_surface(&mut self, surface: &'a Expr) {
         if let Some(link) = collision_link(surface) {
             self.points.extend(link);

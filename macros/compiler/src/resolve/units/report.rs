@@ -8,7 +8,7 @@ use crate::language::Builtin;
 use crate::language::dimension::{Dimension, Variable};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
-/// Maximum number of other uses shown for an error.
+/// Maximum number of other uses of a parameter shown for an error.
 const MAX_PLACES: usize = 2;
 
 /// Reports the contradictions. Each parameter, and each solid with its arguments, is reported once, because

@@ -7,9 +7,9 @@ use crate::language::ratio::Ratio;
 /// Result of the addition of an equation to the system.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The equation is consistent; it determined these unknowns.
+    /// The equation is consistent; the unknowns that it determined.
     Holds(Vec<Variable>),
-    /// The equation contradicts earlier ones.
+    /// The equation contradicts earlier equations.
     Contradicts,
     /// The limit of work or of exponents was exceeded; the result is undecided.
     LimitExceeded,

@@ -20,18 +20,18 @@ pub enum Anchor {
 /// Information about the unit of an expression.
 #[derive(Clone, Debug)]
 pub enum Value {
-    /// Number, with any unit.
+    /// A number, which can have any unit.
     Number(f64),
     /// Direction, with any unit by itself and none as a factor.
     Direction,
     /// Quantity with a dimension, and the source of its unit.
     Quantity {
-        /// Dimension of the quantity.
+        /// Dimension of the expression's value.
         dimension: Dimension,
-        /// Source of the unit.
+        /// Source from which the unit is known.
         anchor: Anchor,
     },
-    /// Unknown dimension, or an error.
+    /// Value of unknown dimension, or after an error.
     Unknown,
 }
 
@@ -41,7 +41,7 @@ impl Value {
         Value::Quantity { dimension, anchor: Anchor::Motion }
     }
 
-    /// Returns the value of the negated expression.
+    /// Returns the unit information of the negated expression.
     pub fn negated_value(self) -> Value {
         match self {
             Value::Number(value) => Value::Number(-value),

@@ -65,7 +65,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the common value of several expressions.
+    /// Returns the common unit information of several expressions that must have equal dimensions.
     fn common_value(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
         let mut first: Option<&Expr> = None;
         let mut common = Value::Number(0.0);
@@ -148,7 +148,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the product of factors; the flag marks divisors.
+    /// Returns the unit information of a product of factors; the flag marks divisors.
     fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
         let (value, free) = product_of_values(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
@@ -185,7 +185,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the value of a function of the language.
+    /// Returns the unit information of a function's value.
     fn value_of_function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> Value {
         let [first, others @ ..] = arguments else {
             return match rule {
@@ -287,7 +287,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Infers from expressions whose values are not used.
+    /// Infers dimensions from expressions whose values are not used.
     fn infer_unused_expressions(&mut self, e: &'a [Expr]) {
         e.iter().for_each(|e| drop(self.value_of_expression(e)));
     }
@@ -364,7 +364,7 @@ impl<'a> Inference<'a> {
         self.infer_point(current);
     }
 
-    /// Infers dimensions from a point `body.at(vector)`.
+    /// Infers dimensions from the expression `body.at(vector)` of a point.
     pub fn infer_point(&mut self, e: &'a Expr) {
         if let ExprKind::Method(base, _, arguments) = &e.kind {
             self.infer_point(base);

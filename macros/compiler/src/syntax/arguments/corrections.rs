@@ -10,7 +10,7 @@ use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, token};
 
 /// Reports an expression that stands where `name = value` is expected.
-pub fn report_unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
+pub fn report_unnamed_argument(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
     if let Some(word) = e.as_name().filter(|word| known.contains(word)) {
         cx.report_error(e.place.clone(), format!("`{word}` has no value"))
             .add_help(format!("write `{word} = …`"));
@@ -42,7 +42,7 @@ pub fn missing_comma_error(input: ParseStream<'_>) -> syn::Error {
             let help = format!("arguments are separated by `,`: write `…, {word} = …`");
             syn_error(input.span(), "expected `,`", &help)
         }
-        Ok(word) if ahead.is_empty() && words::is_request(&word.to_string()) => {
+        Ok(word) if ahead.is_empty() && words::is_request_option(&word.to_string()) => {
             let help = format!("arguments are separated by `,`: write `…, {word}`");
             syn_error(input.span(), "expected `,`", &help)
         }
@@ -67,11 +67,12 @@ pub fn missing_arrow_error(
     first: &Expr,
     arguments: &Arguments,
 ) -> Option<syn::Error> {
-    let is_place =
+    let is_place_expression =
         |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
     let is_arrow = input.peek(Token![->]);
     let ends = input.is_empty() || input.peek(Token![,]) || input.peek(token::Bracket);
-    if !is_place(first) || ends || input.peek(Token![::]) || (is_arrow && !is_double(input)) {
+    if !is_place_expression(first) || ends || input.peek(Token![::]) || (is_arrow && !is_double_arrow(input))
+    {
         return None;
     }
     let span = input.span();
@@ -87,7 +88,7 @@ pub fn missing_arrow_error(
         if signs.is_empty() && ahead.peek2(Ident::peek_any) {
             ahead.call(Ident::parse_any).ok()?;
         }
-        let second = parse_expr(&ahead).ok().filter(is_place);
+        let second = parse_expr(&ahead).ok().filter(is_place_expression);
         let equation = matches!(signs.as_str(), "=" | "==");
         if equation || (signs.is_empty() && second.is_none()) {
             return None;
@@ -102,8 +103,8 @@ pub fn missing_arrow_error(
     None
 }
 
-/// Returns whether the next tokens are `->>`.
-fn is_double(input: ParseStream<'_>) -> bool {
+/// Returns whether the next tokens are the misspelt arrow `->>`.
+fn is_double_arrow(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }
@@ -112,7 +113,7 @@ fn is_double(input: ParseStream<'_>) -> bool {
 /// another integer follows.
 pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
-    let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+    let is_whole_number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
     let is_punctuation =
         |token: &TokenTree, sign| matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign);
     let mut is_value = false;
@@ -121,8 +122,8 @@ pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
             && is_value
             && let (Some(TokenTree::Literal(whole)), Some(TokenTree::Literal(part))) =
                 (tokens.get(k.wrapping_sub(1)), tokens.get(k + 1))
-            && is_whole(&whole.to_string())
-            && is_whole(&part.to_string())
+            && is_whole_number(&whole.to_string())
+            && is_whole_number(&part.to_string())
         {
             let help = format!("numbers have a decimal point: write `{whole}.{part}`");
             return Some(syn_error(whole.span(), &format!("`{whole},{part}` is two numbers"), &help));

@@ -54,10 +54,10 @@ impl Arguments {
             [a, b, ..] => return (place, pair_of_sources(a, b)),
             [] => {}
         }
-        let is_unknown = |(name, value): &(Name, ArgumentValue)| {
+        let is_unknown_argument = |(name, value): &(Name, ArgumentValue)| {
             !known.contains(&name.text.as_str()) && matches!(value, ArgumentValue::Expr(_))
         };
-        let Some(index) = self.named.iter().position(is_unknown) else { return (place, None) };
+        let Some(index) = self.named.iter().position(is_unknown_argument) else { return (place, None) };
         let (name, value) = self.named.remove(index);
         let ArgumentValue::Expr(value) = value else { return (name.place, None) };
         let ends = match (&value.kind, name.text.as_str()) {

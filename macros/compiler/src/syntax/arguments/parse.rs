@@ -97,7 +97,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
     Ok(())
 }
 
-/// Parses quoted names, separated by commas.
+/// Parses quoted names that are separated by commas.
 fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
     let mut texts = Vec::new();
     while !input.is_empty() {

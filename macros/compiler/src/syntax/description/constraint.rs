@@ -3,16 +3,16 @@
 use super::{Expr, ExprKind, Name, WrittenArguments};
 use crate::language::{Callable, Key, OtherKind};
 
-/// Kind of a constraint.
+/// Kind of a declared constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConstraintKind {
-    /// Constraint on configurations.
+    /// Constraint on the configuration.
     Holonomic,
-    /// Constraint on velocities.
+    /// Constraint on the velocity.
     Nonholonomic,
-    /// Two surfaces in contact that do not slip.
+    /// Rolling of two surfaces in contact without slip.
     Rolling,
-    /// Two surfaces in contact that slip with friction.
+    /// Slipping of two surfaces in contact with friction.
     Slipping,
 }
 
@@ -26,7 +26,7 @@ impl ConstraintKind {
         }
     }
 
-    /// Returns the row of the element in the table.
+    /// Returns the row of the constraint element in the table of elements.
     pub fn catalogue_row(self) -> OtherKind {
         match self {
             ConstraintKind::Holonomic => OtherKind::Holonomic,
@@ -40,13 +40,13 @@ impl ConstraintKind {
 /// An expression that remains zero, two that remain equal, or a pair of surfaces.
 #[derive(Clone, Debug)]
 pub struct Constraint {
-    /// Name of the constraint.
+    /// Name of the declared constraint.
     pub name: Name,
     /// Kind of the constraint.
     pub kind: ConstraintKind,
     /// Expression, a scalar or a vector, or `rolls(surface, surface)` or `slips(surface, surface)`.
     pub value: Expr,
-    /// Right side of the equation; zero if absent.
+    /// Right side of the constraint equation; zero if absent.
     pub other: Option<Expr>,
     /// Friction of slipping surfaces and speed at which it is regularised.
     pub arguments: WrittenArguments,
@@ -57,20 +57,20 @@ pub struct Constraint {
 pub struct Limit {
     /// Name of the limit; that of the joint if it is from a file.
     pub name: Name,
-    /// Joint, coordinate of a joint, declared coordinate, or expression.
+    /// Limited quantity: joint, coordinate of a joint, declared coordinate, or expression.
     pub on: Expr,
     /// Bounds of the limit; with a restitution they are stops.
     pub arguments: WrittenArguments,
 }
 
-/// Two surfaces that may separate, collide, slide and stick.
+/// Unilateral contact of two surfaces that may separate, collide, slide and stick.
 #[derive(Clone, Debug)]
 pub struct Contact {
     /// Name of the contact.
     pub name: Name,
-    /// First surface.
+    /// Expression of the first surface.
     pub first: Expr,
-    /// Second surface.
+    /// Expression of the second surface.
     pub second: Expr,
     /// Coefficients of friction and restitution, stiffness and dissipation; surfaces without a stiffness are
     /// rigid.
@@ -80,7 +80,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Returns whether the surfaces are compliant.
+    /// Returns whether the contact has a stiffness, so that its surfaces are compliant.
     pub fn is_compliant(&self) -> bool {
         [Key::Stiffness, Key::Hertz].into_iter().any(|key| self.arguments.get(key).is_some())
     }

@@ -5,9 +5,9 @@ use super::{Expr, Name};
 /// A parameter that is a function, given by a table.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// Name of the table.
+    /// Name of the interpolation table.
     pub name: Name,
-    /// Number of variables, one to three.
+    /// Number of variables of the table, one to three.
     pub variables: usize,
 }
 
@@ -20,21 +20,21 @@ pub struct Equilibrium {
     pub values: Vec<(Expr, Expr)>,
 }
 
-/// Kind of value that an expression has.
+/// Kind of value that an expression must have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rank {
-    /// Scalar.
+    /// The expression is a scalar.
     Scalar,
-    /// Physical vector.
+    /// The expression is a physical vector.
     Vector,
-    /// Physical matrix, which maps vectors to vectors.
+    /// The expression is a physical matrix, which maps vectors to vectors.
     Matrix,
     /// Free-body diagram: all forces on the body that the expression names.
     FreeBody,
 }
 
 impl Rank {
-    /// Returns the type of the element.
+    /// Returns the name of the element type for this kind of value.
     pub fn element_type_name(self) -> &'static str {
         match self {
             Rank::Scalar => "Scalar",
@@ -45,14 +45,14 @@ impl Rank {
     }
 }
 
-/// Named expression.
+/// Named expression: a definition or an output.
 #[derive(Clone, Debug)]
 pub struct Definition {
     /// Name of the definition.
     pub name: Name,
-    /// Declared kind of value.
+    /// Declared kind of the expression's value.
     pub rank: Rank,
-    /// Expression that the name denotes.
+    /// Expression that the name of the definition denotes.
     pub value: Expr,
     /// Axes in which the components of an output are resolved.
     pub resolved_in: Option<Expr>,

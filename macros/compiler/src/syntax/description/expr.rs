@@ -6,9 +6,9 @@ use crate::language::{Callable, Method};
 /// A word chosen by the user: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]
 pub struct Name {
-    /// Text of the word.
+    /// Text of the name.
     pub text: String,
-    /// Span or position in the source.
+    /// Span in the Rust source, or position in the imported file.
     pub place: Place,
 }
 
@@ -17,9 +17,9 @@ pub struct Name {
 pub struct Term<I> {
     /// Text of the word.
     pub text: String,
-    /// Span or position in the source.
+    /// Span in the Rust source, or position in the imported file.
     pub place: Place,
-    /// Row of the word; `None` for an unknown word.
+    /// Row of the word in a table of the language; `None` for an unknown word.
     pub id: Option<I>,
 }
 
@@ -34,7 +34,7 @@ impl Callee {
     }
 }
 
-/// A word after the dot of a body.
+/// Word after the dot of a body, such as `at` in `body.at(vector)`.
 pub type Member = Term<Method>;
 
 impl Member {
@@ -48,34 +48,34 @@ impl Member {
 /// Expression with unresolved names.
 #[derive(Clone, Debug)]
 pub struct Expr {
-    /// Kind of the expression.
+    /// Kind of the expression with its operands.
     pub kind: ExprKind,
-    /// Span or position in the source.
+    /// Span in the Rust source, or position in the imported file.
     pub place: Place,
 }
 
-/// Kinds of expressions.
+/// Kind of an expression with its operands.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
     /// Finite number.
     Number(f64),
-    /// Name: `length`, `x`, `t`.
+    /// Name such as `length`, `x` or `t`.
     Name(String),
-    /// Member: `hoop.x`.
+    /// Member access such as `hoop.x`.
     Field(Box<Expr>, Name),
-    /// Method: `body.at(vector)`.
+    /// Method call such as `body.at(vector)`.
     Method(Box<Expr>, Member, Vec<Expr>),
-    /// Call: `sin(angle)`, `rod(mass, length, y)`.
+    /// Function call such as `sin(angle)` or `rod(mass, length, y)`.
     Call(Callee, Vec<Expr>),
-    /// Negation: `-e`.
+    /// Negation `-e` of an expression.
     Neg(Box<Expr>),
     /// Binary operation such as `a + b`, with the span of the operator.
     Binary(BinaryOp, Box<Expr>, Box<Expr>, Place),
-    /// Tuple: `(a, b)`.
+    /// Tuple `(a, b)` of expressions.
     Tuple(Vec<Expr>),
-    /// Array: `[a, b, c]`.
+    /// Array `[a, b, c]` of expressions.
     Array(Vec<Expr>),
-    /// Path of a mesh: `hull("foot.obj")`.
+    /// Path of a mesh file, as in `hull("foot.obj")`.
     Text(String),
 }
 
@@ -112,7 +112,7 @@ impl Expr {
         parts
     }
 
-    /// Returns the name, if the expression is a name.
+    /// Returns the name if the expression is a single name.
     pub fn as_name(&self) -> Option<&str> {
         match &self.kind {
             ExprKind::Name(name) => Some(name),
@@ -129,7 +129,7 @@ impl Expr {
         }
     }
 
-    /// Returns a number at a source position.
+    /// Returns a number expression at a source position.
     pub fn number_at(value: f64, place: &Place) -> Expr {
         Expr { kind: ExprKind::Number(value), place: place.clone() }
     }
@@ -146,7 +146,7 @@ impl Expr {
         Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b), place.clone()), place }
     }
 
-    /// Returns `base.word(arguments)` at the source position of `base`.
+    /// Returns the method call `base.word(arguments)` at the source position of `base`.
     pub fn method_call(base: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
         let place = base.place.clone();
         let name = Name { text: word.to_string(), place: place.clone() };

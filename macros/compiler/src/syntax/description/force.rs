@@ -4,47 +4,47 @@ use super::{BinaryOp, Expr, Name};
 use crate::diag::Place;
 use crate::language::{ForceKind, Key};
 
-/// A force element or an input.
+/// Declared force element or input.
 #[derive(Clone, Debug)]
 pub struct Action {
     /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
-    /// Row in the table of force elements.
+    /// Row of the element in the table of force elements.
     pub kind: ForceKind,
     /// Coordinate, body or points on which the element acts.
     pub on: Target,
-    /// Arguments of the element, as written.
+    /// Arguments of the force element, as written.
     pub arguments: WrittenArguments,
 }
 
-/// Arguments of an element, as written.
+/// Arguments of an element with their keys, as written.
 #[derive(Clone, Debug, Default)]
 pub struct WrittenArguments(pub Vec<(Key, Expr)>);
 
 impl WrittenArguments {
-    /// Returns the expression of an argument.
+    /// Returns the expression of the argument with a key, if it is present.
     pub fn get(&self, key: Key) -> Option<&Expr> {
         self.iter().find(|(known, _)| *known == key).map(|(_, e)| e)
     }
 
-    /// Returns the arguments with their expressions.
+    /// Returns the keys of the arguments with their expressions.
     pub fn iter(&self) -> impl Iterator<Item = (Key, &Expr)> {
         self.0.iter().map(|(key, e)| (*key, e))
     }
 }
 
-/// A spring, damper, rotor or motor of a file.
+/// Spring, damper, rotor or motor that a robot file defines.
 #[derive(Clone, Debug)]
 pub struct Drive {
     /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
     /// Coordinates, length or point on which the element of a file acts.
     pub on: DriveOn,
-    /// Force law of the element of a file.
+    /// Force law of the element.
     pub law: DriveLaw,
 }
 
-/// Target of a force element of a file.
+/// Target on which a force element of a robot file acts.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there are few of them, and they are not moved")]
 pub enum DriveOn {
@@ -59,11 +59,11 @@ pub enum DriveOn {
 /// A force at a point of a body and a torque on the body, per newton of the drive.
 #[derive(Clone, Debug)]
 pub struct Wrench {
-    /// Point of action, `body.at(vector)`.
+    /// Point of action of the wrench, `body.at(vector)`.
     pub on: Expr,
     /// Force, in axes of the body, or of the body on which the reaction acts.
     pub force: [f64; 3],
-    /// Torque, in the same axes.
+    /// Torque of the wrench, in the axes of the force.
     pub torque: [f64; 3],
     /// Point on which the reaction acts; on the ground if absent.
     pub against: Option<Expr>,
@@ -102,11 +102,11 @@ impl DriveOn {
 /// Quantity of a force element of a file that the element's own law contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriveQuantity {
-    /// Weighted sum or length on which the element acts.
+    /// Weighted sum of coordinates, or length, on which the element acts.
     Length,
-    /// Rate of this length.
+    /// Rate of the weighted sum or length.
     Rate,
-    /// Input of this name.
+    /// Input of the element with this name.
     Input,
 }
 
@@ -123,7 +123,7 @@ impl DriveQuantity {
     }
 }
 
-/// Force law of a force element of a file.
+/// Force law of a force element that a robot file defines.
 #[derive(Clone, Debug)]
 pub enum DriveLaw {
     /// Force proportional to the difference from a free length.
@@ -135,16 +135,16 @@ pub enum DriveLaw {
     },
     /// Force opposite to a polynomial of the excess beyond a range.
     Slack {
-        /// Coefficients of the excess, its square and its cube.
+        /// Coefficients of the excess beyond the range, of its square and of its cube.
         stiffness: [f64; 3],
-        /// Lower and upper end of the range.
+        /// Lower and upper end of the range without force.
         range: [f64; 2],
     },
     /// Force proportional and opposite to the velocity, with this coefficient.
     Damper(f64),
     /// Force opposite to the rate, with these coefficients of its magnitude, the square and the cube.
     PolynomialDamper([f64; 3]),
-    /// Force of this magnitude opposite to the rate.
+    /// Friction force of this magnitude opposite to the rate.
     Friction(f64),
     /// Force proportional and opposite to the acceleration, with this inertance.
     Inerter(f64),
@@ -154,15 +154,15 @@ pub enum DriveLaw {
     Input(&'static str),
     /// Force given by an expression of states, and of the quantities of this element and its inputs.
     Expression {
-        /// Force.
+        /// Expression of the force.
         force: Box<Expr>,
-        /// Contribution of locked joints to the length.
+        /// Contribution of locked joints to the length, which is constant.
         offset: f64,
     },
 }
 
 impl DriveLaw {
-    /// Returns a spring with a polynomial force.
+    /// Returns the law of a spring with a polynomial force.
     pub fn spring(stiffness: [f64; 3], free: f64) -> DriveLaw {
         match stiffness {
             [stiffness, 0.0, 0.0] => DriveLaw::Spring { stiffness, free },
@@ -170,7 +170,7 @@ impl DriveLaw {
         }
     }
 
-    /// Returns a damper with a polynomial force.
+    /// Returns the law of a damper with a polynomial force.
     pub fn damper(damping: [f64; 3]) -> DriveLaw {
         match damping {
             [damping, 0.0, 0.0] => DriveLaw::Damper(damping),
@@ -179,12 +179,12 @@ impl DriveLaw {
     }
 }
 
-/// Target of a force element, as written.
+/// Target on which a force element acts, as written.
 #[derive(Clone, Debug)]
 pub enum Target {
     /// One target: `joint`, `joint.coordinate`, `body`, `body.at(vector)`, `point`.
     On(Expr),
-    /// Two points, of bodies or named.
+    /// Two points between which the element acts.
     Between(Expr, Expr),
 }
 
@@ -198,7 +198,7 @@ impl Target {
 }
 
 impl Action {
-    /// Returns the expression of an argument.
+    /// Returns the expression of the argument with a key, if it is present.
     pub fn get(&self, key: Key) -> Option<&Expr> {
         self.arguments.get(key)
     }

@@ -9,13 +9,13 @@ use std::path::PathBuf;
 pub struct Collision {
     /// Link, with the pose of the shape's centre on it.
     pub on: Endpoint,
-    /// Shape of the geometry.
+    /// Shape of the collision geometry.
     pub shape: Shape,
     /// Source of the vertices, if the shape is a mesh that can be read.
     pub mesh: Option<MeshVertices>,
     /// Vertices of the convex hull of the mesh, m, if a contact uses it.
     pub hull: Vec<[f64; 3]>,
-    /// Position of the geometry in the file.
+    /// Source position of the geometry in the file.
     pub place: Place,
 }
 
@@ -29,15 +29,15 @@ impl Collision {
 /// Vertices of a mesh for its convex hull: those of a file, or as written.
 #[derive(Clone, Debug)]
 pub struct MeshVertices {
-    /// Path or name as written, for messages.
+    /// Path or name of the mesh as written, for messages.
     pub name: Name,
     /// Paths at which the file may be; empty for written vertices.
     pub paths: Vec<PathBuf>,
-    /// Written vertices.
+    /// Vertices that the file lists directly.
     pub written: Vec<[f64; 3]>,
     /// Matrix by which vertices are multiplied, such as scale factors.
     pub linear: [[f64; 3]; 3],
-    /// Position that is added to the product, m.
+    /// Position that is added to the transformed vertices, m.
     pub offset: [f64; 3],
 }
 
@@ -49,7 +49,7 @@ impl MeshVertices {
     }
 }
 
-/// Shape of collision or visual geometry; lengths in m.
+/// Shape of collision or visual geometry with lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// Sphere, given by its radius.
@@ -62,7 +62,7 @@ pub enum Shape {
     Capsule(f64, f64),
     /// Ellipsoid, given by its half lengths along the axes.
     Ellipsoid([f64; 3]),
-    /// Mesh of triangles in another file.
+    /// Mesh of triangles in a separate file.
     Mesh,
 }
 
@@ -77,7 +77,7 @@ pub struct Visual {
     pub mesh: Option<Mesh>,
 }
 
-/// Mesh of triangles in another file.
+/// Mesh of triangles in a separate file, with its scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Path of the mesh, as written in the robot file.

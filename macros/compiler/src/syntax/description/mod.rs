@@ -20,18 +20,18 @@ pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particl
 /// Scalar type of the generated functions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ScalarType {
-    /// Double precision, `f64`.
+    /// The scalar type `f64`: double precision.
     F64,
-    /// Single precision, `f32`.
+    /// The scalar type `f32`: single precision.
     F32,
-    /// Type parameter of the struct with this name.
+    /// The type parameter of the struct with this name.
     Generic(String),
 }
 
 /// Attachment of the root of an imported file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
-    /// The root is welded to the ground.
+    /// The root link is welded to the ground.
     Fixed,
     /// The root is connected to the ground by a free joint.
     Free,
@@ -40,21 +40,21 @@ pub enum Base {
 /// A mechanism as written by the user. Only the grammar has been checked; names are unresolved.
 #[derive(Clone, Debug)]
 pub struct Description {
-    /// Name of the struct.
+    /// Name of the mechanism's struct.
     pub name: Name,
-    /// Uniform gravity, a vector in ground axes, m/s².
+    /// Uniform gravitational acceleration, a vector in ground axes, m/s².
     pub gravity: Option<Expr>,
     /// Speed at which regularised Coulomb friction reaches `tanh 1` of its maximum.
     pub friction_speed: Option<Expr>,
     /// Scalar type of the mechanism.
     pub scalar: ScalarType,
-    /// Parameters: the fields that remain in the struct.
+    /// Parameters of the mechanism: the fields that remain in the struct.
     pub parameters: Vec<Name>,
-    /// Tables: parameters that are functions.
+    /// Interpolation tables: parameters that are functions.
     pub tables: Vec<Table>,
     /// States of first order: parameters that change, each with its index among the parameters.
     pub states: Vec<(Name, usize)>,
-    /// `#[unit(…)]` of parameters, by index.
+    /// Units of parameters stated by `#[unit(…)]`, with the index of the parameter.
     pub units: Vec<(usize, Expr)>,
     /// Units of the last parameters, which replace values of a file.
     pub file_units: Vec<&'static str>,
@@ -64,11 +64,11 @@ pub struct Description {
     pub particles: Vec<Particle>,
     /// Joints of the mechanism.
     pub joints: Vec<Joint>,
-    /// Force elements and inputs.
+    /// Declared force elements and inputs of the mechanism.
     pub actions: Vec<Action>,
-    /// Force elements and inputs of a file.
+    /// Force elements and inputs that the robot file defines.
     pub drives: Vec<Drive>,
-    /// Limits of coordinates.
+    /// Declared limits of coordinates.
     pub limits: Vec<Limit>,
     /// Equilibria about which linear equations are printed.
     pub equilibria: Vec<Equilibrium>,
@@ -77,37 +77,37 @@ pub struct Description {
     /// Names of all inputs, in order: those of force elements without a value, and fields of the type
     /// `Input`.
     pub inputs: Vec<Name>,
-    /// Frames of the mechanism.
+    /// Declared frames of the mechanism.
     pub frames: Vec<Frame>,
-    /// Points of the mechanism.
+    /// Declared points of the mechanism.
     pub points: Vec<Point>,
     /// Named expressions, each of which other expressions may use.
     pub definitions: Vec<Definition>,
-    /// Definitions that are generalized speeds.
+    /// Names of the definitions that are generalized speeds.
     pub speeds: Vec<Name>,
-    /// Expressions that become functions of the mechanism.
+    /// Output expressions, which become functions of the mechanism.
     pub outputs: Vec<Definition>,
-    /// Potential energies.
+    /// Declared potential energies with their names.
     pub energies: Vec<(Name, Expr)>,
-    /// Rayleigh dissipation functions.
+    /// Declared Rayleigh dissipation functions with their names.
     pub dissipations: Vec<(Name, Expr)>,
-    /// Constraints other than those of loop-closing joints.
+    /// Declared constraints, other than those of loop-closing joints.
     pub constraints: Vec<Constraint>,
-    /// Unilateral contacts.
+    /// Declared unilateral contacts.
     pub contacts: Vec<Contact>,
     /// Collision geometry of a file's links.
     pub collisions: Vec<Collision>,
-    /// Whether the drawing is requested.
+    /// Whether the option `drawing` is set.
     pub drawing: bool,
     /// Visual geometry of a file's links, for the drawing.
     pub visuals: Vec<Visual>,
-    /// Solution method for constrained motion.
+    /// Solution method for constrained motion: multipliers or independent speeds.
     pub formulation: Formulation,
     /// Numbers of a file that were rounded by the option `snap`.
     pub snapped: Vec<String>,
-    /// Contents of the file that the mechanism omits.
+    /// Descriptions of contents of the robot file that the mechanism omits.
     pub left_out: Vec<String>,
-    /// Option for the treatment of mass properties.
+    /// Option for the treatment of mass properties: check, trust or none.
     pub inertias: Inertias,
     /// Whether the file's root is the ground, which then has a frame as other links have.
     pub ground_frame: bool,
@@ -174,7 +174,7 @@ pub enum Inertias {
 /// Solution method for the accelerations of a mechanism with constraints.
 #[derive(Clone, Debug, Default)]
 pub enum Formulation {
-    /// Constraint forces are Lagrange multipliers.
+    /// Constrained motion is solved with Lagrange multipliers.
     #[default]
     Multipliers,
     /// Equations are formulated in independent velocities: the listed velocities, or automatically chosen

@@ -6,44 +6,44 @@ use crate::language::JointKind;
 /// A generalized coordinate that belongs to no joint.
 #[derive(Clone, Debug)]
 pub struct FreeCoordinate {
-    /// Name of the coordinate.
+    /// Name of the declared coordinate.
     pub name: Name,
-    /// Number of joints declared before it.
+    /// Number of joints declared before the coordinate, which determines its index.
     pub joints_before: usize,
 }
 
-/// Frame: axes without a position.
+/// Frame of the mechanism: axes without a position.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// Name of the frame.
     pub name: Name,
-    /// Body or frame whose axes are rotated.
+    /// Body or frame whose axes are the starting point of the rotations.
     pub start: Expr,
-    /// Successive rotations about rotated axes.
+    /// Successive rotations of the frame about rotated axes.
     pub rotations: Vec<Expr>,
 }
 
 /// Point that is fixed in a body.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Name of the point.
+    /// Name of the declared point.
     pub name: Name,
     /// Body or point relative to which it is fixed; the ground if absent.
     pub on: Option<Expr>,
-    /// Position of the point in that body.
+    /// Position of the point relative to that body or point.
     pub at: Option<Expr>,
 }
 
-/// Rigid body.
+/// Rigid body of the mechanism, as declared.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Name of the body and of its frame.
     pub name: Name,
-    /// Mass; zero if absent.
+    /// Mass of the body, kg; zero if absent.
     pub mass: Option<Expr>,
     /// Centre of mass, in body axes relative to the body's origin; the origin if absent.
     pub com: Option<Expr>,
-    /// Inertia in body axes; zero if absent.
+    /// Inertia of the body in body axes; zero if absent.
     pub inertia: Option<Expr>,
     /// Reference point of the inertia, in body axes relative to the body's origin; the centre of mass if
     /// absent.
@@ -54,7 +54,7 @@ pub struct Body {
     pub frame: Option<Expr>,
 }
 
-/// Particle: a mass at a point.
+/// Particle of the mechanism: a mass at a point.
 #[derive(Clone, Debug)]
 pub struct Particle {
     /// Name of the particle and of its frame, whose axes are those of its carrier.
@@ -65,12 +65,12 @@ pub struct Particle {
     pub at: Option<Expr>,
 }
 
-/// A joint from a parent to a child.
+/// Joint of the mechanism from a parent to a child body.
 #[derive(Clone, Debug)]
 pub struct Joint {
     /// Name of the joint, and of its coordinate if it has one degree of freedom.
     pub name: Name,
-    /// Kind of the joint.
+    /// Type of the joint.
     pub kind: JointKind,
     /// Parent body, with the joint's frame on it.
     pub parent: Endpoint,
@@ -80,9 +80,9 @@ pub struct Joint {
     pub about: Vec<Expr>,
     /// Translation axes, in the joint's frame on the parent.
     pub along: Vec<Expr>,
-    /// Advance per radian of a screw joint.
+    /// Advance per radian of a screw joint, m/rad.
     pub pitch: Option<Expr>,
-    /// Advance per revolution of a screw joint.
+    /// Advance per revolution of a screw joint, m.
     pub lead: Option<Expr>,
     /// Whether the axis is normalised (URDF); only a zero axis is then an error.
     pub normalise_axis: bool,
@@ -110,10 +110,10 @@ pub struct Endpoint {
     pub rotated: Vec<Expr>,
 }
 
-/// The relation `coordinate = multiplier × other + offset`.
+/// Mimic relation of a joint: `coordinate = multiplier × other + offset`.
 #[derive(Clone, Debug)]
 pub struct Mimic {
-    /// Joint whose coordinate is followed.
+    /// Joint whose coordinate the mimic joint follows.
     pub joint: Name,
     /// Factor of the followed coordinate.
     pub multiplier: f64,

@@ -245,7 +245,7 @@ pub const NUMBER_METHODS: Words = &[("powi powf powu", "write `pow(a, n)`")];
 /// Synonyms of methods of coordinates, with the expression that is suggested; `NAME` is the coordinate.
 pub const RATES: Words = &[("dot rate diff velocity speed dt", "write `rate(NAME)`")];
 
-/// Names that other tools use for the ground.
+/// Names of the ground in other tools.
 pub const BODIES: Words = &[(
     "world base baselink earth origin inertial fixed n newtonian globe wall floor map odom frame static",
     "ground",

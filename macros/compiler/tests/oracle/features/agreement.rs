@@ -3,7 +3,7 @@
 //! with its variants for other passes, prepared values or lanes.
 
 use super::source;
-use super::values::{By, Values, derivative_with_error, difference};
+use super::values::{DerivativeVariable, Values, derivative_with_error, difference};
 use linkwork_compiler::catalogue::{self, Id};
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
@@ -17,12 +17,12 @@ pub(super) const SAME: f64 = 1e-9;
 /// Maximum difference from numeric differences, relative to the largest entry and to the differentiated
 /// values.
 pub(super) const TOLERANCE: f64 = 1e-7;
-/// Step of finite differences for second derivatives.
+/// Step of the finite differences for second derivatives.
 const WIDE: f64 = 8e-3;
 const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
 
 /// Compiles a mechanism and calls `f` with it, unless it has errors.
-fn with_compiled(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Output)) {
+fn compile_and_call(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Output)) {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
@@ -42,7 +42,7 @@ pub fn check_all_functions(seed: u64) -> usize {
 pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> usize {
     let name = format!("seed {seed}\n#[mechanism({arguments})]\n{item}");
     let mut compared = 0;
-    with_compiled(arguments, item, &mut |model, output| {
+    compile_and_call(arguments, item, &mut |model, output| {
         let lacks = functions.iter().find(|name| !output.functions.iter().any(|f| f.name == **name));
         assert_eq!(lacks, None, "{name}");
         let values = Values::random_values(model, seed);
@@ -56,7 +56,7 @@ pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> 
         case.check_parameters();
         case.check_requested();
         compared = case.compared;
-        with_compiled(&format!("{arguments}{SKIPPED}"), item, &mut |_, plain| case.check_passes(plain));
+        compile_and_call(&format!("{arguments}{SKIPPED}"), item, &mut |_, plain| case.check_passes(plain));
     });
     compared
 }
@@ -132,12 +132,12 @@ impl Case<'_, '_> {
         }
     }
 
-    /// Compares columns with the derivatives of a function.
+    /// Compares columns of a result with the derivatives of a function by finite differences.
     pub(super) fn compare_columns(
         &mut self,
         what: &str,
         found: &[f64],
-        by: By,
+        by: DerivativeVariable,
         of: &dyn Fn(&Values) -> Vec<f64>,
     ) {
         let n = self.values.entry_count(by);
@@ -153,7 +153,7 @@ impl Case<'_, '_> {
     }
 
     /// Compares a function whose results are consecutive derivatives of another function.
-    pub(super) fn check_columns(&mut self, what: &str, base: &str, by: &[By]) {
+    pub(super) fn check_columns(&mut self, what: &str, base: &str, by: &[DerivativeVariable]) {
         let found = self.run_at_own_values(what);
         if found.is_empty() || self.find_function(base).is_none() {
             return;
@@ -173,11 +173,11 @@ impl Case<'_, '_> {
 
     /// Returns a function that changes one entry of the state. With declared generalized speeds,
     /// configuration displacements are measured in the generalized speeds at the initial configuration.
-    fn entry_changer(&self) -> impl Fn(&Values, By, usize, f64) -> Values + use<> {
+    fn entry_changer(&self) -> impl Fn(&Values, DerivativeVariable, usize, f64) -> Values + use<> {
         let charts = self.model.charts.clone();
         let (columns, nv) = (self.run_at_own_values("__rate_matrix"), self.values.v.len());
         move |values, by, k, h| match by {
-            By::Q => {
+            DerivativeVariable::Q => {
                 let displacement_of_entry = |j: usize| match columns.get(k * nv + j) {
                     Some(entry) => h * entry,
                     None => f64::from(u8::from(j == k)) * h,
@@ -189,7 +189,7 @@ impl Case<'_, '_> {
     }
 
     /// Returns a function along the motion, as a function of time.
-    pub(super) fn along_motion<F: Fn(&Values) -> Vec<f64>>(
+    pub(super) fn function_along_motion<F: Fn(&Values) -> Vec<f64>>(
         &self,
         of: F,
     ) -> impl Fn(f64) -> Vec<f64> + use<F> {
@@ -215,7 +215,7 @@ impl Case<'_, '_> {
         let Some(prepared) = &output.prepared else { return };
         for function in &prepared.functions {
             let plain = output.functions.iter().find(|f| f.name == function.name);
-            if let Some(plain) = plain.filter(|plain| is_alike(plain, function)) {
+            if let Some(plain) = plain.filter(|plain| has_equal_results(plain, function)) {
                 let expected = self.values.run_function(output, plain);
                 let found = self.values.run_prepared(prepared, function);
                 let bound = SAME * (1.0 + largest_magnitude(&expected));
@@ -224,10 +224,12 @@ impl Case<'_, '_> {
         }
     }
 
-    /// Compares every function with its variant without passes.
+    /// Compares every generated function with its variant compiled without passes.
     fn check_passes(&mut self, plain: &Output) {
         for function in &plain.functions {
-            if let Some(own) = self.find_function(&function.name).filter(|own| is_alike(own, function)) {
+            if let Some(own) =
+                self.find_function(&function.name).filter(|own| has_equal_results(own, function))
+            {
                 let found = self.values.run_function(self.output, own);
                 let expected = self.values.run_function(plain, function);
                 let bound = SAME * (1.0 + largest_magnitude(&expected));
@@ -257,16 +259,20 @@ impl Case<'_, '_> {
         let (mass, momenta) =
             (self.run_at_own_values("mass_matrix"), self.run_at_own_values("generalized_momentum"));
         if !depends_on_accelerations {
-            self.compare_columns("mass matrix", &mass, By::A, &|x| x.run_function(output, &inverse));
+            self.compare_columns("mass matrix", &mass, DerivativeVariable::A, &|x| {
+                x.run_function(output, &inverse)
+            });
             let rate = self.run_at_own_values("momentum_rate");
-            let along = self.along_motion(|x| x.run_function(output, &momentum));
+            let along = self.function_along_motion(|x| x.run_function(output, &momentum));
             self.compare_with_derivative("momenta", &sum_of_vectors(&rate, &forces), &along);
         }
-        self.compare_columns("momenta", &momenta, By::V, &|x| x.run_function(output, &kinetic));
+        self.compare_columns("momenta", &momenta, DerivativeVariable::V, &|x| {
+            x.run_function(output, &kinetic)
+        });
         if !self.model.time && !depends_on_accelerations {
             let power = dot(&forces, &self.values.v) + self.run_at_own_values("disturbance_power")[0]
                 - self.run_at_own_values("dissipated_power")[0];
-            let along = self.along_motion(|x| {
+            let along = self.function_along_motion(|x| {
                 sum_of_vectors(&x.run_function(output, &kinetic), &x.run_function(output, &potential))
             });
             self.compare_with_derivative("energy", &[power], &along);
@@ -297,34 +303,55 @@ impl Case<'_, '_> {
             self.output.functions.iter().filter(|f| f.id == Id::Output).cloned().collect();
         for function in outputs {
             let depends_on_velocities = function.arguments.contains(&catalogue::Argument::V);
-            let by = if depends_on_velocities { By::V } else { By::Q };
+            let by = if depends_on_velocities { DerivativeVariable::V } else { DerivativeVariable::Q };
             let full_name = |suffix: &str| format!("{}{suffix}", function.name);
             self.check_columns(&full_name(catalogue::JACOBIAN), &function.name, &[by]);
             self.check_columns(
                 &full_name(catalogue::DERIVATIVES),
                 &function.name,
-                &[By::Q, By::V, By::A, By::U],
+                &[DerivativeVariable::Q, DerivativeVariable::V, DerivativeVariable::A, DerivativeVariable::U],
             );
-            self.check_columns(&full_name(catalogue::BY_PARAMETERS), &function.name, &[By::Parameters]);
+            self.check_columns(
+                &full_name(catalogue::BY_PARAMETERS),
+                &function.name,
+                &[DerivativeVariable::Parameters],
+            );
         }
     }
 
     fn check_derivatives(&mut self) {
         let output = self.output;
-        self.check_columns("inverse_dynamics_derivatives", "inverse_dynamics", &[By::Q, By::V]);
-        self.check_columns("generalized_momentum_derivatives", "generalized_momentum", &[By::Q]);
-        self.check_columns("momentum_rate_derivatives", "momentum_rate", &[By::Q, By::V]);
+        self.check_columns(
+            "inverse_dynamics_derivatives",
+            "inverse_dynamics",
+            &[DerivativeVariable::Q, DerivativeVariable::V],
+        );
+        self.check_columns(
+            "generalized_momentum_derivatives",
+            "generalized_momentum",
+            &[DerivativeVariable::Q],
+        );
+        self.check_columns(
+            "momentum_rate_derivatives",
+            "momentum_rate",
+            &[DerivativeVariable::Q, DerivativeVariable::V],
+        );
         let inputs = self.run_at_own_values("__input_derivatives");
         if let Some(forces) = self.find_function("generalized_forces").cloned().filter(|_| !inputs.is_empty())
         {
             let nv = self.values.v.len();
-            let forces_of = |x: &Values| x.run_function(output, &forces);
+            let joint_forces_at = |x: &Values| x.run_function(output, &forces);
             let bound = SAME * (1.0 + largest_magnitude(&inputs));
-            self.assert_close_entries("forces of inputs", &inputs[..nv], &forces_of(&self.values), bound);
+            self.assert_close_entries(
+                "forces of inputs",
+                &inputs[..nv],
+                &joint_forces_at(&self.values),
+                bound,
+            );
             let mut rest = &inputs[nv..];
-            for by in [By::Q, By::V, By::U] {
+            for by in [DerivativeVariable::Q, DerivativeVariable::V, DerivativeVariable::U] {
                 let (columns, after) = rest.split_at(self.values.entry_count(by) * nv);
-                self.compare_columns("forces of inputs", columns, by, &forces_of);
+                self.compare_columns("forces of inputs", columns, by, &joint_forces_at);
                 rest = after;
             }
         }
@@ -355,7 +382,7 @@ impl Case<'_, '_> {
         }
         let there = Values { a: accelerations, ..self.values.clone() };
         let changed = self.entry_changer();
-        for (block, by) in [By::Q, By::V].into_iter().enumerate() {
+        for (block, by) in [DerivativeVariable::Q, DerivativeVariable::V].into_iter().enumerate() {
             for k in 0..nv {
                 let column = &found[block * nv * nv + k * nv..][..nv];
                 let known = function.structure.known[block].contains(&k);
@@ -370,7 +397,7 @@ impl Case<'_, '_> {
     }
 
     fn check_second_derivatives(&mut self) {
-        use By::{A, Q, U, V};
+        use DerivativeVariable::{A, Q, U, V};
         self.check_hessian(
             "inverse_dynamics_second_derivatives",
             "inverse_dynamics",
@@ -384,7 +411,7 @@ impl Case<'_, '_> {
     }
 
     /// Checks second derivatives of a function, contracted with the factors.
-    fn check_hessian(&mut self, what: &str, base: &str, blocks: &[(By, By)]) {
+    fn check_hessian(&mut self, what: &str, base: &str, blocks: &[(DerivativeVariable, DerivativeVariable)]) {
         let found = self.run_at_own_values(what);
         let Some(function) = self.find_function(base).cloned().filter(|_| !found.is_empty()) else { return };
         let (output, nv) = (self.output, self.values.v.len());
@@ -398,7 +425,7 @@ impl Case<'_, '_> {
         &mut self,
         what: &str,
         found: &[f64],
-        blocks: &[(By, By)],
+        blocks: &[(DerivativeVariable, DerivativeVariable)],
         of: &dyn Fn(&Values) -> f64,
     ) {
         let (changed, of) = (self.entry_changer(), |x: &Values| vec![of(x)]);
@@ -409,12 +436,13 @@ impl Case<'_, '_> {
                 let entry = found[first + j * m + i];
                 let values = self.values.clone();
                 // The inner displacement starts at the end of the outer one.
-                let mixed_difference = |outer: (By, usize), inner: (By, usize), h: f64| {
-                    difference(h, &|e| {
-                        let there = changed(&values, outer.0, outer.1, e);
-                        difference(h, &|e| of(&changed(&there, inner.0, inner.1, e)))
-                    })[0]
-                };
+                let mixed_difference =
+                    |outer: (DerivativeVariable, usize), inner: (DerivativeVariable, usize), h: f64| {
+                        difference(h, &|e| {
+                            let there = changed(&values, outer.0, outer.1, e);
+                            difference(h, &|e| of(&changed(&there, inner.0, inner.1, e)))
+                        })[0]
+                    };
                 let (row, column) = ((*rows, i), (*columns, j));
                 let symmetrised_difference =
                     |h: f64| 0.5 * (mixed_difference(row, column, h) + mixed_difference(column, row, h));
@@ -433,7 +461,7 @@ impl Case<'_, '_> {
 
     fn check_parameters(&mut self) {
         for base in ["inverse_dynamics", "forward_dynamics", "generalized_forces"] {
-            self.check_columns(&format!("{base}_by_parameters"), base, &[By::Parameters]);
+            self.check_columns(&format!("{base}_by_parameters"), base, &[DerivativeVariable::Parameters]);
         }
     }
 
@@ -475,12 +503,14 @@ impl Case<'_, '_> {
         if let Some(momentum) = self.find_function("momentum").cloned() {
             let matrix = self.run_at_own_values("centroidal_momentum_matrix");
             if !matrix.is_empty() {
-                self.compare_columns("momentum", &matrix, By::V, &|x| x.run_function(output, &momentum));
+                self.compare_columns("momentum", &matrix, DerivativeVariable::V, &|x| {
+                    x.run_function(output, &momentum)
+                });
                 let change = sum_of_vectors(
                     &matrix_vector_product(&matrix, &a),
                     &self.run_at_own_values("centroidal_momentum_bias"),
                 );
-                let along = self.along_motion(|x| x.run_function(output, &momentum));
+                let along = self.function_along_motion(|x| x.run_function(output, &momentum));
                 self.compare_with_derivative("momentum", &change, &along);
             }
         }
@@ -515,7 +545,7 @@ impl Case<'_, '_> {
             let a = self.run_at_own_values("forward_dynamics");
             let before = std::mem::replace(&mut self.values.a, a);
             let kept = self.run_at_own_values("conserved");
-            let along = self.along_motion(|x| x.run_function(output, &conserved));
+            let along = self.function_along_motion(|x| x.run_function(output, &conserved));
             self.compare_with_derivative("what is conserved", &vec![0.0; kept.len()], &along);
             self.values.a = before;
         }
@@ -523,7 +553,7 @@ impl Case<'_, '_> {
 }
 
 /// Returns true for functions whose results have the same meaning entry by entry.
-fn is_alike(a: &Function, b: &Function) -> bool {
+fn has_equal_results(a: &Function, b: &Function) -> bool {
     use catalogue::Shape;
     let divided =
         matches!(a.shape, Shape::Inverse(_) | Shape::Forward(_) | Shape::Linear(..) | Shape::Accelerated(_));

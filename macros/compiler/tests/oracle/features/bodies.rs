@@ -18,19 +18,20 @@ use syn::{Block, Expr, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, Pat, Stmt};
 
 /// Functions and constants of the mechanism's inherent implementations, and the bodies of `Evaluate`
 /// implementations by number.
-struct Written {
+struct EmittedCode {
     functions: BTreeMap<String, ImplItemFn>,
     constants: BTreeMap<String, Expr>,
     bodies: BTreeMap<String, Vec<ImplItemFn>>,
 }
 
-fn parse_written_functions(text: &str) -> Written {
-    let mut all = Written { functions: BTreeMap::new(), constants: BTreeMap::new(), bodies: BTreeMap::new() };
+fn parse_written_functions(text: &str) -> EmittedCode {
+    let mut all =
+        EmittedCode { functions: BTreeMap::new(), constants: BTreeMap::new(), bodies: BTreeMap::new() };
     for item in syn::parse_file(text).expect("Rust").items {
         let Item::Impl(block) = item else { continue };
         // Functions in blocks with bounds only report that they are absent.
         let (number, other) =
-            (number_of(&block), block.trait_.is_some() || block.generics.where_clause.is_some());
+            (scalar_type_of_impl(&block), block.trait_.is_some() || block.generics.where_clause.is_some());
         for member in block.items {
             let function = match member {
                 ImplItem::Fn(function) => function,
@@ -52,19 +53,19 @@ fn parse_written_functions(text: &str) -> Written {
 
 /// Returns the scalar type of a generated `impl`, which is the first type argument of its trait
 /// `Evaluate<…>`.
-fn number_of(block: &ItemImpl) -> Option<String> {
+fn scalar_type_of_impl(block: &ItemImpl) -> Option<String> {
     let of = block.trait_.as_ref()?.0.segments.last().filter(|last| last.ident == "Evaluate")?.clone();
-    first_argument(&of.arguments)
+    first_type_argument(&of.arguments)
 }
 
-fn first_argument(arguments: &syn::PathArguments) -> Option<String> {
+fn first_type_argument(arguments: &syn::PathArguments) -> Option<String> {
     let syn::PathArguments::AngleBracketed(types) = arguments else { return None };
     types.args.first().map(|first| quote::quote!(#first).to_string())
 }
 
 /// Returns the bodies of a generated function, or of those that it dispatches to, with the patterns of their
 /// arguments.
-fn bodies_of_function<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
+fn bodies_of_function<'w>(written: &'w EmittedCode, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
     let Some(function) = written.functions.get(name) else { return Vec::new() };
     let argument_patterns = |function: &ImplItemFn| -> Vec<Pat> {
         let typed = function.sig.inputs.iter().filter_map(|input| match input {
@@ -77,7 +78,7 @@ fn bodies_of_function<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'
         && let Expr::Path(called) = &*call.func
         && let Some(last) = called.path.segments.last().filter(|last| last.ident == "dispatch")
     {
-        let number = first_argument(&last.arguments).expect("a number");
+        let number = first_type_argument(&last.arguments).expect("a number");
         let all = written.bodies.get(&number).unwrap_or_else(|| panic!("{name} has no body {number}"));
         return all
             .iter()
@@ -161,7 +162,7 @@ pub fn check_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet
 
 /// Compares two constants with the functions: the entries of the generalized forces that equal inputs, and
 /// the velocities of ball and free joints.
-fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64, about: &str) {
+fn check_places(model: &Model<'_>, output: &Output, written: &EmittedCode, seed: u64, about: &str) {
     let places_of_constant = |name: &str| written.constants.get(name).map(option_numbers);
     let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
     let (Some(direct), Some(turned), Some(forces)) =
@@ -183,7 +184,7 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     let u = all[0].u.clone();
     let unit_vector =
         |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
-    let by_input = |values: &Values, k: usize| -> Vec<f64> {
+    let difference_by_input = |values: &Values, k: usize| -> Vec<f64> {
         let changed = Values { u: sum_of_vectors(&values.u, &unit_vector(k, u.len())), ..values.clone() };
         let (after, before) = (changed.run_function(output, forces), values.run_function(output, forces));
         after.iter().zip(before).map(|(a, b)| a - b).collect()
@@ -191,7 +192,8 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     let are_nearly_equal = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
     let velocity_driven_by_input = |k: usize| {
         (0..model.nv()).find(|v| {
-            all.iter().all(|values| are_nearly_equal(&by_input(values, k), &unit_vector(*v, model.nv())))
+            all.iter()
+                .all(|values| are_nearly_equal(&difference_by_input(values, k), &unit_vector(*v, model.nv())))
         })
     };
     let [here, there] = all.each_ref().map(|values| {

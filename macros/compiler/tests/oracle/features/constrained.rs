@@ -2,7 +2,7 @@
 
 use super::agreement::{Case, TOLERANCE, dot, largest_magnitude, matrix_vector_product, sum_of_vectors};
 use super::source;
-use super::values::{By, Values};
+use super::values::{DerivativeVariable, Values};
 use linkwork_compiler::catalogue::{Record, Shape};
 use linkwork_compiler::mechanism::Supplied;
 
@@ -15,8 +15,8 @@ impl Case<'_, '_> {
             return;
         };
         let output = self.output;
-        self.check_columns("constraint_jacobian", "constraint_rates", &[By::V]);
-        let along = self.along_motion(|x| x.run_function(output, &residuals));
+        self.check_columns("constraint_jacobian", "constraint_rates", &[DerivativeVariable::V]);
+        let along = self.function_along_motion(|x| x.run_function(output, &residuals));
         let holonomic = self.run_at_own_values("constraint_residuals").len();
         self.compare_with_derivative(
             "residuals",
@@ -28,7 +28,7 @@ impl Case<'_, '_> {
             &matrix_vector_product(&jacobian, &self.values.a),
             &self.run_at_own_values("constraint_bias"),
         );
-        let along = self.along_motion(|x| x.run_function(output, &rates));
+        let along = self.function_along_motion(|x| x.run_function(output, &rates));
         self.compare_with_derivative("rates of constraints", &change, &along);
         self.check_constrained_dynamics(&jacobian);
     }
@@ -95,7 +95,7 @@ impl Case<'_, '_> {
             );
             dot(&z, &change) + dot(&y, &x.run_function(output, &rates)) - dot(&lambda, &product_with_w(x))
         };
-        use By::{A, Q, V};
+        use DerivativeVariable::{A, Q, V};
         let (state, by_multipliers) = found.split_at(4 * nv * nv);
         let what = "curvature of constraints";
         self.compare_blocks(what, state, &[(Q, Q), (Q, V), (V, V), (Q, A)], &sum_of_all);
@@ -108,7 +108,7 @@ impl Case<'_, '_> {
         let Some(gaps) = self.find_function("contact_gaps").cloned() else { return };
         self.check_contact_derivatives();
         let output = self.output;
-        self.check_columns("contact_jacobian", "contact_rates", &[By::V]);
+        self.check_columns("contact_jacobian", "contact_rates", &[DerivativeVariable::V]);
         let rates = self.run_at_own_values("contact_rates");
         let (mut first, mut approach, mut of) = (0, Vec::new(), Vec::new());
         for (k, contact) in self.model.contacts.iter().enumerate() {
@@ -123,7 +123,7 @@ impl Case<'_, '_> {
         if self.name.contains(source::RIMS) {
             return;
         }
-        let along = self.along_motion(move |x| {
+        let along = self.function_along_motion(move |x| {
             let gaps = x.run_function(output, &gaps);
             of.iter().map(|k| gaps[*k]).collect()
         });
@@ -158,10 +158,12 @@ impl Case<'_, '_> {
         let (first, rest) = found.split_at(nv * nv);
         let (second, rest) = rest.split_at(nr * nv);
         let (third, rest) = rest.split_at(nr * nv);
-        self.compare_columns("forces at contacts", first, By::Q, &contact_joint_forces);
-        self.compare_columns("changes at contacts", second, By::Q, &contact_acceleration);
-        self.compare_columns("changes at contacts", third, By::V, &contact_acceleration);
-        self.compare_columns("rates at contacts", rest, By::Q, &|x| x.run_function(output, &rates));
+        self.compare_columns("forces at contacts", first, DerivativeVariable::Q, &contact_joint_forces);
+        self.compare_columns("changes at contacts", second, DerivativeVariable::Q, &contact_acceleration);
+        self.compare_columns("changes at contacts", third, DerivativeVariable::V, &contact_acceleration);
+        self.compare_columns("rates at contacts", rest, DerivativeVariable::Q, &|x| {
+            x.run_function(output, &rates)
+        });
     }
 
     /// Checks the derivatives of `M a + h − Jᵀ λ`, `J a + b` and the constraint rates.
@@ -201,10 +203,32 @@ impl Case<'_, '_> {
             rest = after;
             part
         };
-        self.compare_columns("forces with multipliers", part(nv * nv), By::Q, &residual_forces);
-        self.compare_columns("forces with multipliers", part(nv * nv), By::V, &residual_forces);
-        self.compare_columns("changes of rates", part(nc * nv), By::Q, &constraint_acceleration);
-        self.compare_columns("changes of rates", part(nc * nv), By::V, &constraint_acceleration);
-        self.compare_columns("rates", part(nc * nv), By::Q, &|x| x.run_function(output, &rates));
+        self.compare_columns(
+            "forces with multipliers",
+            part(nv * nv),
+            DerivativeVariable::Q,
+            &residual_forces,
+        );
+        self.compare_columns(
+            "forces with multipliers",
+            part(nv * nv),
+            DerivativeVariable::V,
+            &residual_forces,
+        );
+        self.compare_columns(
+            "changes of rates",
+            part(nc * nv),
+            DerivativeVariable::Q,
+            &constraint_acceleration,
+        );
+        self.compare_columns(
+            "changes of rates",
+            part(nc * nv),
+            DerivativeVariable::V,
+            &constraint_acceleration,
+        );
+        self.compare_columns("rates", part(nc * nv), DerivativeVariable::Q, &|x| {
+            x.run_function(output, &rates)
+        });
     }
 }

@@ -183,7 +183,7 @@ impl Source {
         self.random.index_below(one_in) == 0
     }
 
-    fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
+    fn random_choice<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.random.index_below(list.len())]
     }
 
@@ -207,26 +207,26 @@ impl Source {
         if is_particle {
             let _ = writeln!(self.fields, "#[particle(mass = {mass})] body{k}: Particle,");
         } else {
-            let com = self.one_of(&VECTORS);
-            let solid = self.one_of(&SOLIDS).replace('M', &mass);
+            let com = self.random_choice(&VECTORS);
+            let solid = self.random_choice(&SOLIDS).replace('M', &mass);
             let _ = writeln!(
                 self.fields,
                 "#[body(mass = {mass}, com = {com}, inertia = {solid})] body{k}: Body,"
             );
         }
         let (kind, arguments, coordinates) =
-            if is_particle { JOINTS[self.one_of(&OF_PARTICLES)] } else { self.one_of(&JOINTS) };
+            if is_particle { JOINTS[self.random_choice(&OF_PARTICLES)] } else { self.random_choice(&JOINTS) };
         let mut end = parent;
         if self.has_chance(2) {
-            let _ = write!(end, ".at({})", self.one_of(&VECTORS));
+            let _ = write!(end, ".at({})", self.random_choice(&VECTORS));
         }
         if self.has_chance(4) {
-            let (axis, angle) = (self.one_of(&["x", "y", "z"]), self.random_number());
+            let (axis, angle) = (self.random_choice(&["x", "y", "z"]), self.random_number());
             let _ = write!(end, ".rotated({axis}({angle}))");
         }
         let mut arguments = arguments.to_string();
         if arguments.ends_with("about") || arguments.ends_with("along") {
-            let _ = write!(arguments, " = {}", self.one_of(&UNITS));
+            let _ = write!(arguments, " = {}", self.random_choice(&UNITS));
         }
         let comma = if arguments.is_empty() { "" } else { ", " };
         let _ = writeln!(self.fields, "#[joint({end} -> body{k}{comma}{arguments})] joint{k}: {kind},");
@@ -246,7 +246,7 @@ impl Source {
             return self.particles[n].clone();
         }
         let body = self.bodies.get(n - particles).cloned().unwrap_or("ground".to_string());
-        format!("{body}.at({})", self.one_of(&VECTORS))
+        format!("{body}.at({})", self.random_choice(&VECTORS))
     }
 
     /// Returns a random scalar: a function of the state, time or an input, or a number.
@@ -286,7 +286,7 @@ impl Source {
                 'B' if is_letter => text += &same,
                 'P' if is_letter => text += &self.random_point(),
                 'V' if is_letter => {
-                    let form = self.one_of(&VECTOR_VALUES);
+                    let form = self.random_choice(&VECTOR_VALUES);
                     text += &self.fill_placeholders(form);
                 }
                 'A' if is_letter => text += &self.random_axes(),
@@ -302,7 +302,7 @@ impl Source {
         self.bodies.get(n).cloned().unwrap_or_else(|| "ground".to_string())
     }
 
-    /// Returns a random body, a frame or the ground.
+    /// Returns the name of a random body, of a frame or of the ground.
     fn random_axes(&mut self) -> String {
         let n = self.random.index_below(self.bodies.len() + self.frames.len() + 1);
         let named = self.bodies.iter().chain(&self.frames).nth(n);
@@ -310,7 +310,7 @@ impl Source {
     }
 
     fn random_value(&mut self) -> String {
-        let form = self.one_of(&VALUES);
+        let form = self.random_choice(&VALUES);
         self.fill_placeholders(form)
     }
 
@@ -321,7 +321,7 @@ impl Source {
         };
         let coordinate = random_element(self, |source| &source.coordinates);
         let body = random_element(self, |source| &source.bodies);
-        let (kind, law) = (self.random.index_below(32), self.one_of(&LAWS));
+        let (kind, law) = (self.random.index_below(32), self.random_choice(&LAWS));
         let field = match (kind, coordinate, body) {
             (0, Some(on), _) => format!("#[acts(on = {on}, stiffness = 2)] element{k}: Spring"),
             (1, Some(on), _) => {
@@ -337,13 +337,13 @@ impl Source {
                 )
             }
             (3, Some(on), _) => {
-                format!("#[acts(on = {on})] element{k}: {}", self.one_of(&["Force", "Torque"]))
+                format!("#[acts(on = {on})] element{k}: {}", self.random_choice(&["Force", "Torque"]))
             }
             (4, ..) => {
                 format!(
                     "#[acts(on = {}, along = {})] element{k}: Force",
                     self.random_point(),
-                    self.one_of(&UNITS)
+                    self.random_choice(&UNITS)
                 )
             }
             (5, ..) => format!(
@@ -355,7 +355,7 @@ impl Source {
             (7, ..) => format!("#[output(a({} / ground / ground))] output{k}: Vector", self.random_point()),
             (8, _, Some(body)) => format!("#[output({body}, resolved_in = ground)] output{k}: FreeBody"),
             (9, _, Some(body)) => {
-                let surfaces = self.one_of(&SURFACES).replace('H', &body);
+                let surfaces = self.random_choice(&SURFACES).replace('H', &body);
                 format!("#[contact({surfaces}, friction = 0.3)] contact{k}: Contact")
             }
             (10, Some(on), _) => format!("#[limit(on = {on}, from = -1, to = 1)] limit{k}: Limit"),
@@ -364,7 +364,7 @@ impl Source {
                 format!("#[constraint({})] constraint{k}: Holonomic", self.random_value())
             }
             (30 | 31, _, Some(body)) => {
-                let surfaces = self.one_of(&SURFACES).replace('H', &body);
+                let surfaces = self.random_choice(&SURFACES).replace('H', &body);
                 format!(
                     "#[contact({surfaces}, friction = 0.4, stiction = 0.6, restitution = 0.2)] contact{k}: \
                      Contact"
@@ -383,21 +383,21 @@ impl Source {
         let body = self.bodies.last().cloned().unwrap_or_else(|| "ground".to_string());
         match kind {
             13 | 14 => {
-                let form = self.one_of(&SCALAR_OUTPUTS);
+                let form = self.random_choice(&SCALAR_OUTPUTS);
                 format!("#[output({})] output{k}: Scalar", self.fill_placeholders(form))
             }
             15 | 16 => {
-                let form = self.one_of(&VECTOR_OUTPUTS);
+                let form = self.random_choice(&VECTOR_OUTPUTS);
                 let axes = self.random_axes();
                 format!("#[output({}, resolved_in = {axes})] output{k}: Vector", self.fill_placeholders(form))
             }
             17 => {
-                let form = self.one_of(&MATRIX_OUTPUTS);
+                let form = self.random_choice(&MATRIX_OUTPUTS);
                 format!("#[output({})] output{k}: Matrix", self.fill_placeholders(form))
             }
             18 => {
                 self.coordinates.push(format!("own{k}"));
-                let (point, along) = (self.one_of(&VECTORS), self.random_axes());
+                let (point, along) = (self.random_choice(&VECTORS), self.random_axes());
                 format!(
                     "own{k}: Coordinate,\n#[particle(mass = 0.7, at = {body}.at(own{k} * {along}.x + \
                      {point}))] bead{k}: Particle"
@@ -406,10 +406,10 @@ impl Source {
             19 => {
                 let (on, angle) = (self.random_axes(), self.random_scalar());
                 self.frames.push(format!("frame{k}"));
-                format!("#[frame({on}, {}({angle}))] frame{k}: Frame", self.one_of(&["x", "y", "z"]))
+                format!("#[frame({on}, {}({angle}))] frame{k}: Frame", self.random_choice(&["x", "y", "z"]))
             }
             20 => {
-                let at = self.one_of(&VECTORS);
+                let at = self.random_choice(&VECTORS);
                 self.points.push(format!("point{k}"));
                 format!("#[point(on = {body}, at = {at} + 0.3 * {coordinate} * y)] point{k}: Point")
             }
@@ -442,7 +442,7 @@ impl Source {
             27 => {
                 self.has_constraints = true;
                 let other = self.bodies.first().cloned().unwrap_or_else(|| "ground".to_string());
-                let kind = self.one_of(&[
+                let kind = self.random_choice(&[
                     "about = z)] loop{k}: Pin",
                     "along = x)] loop{k}: Sleeve",
                     "about = z, pitch = 0.4)] loop{k}: Screw",
@@ -455,7 +455,7 @@ impl Source {
                     ")] loop{k}: Weld",
                 ]);
                 let comma = if kind.starts_with('a') { ", " } else { "" };
-                let (here, there) = (self.one_of(&VECTORS), self.one_of(&VECTORS));
+                let (here, there) = (self.random_choice(&VECTORS), self.random_choice(&VECTORS));
                 format!(
                     "#[joint({other}.at({here}) -> {body}.at({there}){comma}{}",
                     kind.replace("{k}", &k.to_string())

@@ -19,14 +19,14 @@ pub struct Values {
     pub tau: Vec<f64>,
     pub u: Vec<f64>,
     pub parameters: Vec<f64>,
-    /// Values supplied by callers: constraint multipliers, factors and momenta.
+    /// Values that callers supply as arguments: constraint multipliers, factors and momenta.
     pub given: Vec<f64>,
     pub contact_forces: Vec<f64>,
 }
 
 /// Variables with respect to which a function is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum By {
+pub enum DerivativeVariable {
     Q,
     V,
     A,
@@ -75,7 +75,7 @@ impl Values {
     fn run_program(&self, output: &Output, function: &Function, lanes: bool) -> Vec<f64> {
         let called = Called::ALL.map(|called| {
             let of = output.functions.iter().find(|f| f.name == called.function_name());
-            of.map_or_else(Vec::new, |f| self.run_alone(&f.program))
+            of.map_or_else(Vec::new, |f| self.run_without_calls(&f.program))
         });
         let program = function.program.simd.as_deref().filter(|_| lanes).unwrap_or(&function.program);
         program.interpret_program(&|s| match Quantity::from_symbol(s) {
@@ -133,20 +133,20 @@ impl Values {
         }
     }
 
-    /// Returns the results of a program without calls.
-    fn run_alone(&self, program: &Program) -> Vec<f64> {
+    /// Returns the results of a program that calls no other function.
+    fn run_without_calls(&self, program: &Program) -> Vec<f64> {
         program.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &[]))
     }
 
     /// Returns the values with one entry changed by `h`. Configuration coordinates are not changed.
-    pub fn with_changed_entry(&self, by: By, k: usize, h: f64) -> Values {
+    pub fn with_changed_entry(&self, by: DerivativeVariable, k: usize, h: f64) -> Values {
         let mut values = self.clone();
         match by {
-            By::V => values.v[k] += h,
-            By::A => values.a[k] += h,
-            By::U => values.u[k] += h,
-            By::Parameters => values.parameters[k] += h,
-            By::Q => {}
+            DerivativeVariable::V => values.v[k] += h,
+            DerivativeVariable::A => values.a[k] += h,
+            DerivativeVariable::U => values.u[k] += h,
+            DerivativeVariable::Parameters => values.parameters[k] += h,
+            DerivativeVariable::Q => {}
         }
         values
     }
@@ -154,7 +154,7 @@ impl Values {
     /// Returns the values after a small displacement of the configuration.
     pub fn displaced_values(&self, charts: &[Chart], step: &[f64]) -> Values {
         let mut values = self.clone();
-        move_along(charts, &mut values.q, step);
+        move_along_manifold(charts, &mut values.q, step);
         values
     }
 
@@ -168,12 +168,12 @@ impl Values {
         values
     }
 
-    pub fn entry_count(&self, by: By) -> usize {
+    pub fn entry_count(&self, by: DerivativeVariable) -> usize {
         match by {
-            By::Q | By::V => self.v.len(),
-            By::A => self.a.len(),
-            By::U => self.u.len(),
-            By::Parameters => self.parameters.len(),
+            DerivativeVariable::Q | DerivativeVariable::V => self.v.len(),
+            DerivativeVariable::A => self.a.len(),
+            DerivativeVariable::U => self.u.len(),
+            DerivativeVariable::Parameters => self.parameters.len(),
         }
     }
 }
@@ -193,7 +193,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// Applies a small displacement, in the body axes for ball and free joints.
-fn move_along(charts: &[Chart], q: &mut [f64], step: &[f64]) {
+fn move_along_manifold(charts: &[Chart], q: &mut [f64], step: &[f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(first, velocity) => q[first.0] += step[velocity.0],

@@ -19,18 +19,18 @@ pub fn evaluate_text(text: &str, values: Values<'_>) -> f64 {
 }
 
 impl Reader<'_> {
-    pub fn take_text(&mut self, text: &str) -> bool {
+    pub fn accept_text(&mut self, text: &str) -> bool {
         let rest = self.rest.strip_prefix(text);
         self.rest = rest.unwrap_or(self.rest);
         rest.is_some()
     }
 
     pub fn parse_sum(&mut self) -> f64 {
-        let mut sum = if self.take_text("-") { -self.parse_product() } else { self.parse_product() };
+        let mut sum = if self.accept_text("-") { -self.parse_product() } else { self.parse_product() };
         loop {
-            if self.take_text(" + ") {
+            if self.accept_text(" + ") {
                 sum += self.parse_product();
-            } else if self.take_text(" - ") {
+            } else if self.accept_text(" - ") {
                 sum -= self.parse_product();
             } else {
                 return sum;
@@ -42,9 +42,9 @@ impl Reader<'_> {
         let mut product = self.parse_factor();
         loop {
             let goes_on = !self.rest.starts_with(" + ") && !self.rest.starts_with(" - ");
-            if self.take_text("/") {
+            if self.accept_text("/") {
                 product /= self.parse_factor();
-            } else if goes_on && self.take_text(" ") {
+            } else if goes_on && self.accept_text(" ") {
                 product *= self.parse_factor();
             } else {
                 return product;
@@ -53,9 +53,9 @@ impl Reader<'_> {
     }
 
     pub fn parse_factor(&mut self) -> f64 {
-        if self.take_text("(") {
+        if self.accept_text("(") {
             let sum = self.parse_sum();
-            assert!(self.take_text(")"), "{}", self.rest);
+            assert!(self.accept_text(")"), "{}", self.rest);
             return sum.powi(self.parse_power());
         }
         let is_name_character = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '\'');
@@ -64,9 +64,9 @@ impl Reader<'_> {
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
         let power = self.parse_power();
-        if self.take_text("(") {
+        if self.accept_text("(") {
             let argument = self.parse_sum();
-            assert!(self.take_text(")"), "{}", self.rest);
+            assert!(self.accept_text(")"), "{}", self.rest);
             let found = match word {
                 "sqrt" => argument.sqrt(),
                 "acos" => argument.acos(),
@@ -82,11 +82,11 @@ impl Reader<'_> {
 
     pub fn parse_power(&mut self) -> i32 {
         let powers = [("²", 2), ("³", 3), ("⁴", 4), ("⁵", 5), ("⁶", 6), ("⁷", 7)];
-        powers.into_iter().find(|(sign, _)| self.take_text(sign)).map_or(1, |(_, power)| power)
+        powers.into_iter().find(|(sign, _)| self.accept_text(sign)).map_or(1, |(_, power)| power)
     }
 }
 
-/// Equations and conditions of a printed text.
+/// Parsed text of printed linear equations and their conditions.
 #[derive(Default)]
 pub struct Text {
     equations: Vec<(String, String)>,
@@ -152,7 +152,7 @@ impl Text {
             .collect()
     }
 
-    /// Returns true for names of variables instead of parameters.
+    /// Returns true for names of variables, and false for names of parameters.
     pub fn is_moving(&self, word: &str) -> bool {
         [
             "lambda", "motor", "push", "thrust", "rail", "hinge", "shoulder", "elbow", "pose", "one", "two",
