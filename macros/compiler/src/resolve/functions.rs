@@ -21,7 +21,7 @@ impl<'g> Scope<'_, 'g> {
         if let Some(Callable::Elementary(f)) = callee.id {
             return self.resolve_elementary(f, callee, arguments, cx);
         }
-        if let Some(k) = self.tables.iter().position(|table| table.name.text == callee.text) {
+        if let Some(k) = self.description.tables.iter().position(|table| table.name.text == callee.text) {
             return self.resolve_table_lookup(k, callee, arguments, cx);
         }
         match callee.id {
@@ -189,7 +189,7 @@ impl<'g> Scope<'_, 'g> {
     /// Reports an unknown function, with the function that is most likely meant.
     fn report_function(&self, callee: &Callee, solid: Option<Solid>, cx: &mut Diagnostics) {
         let text = callee.text.as_str();
-        let own = self.tables.iter().map(|table| table.name.text.as_str());
+        let own = self.description.tables.iter().map(|table| table.name.text.as_str());
         let known = Function::ALL.iter().map(|(name, _)| *name).chain(FunctionId::names()).chain(own);
         let known: Vec<&str> = known.collect();
         let error = cx.report_error(callee.place.clone(), format!("unknown function `{text}`"));
@@ -215,7 +215,7 @@ impl<'g> Scope<'_, 'g> {
         arguments: &[syntax::Expr],
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let table = self.tables.get(k)?;
+        let table = self.description.tables.get(k)?;
         let (found, expected) = (arguments.len(), table.variables);
         if found != expected {
             let plural = if expected == 1 { "" } else { "s" };

@@ -183,7 +183,7 @@ fn unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut 
             .add_help("a joint connects bodies: `parent -> child`, with `ground` for the fixed reference");
         return;
     }
-    if scope.frames.contains(&name.text) {
+    if scope.description.frames.iter().any(|frame| frame.name.text == name.text) {
         cx.report_error(place, format!("`{}` is a frame, which has axes but no position", name.text))
             .add_help("join a body: `#[body(frame = …)]` makes one with the axes of a frame");
         return;
