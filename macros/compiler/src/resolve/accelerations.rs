@@ -140,8 +140,8 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Reports forces that are linear in accelerations in mechanisms with constraints or contacts. The constraint and
-/// contact forces are computed with a symmetric mass matrix.
+/// Reports forces that are linear in accelerations in mechanisms with constraints or contacts. The constraint
+/// and contact forces are computed with a symmetric mass matrix.
 pub fn check_acceleration_forces(model: &Model<'_>, cx: &mut Diagnostics) {
     let Some(force) = model.acceleration_forces.first() else { return };
     let found = match (model.constraints.is_empty(), model.contacts.is_empty()) {

@@ -1,7 +1,7 @@
 //! Assembly of the model: scope, tree, links, bodies and force elements.
 
 use super::accelerations::check_acceleration_forces;
-use super::builder::{Builder, Moving};
+use super::builder::{Builder, MotionKnown};
 use super::chain::check_joint;
 use super::closed_form::find_solved_loops;
 use super::drawing::draw_mechanism;
@@ -250,7 +250,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Adds all elements to the placed links.
-    fn add_elements(&mut self, closing: &[usize], moving: Moving, cx: &mut Diagnostics) {
+    fn add_elements(&mut self, closing: &[usize], moving: MotionKnown, cx: &mut Diagnostics) {
         self.add_drives(moving, cx);
         self.add_actions(moving, cx);
         self.model.limits = resolve_limits(&self.scope, &self.model, cx);

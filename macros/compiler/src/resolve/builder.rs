@@ -10,10 +10,8 @@ use crate::kinematics::{Partials, accelerations, joint_of_link, symbols_in, twis
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
 use crate::syntax::Name;
 
-/// Index into the list of bodies and jointed particles.
-pub type BodyIndex = usize;
-
-/// Builder of the model: places the elements of a description, and adds the parts that resolved elements return.
+/// Builder of the model: places the elements of a description, and adds the parts that resolved elements
+/// return.
 pub struct Builder<'a, 'g> {
     /// Scope for the resolution of names.
     pub scope: Scope<'a, 'g>,
@@ -40,7 +38,7 @@ pub struct Builder<'a, 'g> {
 /// Proof that the motion of all links is known, so that expressions with velocities can be read. Created only
 /// by [`Builder::compute_motion`].
 #[derive(Clone, Copy)]
-pub struct Moving(());
+pub struct MotionKnown(());
 
 impl<'g> Builder<'_, 'g> {
     /// Returns the loop that solves for a joint.
@@ -87,7 +85,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Computes twists and accelerations of the links, for expressions with velocities. Returns `None` if an
     /// element has not been placed.
-    pub fn compute_motion(&mut self) -> Option<Moving> {
+    pub fn compute_motion(&mut self) -> Option<MotionKnown> {
         let places = &self.scope.kinematics.places;
         if !self.jointed.iter().all(|name| places.contains_key(&name.text)) {
             return None;
@@ -99,6 +97,6 @@ impl<'g> Builder<'_, 'g> {
         let kinematics = &mut self.scope.kinematics;
         kinematics.twists = twists(&self.model, &kinematics.joints, &v);
         kinematics.accelerations = accelerations(&self.model, &kinematics.joints, &kinematics.twists, &v, &a);
-        Some(Moving(()))
+        Some(MotionKnown(()))
     }
 }

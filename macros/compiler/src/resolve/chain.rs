@@ -123,8 +123,8 @@ impl<'g> Builder<'_, 'g> {
         self.release_if_requested(number, link, pose)
     }
 
-    /// Returns the frame of a connection on its parent. If the connection is released, the frame is moved by the
-    /// six coordinates of the release.
+    /// Returns the frame of a connection on its parent. If the connection is released, the frame is moved by
+    /// the six coordinates of the release.
     fn release_if_requested(
         &mut self,
         number: usize,

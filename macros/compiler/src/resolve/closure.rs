@@ -9,8 +9,8 @@ use crate::kinematics::jet::{self, Jet, Moving, Relative};
 use crate::kinematics::{AXES, change_axes, normalised_or_zero, perpendicular_directions, time_derivative};
 use crate::mechanism::{Constraint, Measure, Model, Transmission};
 
-/// Returns the rows of a loop that is solved in closed form. Its Pin keeps both ends together in the plane of the
-/// loop.
+/// Returns the rows of a loop that is solved in closed form. Its Pin keeps both ends together in the plane of
+/// the loop.
 pub fn planar_loop_rows<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
@@ -95,7 +95,8 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         jet::motion_of_direction(joints, &self.on_child, self.child.pose.rotation.to_parent(v))
     }
 
-    /// Returns rows that keep the origin of the child's joint frame in the directions in which the joint slides.
+    /// Returns rows that keep the origin of the child's joint frame in the directions in which the joint
+    /// slides.
     fn translation_rows(&self, motions: &[Elementary<'g>]) -> Vec<Constraint<'g>> {
         let (g, joints) = (self.scope.graph, &self.scope.kinematics.joints);
         let slides: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::translation_axis).collect();
@@ -126,8 +127,8 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         rows
     }
 
-    /// Returns the row of a screw joint that couples the child's advance along the axis to its rotation. `gap`
-    /// leads from the parent's joint frame to the child's.
+    /// Returns the row of a screw joint that couples the child's advance along the axis to its rotation.
+    /// `gap` leads from the parent's joint frame to the child's.
     fn advance_row(&self, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) -> Constraint<'g> {
         let n = self.parent_direction(axis).value;
         let [(_, first), (_, second)] = perpendicular_directions(axis);
@@ -193,8 +194,8 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         rows.into_iter().map(row_of_directions).collect()
     }
 
-    /// Returns a row of the joint. Its multiplier is a force (of a length) or a torque (of an angle) on the child
-    /// along `direction`, in the axes of the link that carries both ends.
+    /// Returns a row of the joint. Its multiplier is a force (of a length) or a torque (of an angle) on the
+    /// child along `direction`, in the axes of the link that carries both ends.
     fn row(&self, word: &str, jet: Jet<'g>, (measure, direction): (Measure, Vec3<'g>)) -> Constraint<'g> {
         let joint = &self.scope.description.joints[self.j].name;
         let Jet { value, rate, second } = jet;

@@ -8,15 +8,12 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::language::{Callable, Method, Solid};
-use crate::mechanism::drawing::{entries_by_row, entries_of_vectors};
-use crate::mechanism::{Input, LinkId, Model, NamedFrame, Piece, PieceKind, Pose, Quantity, Role};
+use crate::mechanism::drawing::{Anchor, anchor_of_pose, entries_by_row, entries_of_vectors};
+use crate::mechanism::{Input, LinkId, Model, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
     self, Action, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
 };
 use std::collections::BTreeSet;
-
-/// A pose relative to a frame: the index of the frame (`None` for the ground), and the pose in it.
-pub type Anchor<'g> = (Option<usize>, Pose<'g>);
 
 /// Returns the pieces of the drawing, and the heights of terrains. `model` is complete but for the drawing.
 pub fn draw_mechanism<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
@@ -31,19 +28,6 @@ pub fn draw_mechanism<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> (Vec<Piec
     };
     pieces.retain(|piece| is_fixed(&piece.numbers));
     (pieces, heights)
-}
-
-/// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
-pub fn anchor_of_pose<'g>(
-    frames: &[NamedFrame<'g>],
-    link: Option<LinkId>,
-    pose: &Pose<'g>,
-) -> Option<Anchor<'g>> {
-    if link.is_none() {
-        return Some((None, pose.clone()));
-    }
-    let index = frames.iter().position(|frame| frame.link == link)?;
-    Some((Some(index), frames[index].pose.inverse().compose_with(pose)))
 }
 
 /// Elements that are drawn, and the frames in which they are drawn.

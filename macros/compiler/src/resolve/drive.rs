@@ -3,7 +3,7 @@
 
 use super::element_forces::Forces;
 use super::forces::{
-    Law, dry_friction, inertance_force, input_load, report_unused_input, spring_law, value_load,
+    SpringLaw, dry_friction, inertance_force, input_load, report_unused_input, spring_law, value_load,
 };
 use super::scope::{Allowed, Context, Scope};
 use super::terms::{Stretch, coordinate_stretch, stretch_of};
@@ -31,8 +31,8 @@ pub fn weighted_coordinates(scope: &Scope<'_, '_>, drive: &Drive, cx: &mut Diagn
     terms
 }
 
-/// Returns the quantities of an element to which expressions of the file refer. `input` is the index in `u` of
-/// an element that is an input.
+/// Returns the quantities of an element to which expressions of the file refer. `input` is the index in `u`
+/// of an element that is an input.
 pub fn drive_quantities<'g>(
     scope: &Scope<'_, 'g>,
     drive: &Drive,
@@ -102,7 +102,7 @@ pub fn drive_forces<'g>(
     let number_expression = |value| Expr::number_at(value, place);
     match drive.law {
         DriveLaw::Spring { stiffness, free } => {
-            spring_law(scope, stretch, &Law::Linear(&number_expression(stiffness)), g.num(free), cx)
+            spring_law(scope, stretch, &SpringLaw::Linear(&number_expression(stiffness)), g.num(free), cx)
         }
         DriveLaw::Slack { stiffness, range: [low, high] } => {
             let short = (stretch.value - g.num(low)).minimum_or_maximum(Extreme::Min, g.zero());

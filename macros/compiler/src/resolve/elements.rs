@@ -78,7 +78,8 @@ impl<'g> Scope<'_, 'g> {
         self.placeable_names().any(|known| known == name)
     }
 
-    /// Whether an element is a body, or a particle without a position of its own, which can be the child of a joint.
+    /// Whether an element is a body, or a particle without a position of its own, which can be the child of a
+    /// joint.
     pub fn is_jointed(&self, name: &str) -> bool {
         let d = self.description;
         let unplaced = d.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);

@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-10;
 
 /// Force and torque about the centre of mass of the body, in the axes of one link.
 #[derive(Clone, Copy)]
-struct Wrench<'g> {
+struct ActionWrench<'g> {
     force: Vec3<'g>,
     torque: Vec3<'g>,
 }
@@ -48,7 +48,7 @@ struct FreedBody<'s, 'a, 'g> {
 }
 
 /// An action: name, origin, point of action, and wrench.
-type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
+type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, ActionWrench<'g>);
 
 /// Returns the generalized forces of an element on the coordinates of released joints.
 pub fn forces_on_released<'g>(
@@ -229,13 +229,13 @@ impl<'g> FreedBody<'_, '_, 'g> {
             return None;
         }
         let force = self.scope.kinematics.resolve(&vec![(None, weight)], self.axes.0, zero);
-        Some(("gravity".to_string(), Origin::Gravity, None, Wrench { force, torque: zero }))
+        Some(("gravity".to_string(), Origin::Gravity, None, ActionWrench { force, torque: zero }))
     }
 
     /// Returns the wrench on the body from generalized forces on the coordinates of released joints.
-    fn wrench_on_body(&self, forces: &[Expr<'g>]) -> Wrench<'g> {
+    fn wrench_on_body(&self, forces: &[Expr<'g>]) -> ActionWrench<'g> {
         let zero = Vec3::zero(self.scope.graph);
-        let mut sum = Wrench { force: zero, torque: zero };
+        let mut sum = ActionWrench { force: zero, torque: zero };
         for (index, holds) in &self.joints {
             let reaction_vector = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * index + k + i]));
             let Some(w) = self.joint_wrench(*index, reaction_vector(0), reaction_vector(3)) else {
@@ -250,10 +250,10 @@ impl<'g> FreedBody<'_, '_, 'g> {
 
     /// Returns the wrench about the centre of mass of a force and a torque at a released joint, given in the
     /// frame of the joint.
-    fn joint_wrench(&self, index: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<Wrench<'g>> {
+    fn joint_wrench(&self, index: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<ActionWrench<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         if force.is_zero() && torque.is_zero() {
-            return Some(Wrench { force: zero, torque: zero });
+            return Some(ActionWrench { force: zero, torque: zero });
         }
         let frame = self.release.frames.get(self.release.joints.get(index)?)?;
         let in_result_axes = |v: Vec3<'g>| {
@@ -262,7 +262,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
         };
         let (force, torque) = (in_result_axes(force), in_result_axes(torque));
         let arm = self.arm_from_center(&self.position_of(frame));
-        Some(Wrench { force, torque: torque + arm.cross(force) })
+        Some(ActionWrench { force, torque: torque + arm.cross(force) })
     }
 
     fn elements_on(&self) -> Vec<DiagramAction<'g>> {
@@ -278,7 +278,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
             let place = self.place_of_element(name);
             let wrench = match &place {
                 // A force through its point of action has no torque about that point.
-                Some(_) => Wrench { torque: Vec3::zero(self.scope.graph), ..wrench },
+                Some(_) => ActionWrench { torque: Vec3::zero(self.scope.graph), ..wrench },
                 None => wrench,
             };
             all.push((name.clone(), origin, place, wrench));
@@ -327,7 +327,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
                 let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
                 self.scope.kinematics.resolve(&terms, self.axes.0, Vec3::zero(g))
             };
-            let wrench = Wrench { force: reaction_part(0), torque: reaction_part(3) };
+            let wrench = ActionWrench { force: reaction_part(0), torque: reaction_part(3) };
             all.push((name, origin, Some(self.position_of(frame)), wrench));
         }
         all
@@ -370,7 +370,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
             }
             let place = self.release.contact_points.get(&name).cloned();
             let wrench = match &place {
-                Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
+                Some(_) => ActionWrench { torque: Vec3::zero(g), ..wrench },
                 None => wrench,
             };
             Some((name, Origin::Constraint, place, wrench))
@@ -398,7 +398,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
             if self.is_nonzero(&wrench, &forces) {
                 let place = self.release.contact_points.get(&contact.name).cloned();
                 let wrench = match &place {
-                    Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
+                    Some(_) => ActionWrench { torque: Vec3::zero(g), ..wrench },
                     None => wrench,
                 };
                 all.push((contact.name.clone(), Origin::Contact, place, wrench));
@@ -419,15 +419,15 @@ impl<'g> FreedBody<'_, '_, 'g> {
     }
 
     /// Returns the wrench about another point of the self.
-    fn wrench_about(&self, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
+    fn wrench_about(&self, place: Option<&Terms<'g>>, w: ActionWrench<'g>) -> ActionWrench<'g> {
         let Some(place) = place else { return w };
         let arm = self.arm_from_center(place);
-        Wrench { torque: w.torque - arm.cross(w.force), ..w }
+        ActionWrench { torque: w.torque - arm.cross(w.force), ..w }
     }
 
     /// Whether a sum of forces on several joints is nonzero. Forces between two bodies that the same joint
     /// carries cancel up to rounding.
-    fn is_nonzero(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
+    fn is_nonzero(&self, wrench: &ActionWrench<'g>, forces: &[Expr<'g>]) -> bool {
         let all = self.scope.with_released_at_zero(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {
             return false;

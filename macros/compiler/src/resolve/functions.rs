@@ -2,7 +2,7 @@
 
 use super::call::Call;
 use super::corrections::{DOMAIN_HELP, check_angle, degrees_to_radians};
-use super::momenta::Sum;
+use super::momenta::SummedQuantity;
 use super::scope::{Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
@@ -91,9 +91,9 @@ impl<'g> Scope<'_, 'g> {
             F::ReactionTorque => self.resolve_reaction(call, 3, cx),
             F::ContactForce => self.contact_force(call, cx),
             F::ContactMoment => self.contact_moment(call, cx),
-            F::Momentum => self.resolve_momentum(call, Sum::Momentum, cx),
-            F::AngularMomentum => self.resolve_momentum(call, Sum::AngularMomentum, cx),
-            F::KineticEnergy => self.resolve_momentum(call, Sum::Energy, cx),
+            F::Momentum => self.resolve_momentum(call, SummedQuantity::Momentum, cx),
+            F::AngularMomentum => self.resolve_momentum(call, SummedQuantity::AngularMomentum, cx),
+            F::KineticEnergy => self.resolve_momentum(call, SummedQuantity::Energy, cx),
             F::MomentOfInertia => self.moment_of_inertia(call, cx),
             F::CenterOfMass => self.center_of_mass(call, cx),
             F::CenterOfPercussion => self.center_of_percussion(call, cx),

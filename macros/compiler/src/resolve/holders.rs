@@ -24,8 +24,8 @@ pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
     joints.chain(bodies).chain(d.particles.iter().map(|particle| &particle.name)).nth(number)
 }
 
-/// Placement of a body or a particle by a moving `at` or `frame`: index among the releasable connections, and the
-/// link that carries the body.
+/// Placement of a body or a particle by a moving `at` or `frame`: index among the releasable connections, and
+/// the link that carries the body.
 pub type MovingPlacement = (usize, Option<LinkId>);
 
 /// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism

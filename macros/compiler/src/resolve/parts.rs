@@ -1,6 +1,6 @@
 //! Additions to the model: the parts that resolved elements return.
 
-use super::builder::{Builder, Moving};
+use super::builder::{Builder, MotionKnown};
 use super::chain::check_joint;
 use super::closed_form::solved_sides;
 use super::closure::{loop_rows, planar_loop_rows};
@@ -31,11 +31,11 @@ use std::rc::Rc;
 const MAX_CONSTRAINTS: usize = 256;
 
 /// Proof that the joints for which loops are solved are recorded. Created only by [`Builder::add_solved`].
-pub struct Solved(());
+pub struct LoopsSolved(());
 
 /// Proof that all constraints have been added. Created only by [`Builder::add_constraints`].
 #[derive(Clone, Copy)]
-pub struct Constrained(());
+pub struct ConstraintsKnown(());
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
@@ -74,7 +74,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds all force elements and inputs of a file.
-    pub fn add_drives(&mut self, _: Moving, cx: &mut Diagnostics) {
+    pub fn add_drives(&mut self, _: MotionKnown, cx: &mut Diagnostics) {
         for drive in &self.scope.description.drives {
             let terms = weighted_coordinates(&self.scope, drive, cx);
             let on = (self.model.inputs.len(), terms.as_slice());
@@ -92,7 +92,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds the forces of all force elements and inputs to the model.
-    pub fn add_actions(&mut self, _: Moving, cx: &mut Diagnostics) {
+    pub fn add_actions(&mut self, _: MotionKnown, cx: &mut Diagnostics) {
         // Inputs without an element of their own appear in expressions. The others are filled in by their
         // elements.
         for input in &self.scope.description.inputs {
@@ -132,18 +132,18 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Records the joints for which loops are solved in closed form, with their axes.
-    pub fn add_solved(&mut self, cx: &mut Diagnostics) -> Solved {
+    pub fn add_solved(&mut self, cx: &mut Diagnostics) -> LoopsSolved {
         self.model.solved = solved_sides(&self.scope, &self.solved_loops, cx);
-        Solved(())
+        LoopsSolved(())
     }
 
     /// Adds all constraints: first those of loop-closing joints, then the declared ones.
     pub fn add_constraints(
         &mut self,
         closing: &[usize],
-        _: (Moving, Solved),
+        _: (MotionKnown, LoopsSolved),
         cx: &mut Diagnostics,
-    ) -> Constrained {
+    ) -> ConstraintsKnown {
         let d = self.scope.description;
         let ground_axes = Rotation::identity(self.scope.graph);
         if !cx.is_empty() {
@@ -154,7 +154,7 @@ impl<'g> Builder<'_, 'g> {
             for constraint in &d.constraints {
                 check_constraint(&self.scope, &self.model, constraint, cx);
             }
-            return Constrained(());
+            return ConstraintsKnown(());
         }
         let solved: Vec<usize> = self.solved_loops.iter().map(|e| e.closing).collect();
         for j in closing.iter().filter(|j| !solved.contains(j)) {
@@ -170,7 +170,7 @@ impl<'g> Builder<'_, 'g> {
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
         self.model.freedom = Freedom { coordinates: self.model.nv(), velocities: self.model.nv() };
         if !self.check_number_of_constraints(cx) {
-            return Constrained(());
+            return ConstraintsKnown(());
         }
         for j in &solved {
             self.record_transmission(*j, None, &ground_axes);
@@ -187,10 +187,11 @@ impl<'g> Builder<'_, 'g> {
             check_mobility(&mut self.model, &d.formulation, &mut found);
             self.mobility = found;
         }
-        Constrained(())
+        ConstraintsKnown(())
     }
 
-    /// Reports independent speeds without constraints, and too many constraints. Returns false for the latter.
+    /// Reports independent speeds without constraints, and too many constraints. Returns false for the
+    /// latter.
     fn check_number_of_constraints(&self, cx: &mut Diagnostics) -> bool {
         let d = self.scope.description;
         let count = self.model.constraints.len();
@@ -229,7 +230,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds all contacts to the model: declared contacts in their order, then the stops of limits.
-    pub fn add_contacts(&mut self, _: Moving, cx: &mut Diagnostics) {
+    pub fn add_contacts(&mut self, _: MotionKnown, cx: &mut Diagnostics) {
         let d = self.scope.description;
         for contact in &d.contacts {
             let Some(parts) = resolve_contact(&self.scope, &self.model, contact, cx) else { continue };
@@ -258,7 +259,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds potential energies and dissipation functions given as expressions, followed by the outputs.
-    pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
+    pub fn add_expressions(&mut self, _: ConstraintsKnown, cx: &mut Diagnostics) {
         let d = self.scope.description;
         for (name, e) in &d.energies {
             let forces = resolve_energy(&self.scope, e, cx);
@@ -282,7 +283,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds the declared generalized speeds, and replaces the velocities that they contain.
-    pub fn add_speeds(&mut self, _: Constrained, cx: &mut Diagnostics) {
+    pub fn add_speeds(&mut self, _: ConstraintsKnown, cx: &mut Diagnostics) {
         if self.scope.description.speeds.is_empty() || self.release.is_some() || !cx.is_empty() {
             return;
         }

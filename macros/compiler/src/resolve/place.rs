@@ -7,7 +7,7 @@ use super::carriers::uses_axes;
 use super::chain::check_joint;
 use super::holders;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
-use super::tree::Order;
+use super::tree::PlacementOrder;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Rotation, Vec3};
 use crate::language::{Callable, Method};
@@ -16,8 +16,8 @@ use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
 /// Element that is to be placed, by its index in its list.
 #[derive(Clone, Copy)]
-enum Item {
-    /// Joint, by its index in the [`Order`].
+enum UnplacedElement {
+    /// Joint, by its index in the [`PlacementOrder`].
     Joint(usize),
     Frame(usize),
     Point(usize),
@@ -28,7 +28,7 @@ enum Item {
 impl<'a, 'g> Builder<'a, 'g> {
     /// Places all elements. An element waits until the elements on which it depends are placed; if no
     /// progress is possible, definitions are circular.
-    pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
+    pub fn place_all(&mut self, order: &PlacementOrder, cx: &mut Diagnostics) {
         let d = self.scope.description;
         for (j, child) in &order.joints {
             if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
@@ -38,12 +38,14 @@ impl<'a, 'g> Builder<'a, 'g> {
                     .add_help("a body is placed by a joint, or by `at` and `frame`");
             }
         }
-        let mut waiting: Vec<Item> = (0..order.joints.len()).map(Item::Joint).collect();
-        waiting.extend((0..d.frames.len()).map(Item::Frame));
-        waiting.extend((0..d.points.len()).map(Item::Point));
+        let mut waiting: Vec<UnplacedElement> = (0..order.joints.len()).map(UnplacedElement::Joint).collect();
+        waiting.extend((0..d.frames.len()).map(UnplacedElement::Frame));
+        waiting.extend((0..d.points.len()).map(UnplacedElement::Point));
         let placed_body = |k: &usize| d.bodies[*k].at.is_some() || d.bodies[*k].frame.is_some();
-        waiting.extend((0..d.bodies.len()).filter(placed_body).map(Item::Body));
-        waiting.extend((0..d.particles.len()).filter(|k| d.particles[*k].at.is_some()).map(Item::Particle));
+        waiting.extend((0..d.bodies.len()).filter(placed_body).map(UnplacedElement::Body));
+        waiting.extend(
+            (0..d.particles.len()).filter(|k| d.particles[*k].at.is_some()).map(UnplacedElement::Particle),
+        );
         while !waiting.is_empty() {
             let before = waiting.len();
             let mut rest = Vec::new();
@@ -64,59 +66,59 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the names on which the placement of an element depends.
-    fn placement_dependencies(&self, item: Item, order: &Order) -> Vec<String> {
+    fn placement_dependencies(&self, item: UnplacedElement, order: &PlacementOrder) -> Vec<String> {
         let d = self.scope.description;
         let mut names = Vec::new();
         let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
         match item {
-            Item::Joint(k) => {
+            UnplacedElement::Joint(k) => {
                 let j = order.joints[k].0;
                 // A joint that is solved for needs the other side of its loop as well.
                 let sides = self.solving_loop(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
                 names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
             }
-            Item::Frame(k) => {
+            UnplacedElement::Frame(k) => {
                 let f = &d.frames[k];
                 collect_names(&f.start, &mut names);
                 f.rotations.iter().for_each(|e| collect_names(e, &mut names));
             }
-            Item::Point(k) => {
+            UnplacedElement::Point(k) => {
                 expression(&d.points[k].on);
                 expression(&d.points[k].at);
             }
-            Item::Body(k) => {
+            UnplacedElement::Body(k) => {
                 expression(&d.bodies[k].at);
                 expression(&d.bodies[k].frame);
             }
-            Item::Particle(k) => expression(&d.particles[k].at),
+            UnplacedElement::Particle(k) => expression(&d.particles[k].at),
         }
         names
     }
 
-    fn is_ready(&self, item: Item, order: &Order) -> bool {
+    fn is_ready(&self, item: UnplacedElement, order: &PlacementOrder) -> bool {
         let kinematics = &self.scope.kinematics;
         self.placement_dependencies(item, order)
             .iter()
             .all(|name| !self.scope.is_placeable(name) || kinematics.places.contains_key(name))
     }
 
-    fn item_name(&self, item: Item, order: &Order) -> &'a Name {
+    fn item_name(&self, item: UnplacedElement, order: &PlacementOrder) -> &'a Name {
         let d = self.scope.description;
         match item {
-            Item::Joint(k) => &d.joints[order.joints[k].0].name,
-            Item::Frame(k) => &d.frames[k].name,
-            Item::Point(k) => &d.points[k].name,
-            Item::Body(k) => &d.bodies[k].name,
-            Item::Particle(k) => &d.particles[k].name,
+            UnplacedElement::Joint(k) => &d.joints[order.joints[k].0].name,
+            UnplacedElement::Frame(k) => &d.frames[k].name,
+            UnplacedElement::Point(k) => &d.points[k].name,
+            UnplacedElement::Body(k) => &d.bodies[k].name,
+            UnplacedElement::Particle(k) => &d.particles[k].name,
         }
     }
 
-    fn report_waiting(&self, waiting: &[Item], order: &Order, cx: &mut Diagnostics) {
+    fn report_waiting(&self, waiting: &[UnplacedElement], order: &PlacementOrder, cx: &mut Diagnostics) {
         // After another error, elements may wait for one that failed, which has been reported. Joints are
         // still resolved, to report their own errors at once.
         if !cx.is_empty() {
             for item in waiting {
-                if let Item::Joint(k) = item {
+                if let UnplacedElement::Joint(k) = item {
                     check_joint(&self.scope, &self.scope.description.joints[order.joints[*k].0], cx);
                 }
             }
@@ -150,42 +152,44 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the name of the element that an item places.
-    fn placed_name(&self, item: Item, order: &Order) -> String {
+    fn placed_name(&self, item: UnplacedElement, order: &PlacementOrder) -> String {
         match item {
-            Item::Joint(k) => self.scope.description.joints[order.joints[k].0].child.body.text.clone(),
+            UnplacedElement::Joint(k) => {
+                self.scope.description.joints[order.joints[k].0].child.body.text.clone()
+            }
             _ => self.item_name(item, order).text.clone(),
         }
     }
 
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
-    fn place_substitutes(&mut self, waiting: &[Item], order: &Order) {
+    fn place_substitutes(&mut self, waiting: &[UnplacedElement], order: &PlacementOrder) {
         for item in waiting {
             let name = self.placed_name(*item, order);
             let (link, pose) = self.link_if_moving(None, self.scope.substitute_pose(true));
             let kind = match item {
-                Item::Joint(_) | Item::Body(_) => PlacedKind::Body,
-                Item::Frame(_) => PlacedKind::Frame,
-                Item::Point(_) | Item::Particle(_) => PlacedKind::Point,
+                UnplacedElement::Joint(_) | UnplacedElement::Body(_) => PlacedKind::Body,
+                UnplacedElement::Frame(_) => PlacedKind::Frame,
+                UnplacedElement::Point(_) | UnplacedElement::Particle(_) => PlacedKind::Point,
             };
             self.register_placement(&name, link, pose, kind);
         }
     }
 
-    fn place_item(&mut self, item: Item, order: &Order, cx: &mut Diagnostics) {
+    fn place_item(&mut self, item: UnplacedElement, order: &PlacementOrder, cx: &mut Diagnostics) {
         let d = self.scope.description;
         match item {
-            Item::Joint(k) => {
+            UnplacedElement::Joint(k) => {
                 let (j, child) = order.joints[k];
                 self.place_joint(j, child, cx);
             }
-            Item::Frame(k) => {
+            UnplacedElement::Frame(k) => {
                 let (link, pose) =
                     self.frame_place(k, cx).unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
                 let (start, (link, pose)) = (link, self.link_if_moving(link, pose));
                 self.frame_links.extend(link.filter(|_| link != start));
                 self.register_placement(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
             }
-            Item::Point(k) => {
+            UnplacedElement::Point(k) => {
                 let p = &d.points[k];
                 let frame = match &p.on {
                     Some(on) => self.scope.resolve_placement(on, cx),
@@ -199,8 +203,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 let (link, pose) = self.link_if_moving(link, pose);
                 self.register_placement(&p.name.text, link, pose, PlacedKind::Point);
             }
-            Item::Body(k) => self.place_body(k, cx),
-            Item::Particle(k) => {
+            UnplacedElement::Body(k) => self.place_body(k, cx),
+            UnplacedElement::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
                 let free = !uses_axes(d, &p.name.text);

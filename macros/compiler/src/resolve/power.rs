@@ -25,8 +25,8 @@ pub fn is_power_used(d: &Description, element: &Name) -> bool {
         || d.definitions.iter().any(|d| mentions_power_of_element(&d.value))
 }
 
-/// Returns the power of slipping contacts, by their names: that of their friction, which follows from the normal
-/// force.
+/// Returns the power of slipping contacts, by their names: that of their friction, which follows from the
+/// normal force.
 pub fn slipping_powers<'g>(model: &Model<'g>) -> Vec<(String, ElementPower<'g>)> {
     let g = model.graph;
     let slipping =

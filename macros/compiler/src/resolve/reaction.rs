@@ -43,8 +43,8 @@ pub struct Release<'a, 'g> {
     pub joints: &'a [usize],
     /// Constraints that the mechanism with released joints keeps.
     pub retained: &'a [Constraint<'g>],
-    /// Frame of each released joint on its parent before the release, by index of the joint. Bodies placed by `at`
-    /// and `frame` have their own frame in this map.
+    /// Frame of each released joint on its parent before the release, by index of the joint. Bodies placed by
+    /// `at` and `frame` have their own frame in this map.
     pub frames: BTreeMap<usize, Placed<'g>>,
     /// Name and generalized forces on the coordinates of released joints, for each force element, energy and
     /// dissipation.

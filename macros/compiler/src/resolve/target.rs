@@ -8,7 +8,7 @@ use crate::mechanism::Coordinate;
 use crate::syntax::{Expr, ExprKind, GROUND, Name};
 
 /// Target on which a force element acts.
-pub enum Target<'g> {
+pub enum ResolvedTarget<'g> {
     /// Coordinate. The flag is true for an angle, `None` if it may be an angle or a length.
     Coordinate(Coordinate, Option<bool>),
     /// Point of a body, a particle, or a named point.
@@ -33,8 +33,8 @@ pub fn resolve_limited_coordinate<'g>(
         return None;
     }
     match resolve_target(scope, on, cx)? {
-        Target::Coordinate(coordinate, angle) => Some((coordinate, angle)),
-        Target::Point(_) | Target::Expression(_) => {
+        ResolvedTarget::Coordinate(coordinate, angle) => Some((coordinate, angle)),
+        ResolvedTarget::Point(_) | ResolvedTarget::Expression(_) => {
             cx.report_error(
                 on.place.clone(),
                 "a Limit applies to the coordinate of a joint, but this is a point",
@@ -46,7 +46,11 @@ pub fn resolve_limited_coordinate<'g>(
 }
 
 /// Resolves a target written as `joint`, `joint.coordinate`, `body` or `body.at(vector)`.
-pub fn resolve_target<'g>(scope: &Scope<'_, 'g>, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
+pub fn resolve_target<'g>(
+    scope: &Scope<'_, 'g>,
+    on: &Expr,
+    cx: &mut Diagnostics,
+) -> Option<ResolvedTarget<'g>> {
     match &on.kind {
         ExprKind::Name(name) => named_target(scope, on, name, cx),
         ExprKind::Field(joint, coordinate) => coordinate_of_joint(scope, on, joint, coordinate, cx),
@@ -61,10 +65,10 @@ pub fn resolve_target<'g>(scope: &Scope<'_, 'g>, on: &Expr, cx: &mut Diagnostics
                 report_target(scope, name, &inner.place, cx);
                 return None;
             }
-            scope.current_place(on, cx).map(Target::Point)
+            scope.current_place(on, cx).map(ResolvedTarget::Point)
         }
         ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
-            expression_stretch(scope, on, cx).map(Target::Expression)
+            expression_stretch(scope, on, cx).map(ResolvedTarget::Expression)
         }
         _ => {
             cx.report_error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
@@ -80,15 +84,15 @@ fn named_target<'g>(
     on: &Expr,
     name: &str,
     cx: &mut Diagnostics,
-) -> Option<Target<'g>> {
+) -> Option<ResolvedTarget<'g>> {
     if scope.description.coordinates.iter().any(|c| c.name.text == name) {
         let kinematics = &scope.kinematics;
         let found = kinematics.coordinates.iter().find(|(known, ..)| known == name);
-        return found.map(|(_, c, _)| Target::Coordinate(*c, None));
+        return found.map(|(_, c, _)| ResolvedTarget::Coordinate(*c, None));
     }
     if let Some(joint) = scope.joint_coordinates(name) {
         if let [(_, c, angle)] = joint {
-            return Some(Target::Coordinate(*c, Some(*angle)));
+            return Some(ResolvedTarget::Coordinate(*c, Some(*angle)));
         }
         let list: Vec<String> = joint.iter().map(|(n, ..)| format!("`on = {n}`")).collect();
         if list.is_empty() {
@@ -101,16 +105,16 @@ fn named_target<'g>(
         return None;
     }
     if let Some(c) = free_coordinate(scope, name) {
-        return Some(Target::Coordinate(c, None));
+        return Some(ResolvedTarget::Coordinate(c, None));
     }
     if scope.description.definitions.iter().any(|definition| definition.name.text == name) {
-        return expression_stretch(scope, on, cx).map(Target::Expression);
+        return expression_stretch(scope, on, cx).map(ResolvedTarget::Expression);
     }
     if !scope.is_placeable(name) {
         report_target(scope, name, &on.place, cx);
         return None;
     }
-    scope.resolve_placement(on, cx).map(Target::Point)
+    scope.resolve_placement(on, cx).map(ResolvedTarget::Point)
 }
 
 /// Resolves a target written as `joint.coordinate`.
@@ -120,7 +124,7 @@ fn coordinate_of_joint<'g>(
     inner: &Expr,
     member: &Name,
     cx: &mut Diagnostics,
-) -> Option<Target<'g>> {
+) -> Option<ResolvedTarget<'g>> {
     let ExprKind::Name(joint) = &inner.kind else {
         cx.report_error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
         return None;
@@ -143,7 +147,7 @@ fn coordinate_of_joint<'g>(
     };
     let full = format!("{joint}.{}", member.text);
     if let Some((_, c, angle)) = coordinates.iter().find(|(n, ..)| *n == full) {
-        return Some(Target::Coordinate(*c, Some(*angle)));
+        return Some(ResolvedTarget::Coordinate(*c, Some(*angle)));
     }
     let own: Vec<&str> = coordinates.iter().map(|(n, ..)| n.as_str()).collect();
     cx.report_error(member.place.clone(), format!("`{joint}` has no coordinate `{}` to act on", member.text))

@@ -33,6 +33,13 @@ pub struct ActedOn<'g> {
     pub coordinate: Option<Coordinate>,
 }
 
+impl<'g> ActedOn<'g> {
+    /// Returns the value and the rate of the length or the angle.
+    pub fn stretch(self, scope: &Scope<'_, 'g>) -> Option<Stretch<'g>> {
+        self.stretch.or_else(|| self.coordinate.map(|c| coordinate_stretch(scope, &c)))
+    }
+}
+
 /// Resolves a potential energy given as an expression.
 pub fn resolve_energy<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Forces<'g> {
     let context = Context::new(Allowed::Placement, Some((None, Pose::identity(scope.graph))));

@@ -14,8 +14,8 @@
 //! duplicate is the size of the boxes.
 
 use super::cylinders::{Drum, pipe_on_box};
-use super::geometry::{clamp, is_positive, nearest, rim};
-use super::pair::{PointContact, SurfacePair, sphere_contact};
+use super::geometry::{PointContact, clamp, is_positive, nearest, rim};
+use super::pair::{SurfacePair, sphere_contact};
 use super::surface::SurfaceForm;
 use crate::expr::{Expr, Extreme, Function, Vec3};
 

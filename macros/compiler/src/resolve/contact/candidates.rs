@@ -1,9 +1,9 @@
 //! Points where a pair of surfaces may touch.
 
 use super::cylinders::{Drum, capsule_on_pipe};
-use super::geometry::{FLAT_RIM, clamp, nearest, rim};
+use super::geometry::{FLAT_RIM, PointContact, clamp, nearest, rim};
 use super::hull::sphere_on_hull;
-use super::pair::{PointContact, SurfacePair, sphere_contact, support_point};
+use super::pair::{SurfacePair, sphere_contact, support_point};
 use super::surface::SurfaceForm;
 use super::terrain::Terrain;
 use crate::expr::{Expr, Vec3};

@@ -3,7 +3,8 @@
 //! Constraints determine them such that the body's farthest point against the normal coincides with the point
 //! of the surface.
 
-use super::pair::{PointContact, SurfacePair, support_point};
+use super::geometry::PointContact;
+use super::pair::{SurfacePair, support_point};
 use super::surface::Sheet;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;

@@ -12,8 +12,8 @@
 //! capsule longer than the box.
 
 use super::boxes::{Face, MIN_SLOPE, OrientedBox, capsule_axis_contacts};
-use super::geometry::{clamp, is_positive};
-use super::pair::{PointContact, sphere_contact, tangents_of};
+use super::geometry::{PointContact, clamp, is_positive, tangents_of};
+use super::pair::sphere_contact;
 use super::surface::SurfaceForm;
 use crate::expr::{Expr, Extreme, Function, Vec3};
 

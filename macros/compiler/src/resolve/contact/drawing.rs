@@ -1,12 +1,12 @@
 //! Surfaces in contact, as pieces of the drawing.
 
-use super::surface::{Surface, SurfaceForm, read_surface};
+use super::read::read_surface;
+use super::surface::{Surface, SurfaceForm};
 use super::unilateral::contact_surfaces;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::mechanism::drawing::{entries_by_row, entries_of_vectors};
+use crate::mechanism::drawing::{anchor_of_pose, entries_by_row, entries_of_vectors};
 use crate::mechanism::{NamedFrame, Piece, PieceKind, Role};
-use crate::resolve::drawing::anchor_of_pose;
 use crate::resolve::scope::Scope;
 use crate::syntax::ExprKind;
 

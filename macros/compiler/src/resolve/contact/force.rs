@@ -1,6 +1,6 @@
 //! Forces and moments at contacts, as functions in outputs.
 
-use super::unilateral::CandidatePoint;
+use super::geometry::CandidatePoint;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{symbols_in, velocity_gradient};

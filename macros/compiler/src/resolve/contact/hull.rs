@@ -5,8 +5,7 @@
 //! perpendicular foot on this plane belongs to the hull, it is the nearest point; this includes centres
 //! inside of the hull. Otherwise the nearest point of all edges is.
 
-use super::geometry::is_positive;
-use super::pair::{PointContact, tangents_of};
+use super::geometry::{PointContact, is_positive, tangents_of};
 use super::surface::{ConvexHull, Surface, SurfaceForm};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};

@@ -5,6 +5,7 @@
 
 mod boxes;
 mod candidates;
+mod coefficients;
 mod collision;
 mod cones;
 mod contact_point;
@@ -14,15 +15,16 @@ mod force;
 mod geometry;
 mod hull;
 mod pair;
+mod read;
 mod slipping;
 mod soft;
 mod stops;
 mod surface;
-pub use force::has_consistent_forces;
 mod terrain;
 mod unilateral;
 
 pub use drawing::surface_pieces;
+pub use force::has_consistent_forces;
 pub use slipping::{check_pressed, slipping_rows};
 pub use stops::resolve_stops;
 pub use terrain::TERRAIN_COORDINATES;
@@ -37,8 +39,10 @@ use crate::language::Callable;
 use crate::mechanism::{Constraint, FrictionTerm, Measure, Model};
 use crate::syntax::{self, ExprKind};
 use cones::rolling_cone_rows;
-use pair::{PointContact, SurfacePair, ordered_pair};
-use surface::{SurfaceForm, read_surface};
+use geometry::PointContact;
+use pair::{SurfacePair, ordered_pair};
+use read::read_surface;
+use surface::SurfaceForm;
 
 const SUPPORTED_PAIRS: &str = "supported are a circle, a torus, a sphere, an ellipsoid or a cone on a plane; \
                                all but the cone on a surface given by its points; a sphere also on a sphere, \

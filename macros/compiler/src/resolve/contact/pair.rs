@@ -1,26 +1,14 @@
 //! Pairs of surfaces: their motions relative to the link that carries both, and the point where they touch.
 
+use super::geometry::{PointContact, tangents_of};
 use super::surface::{Surface, SurfaceForm};
 use crate::diag::Diagnostics;
-use crate::expr::{Expr, Function, Graph, Vec3};
+use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::jet::{self, Moving, Relative};
 use crate::kinematics::perpendicular_directions;
 use crate::mechanism::Model;
 use crate::resolve::scope::{Kinematics, Scope, Terms};
 use crate::syntax;
-
-/// A contact at a point, in the axes of the link that carries both bodies.
-pub(super) struct PointContact<'g> {
-    /// Signed distance of the surfaces, m.
-    pub(super) gap: Expr<'g>,
-    /// Contact point, relative to the centre of the first surface.
-    pub(super) point: Vec3<'g>,
-    /// Normal and two tangents, with their names.
-    pub(super) axes: [(&'static str, Vec3<'g>); 3],
-    /// Distances that vanish when the coordinates of a surface given by its points are those of the contact,
-    /// with their names.
-    pub(super) conditions: Vec<(&'static str, Expr<'g>)>,
-}
 
 /// Two surfaces with the motions of their bodies relative to the link that carries both, in the axes of that
 /// link.
@@ -201,15 +189,4 @@ pub(super) fn support_point<'g>(
         }
         _ => return None,
     })
-}
-
-/// Returns two unit tangents for a unit normal of any direction (Duff et al., *Building an orthonormal basis,
-/// revisited*, 2017).
-pub(super) fn tangents_of(n: Vec3<'_>) -> (Vec3<'_>, Vec3<'_>) {
-    let [x, y, z] = n.0;
-    let sign = z.apply_function(Function::Signum);
-    let a = -((sign + z).num(1.0) / (sign + z));
-    let b = x * y * a;
-    let one = z.num(1.0);
-    (Vec3([one + sign * x * x * a, sign * b, -(sign * x)]), Vec3([b, sign + y * y * a, -y]))
 }

@@ -2,7 +2,8 @@
 //! restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth
 //! in the slip velocity.
 
-use super::unilateral::{CandidatePoint, ContactCoefficients};
+use super::coefficients::ContactCoefficients;
+use super::geometry::CandidatePoint;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;

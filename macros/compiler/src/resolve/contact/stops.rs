@@ -1,6 +1,6 @@
 //! Stops: contacts of coordinates and expressions at the bounds of limits.
 
-use super::unilateral::{ContactCoefficients, read_restitution};
+use super::coefficients::{ContactCoefficients, read_restitution};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::kinematics::{time_derivative, velocity_gradient};

@@ -1,7 +1,7 @@
 //! Ground whose height is an expression of the position: `terrain(height)`, where `u` and `w` are the
 //! coordinates along x and y.
 
-use super::pair::{PointContact, tangents_of};
+use super::geometry::{PointContact, tangents_of};
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace_all;

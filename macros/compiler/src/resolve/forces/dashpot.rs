@@ -1,6 +1,5 @@
 //! Dashpots: linear, and with a force as an expression of the speed.
 
-use super::stretch_on;
 use crate::diag::Diagnostics;
 use crate::mechanism::{Dashpot, Pose, Rule};
 use crate::resolve::element_forces::Forces;
@@ -29,7 +28,7 @@ pub fn dashpot_force<'g>(
         );
         return Some(Forces { dashpots: vec![Dashpot { on, damping }], ..Forces::default() });
     }
-    let rate = stretch_on(scope, on)?.rate;
+    let rate = on.stretch(scope)?.rate;
     let force = match damping {
         Some(damping) => scope.resolve_scalar(damping, cx)? * rate,
         None => {

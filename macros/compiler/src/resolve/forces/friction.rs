@@ -1,6 +1,5 @@
 //! Force elements of dry and viscous friction.
 
-use super::stretch_on;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Function};
 use crate::mechanism::Rule;
@@ -22,7 +21,7 @@ pub fn friction_force<'g>(
     let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
     dry_friction(
         scope,
-        stretch_on(scope, on)?.rate,
+        on.stretch(scope)?.rate,
         all.map(|key| action.get(key)),
         action.on.source_position(),
         cx,

@@ -1,6 +1,5 @@
 //! Force elements of central gravity and of inverse-square attraction.
 
-use super::stretch_on;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::resolve::element_forces::Forces;
@@ -15,7 +14,7 @@ pub fn attraction_force<'g>(
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let stretch = stretch_on(scope, on)?;
+    let stretch = on.stretch(scope)?;
     let strength = scope.resolve_scalar(action.get(Key::Strength)?, cx)?;
     Some(Forces::of_potentials([attraction_energy(&stretch, strength)]))
 }

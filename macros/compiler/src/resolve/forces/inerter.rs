@@ -1,6 +1,5 @@
 //! Inerters: force elements with a force proportional to a relative acceleration.
 
-use super::stretch_on;
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::mechanism::{Inertance, Rule};
@@ -16,7 +15,7 @@ pub fn inerter_force<'g>(
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    inertance_force(scope, stretch_on(scope, on)?.rate, action.get(Key::Inertance)?, cx)
+    inertance_force(scope, on.stretch(scope)?.rate, action.get(Key::Inertance)?, cx)
 }
 
 /// Returns the force of an inertance on a rate.

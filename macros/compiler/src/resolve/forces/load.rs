@@ -8,21 +8,21 @@ use crate::kinematics::symbols_in;
 use crate::mechanism::{AccelerationForce, Direction, Input, Load, Pose, Quantity};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::{Allowed, Context, Placed, PlacedKind, Scope};
-use crate::resolve::target::{Target, resolve_target};
+use crate::resolve::target::{ResolvedTarget, resolve_target};
 use crate::resolve::terms::{coordinate_stretch, distance_between_points};
-use crate::syntax::{Action, Expr, ExprKind, Key, Target as On};
+use crate::syntax::{Action, Expr, ExprKind, Key, Target};
 
 /// Returns a force or a torque, with a value or as an input.
 pub fn load<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
     let torque = action.kind.row().torque;
     let direction = action.get(if torque { Key::About } else { Key::Along });
     match (&action.on, action.get(Key::Value)) {
-        (On::On(on), None) => {
+        (Target::On(on), None) => {
             let target = resolve_target(scope, on, cx)?;
             input_force(scope, action, on, target, direction, torque, cx)
         }
-        (On::On(on), Some(value)) => value_on(scope, on, direction, value, torque, cx),
-        (On::Between(first, second), value) => {
+        (Target::On(on), Some(value)) => value_on(scope, on, direction, value, torque, cx),
+        (Target::Between(first, second), value) => {
             force_between(scope, action, [first, second], direction, value, cx)
         }
     }
@@ -43,13 +43,15 @@ fn value_on<'g>(
         return None;
     }
     let place = match resolve_target(scope, on, cx)? {
-        Target::Point(place) => place,
-        Target::Coordinate(_, Some(angle)) if angle != torque => {
+        ResolvedTarget::Point(place) => place,
+        ResolvedTarget::Coordinate(_, Some(angle)) if angle != torque => {
             report_wrong_kind(on, angle, cx);
             return None;
         }
-        Target::Coordinate(c, _) => return scalar_load(scope, coordinate_stretch(scope, &c).rate, value, cx),
-        Target::Expression(stretch) => return scalar_load(scope, stretch.rate, value, cx),
+        ResolvedTarget::Coordinate(c, _) => {
+            return scalar_load(scope, coordinate_stretch(scope, &c).rate, value, cx);
+        }
+        ResolvedTarget::Expression(stretch) => return scalar_load(scope, stretch.rate, value, cx),
     };
     if torque && !check_torque_target(on, &place, cx) {
         return None;
@@ -119,7 +121,7 @@ fn input_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
     on: &Expr,
-    target: Target<'g>,
+    target: ResolvedTarget<'g>,
     direction: Option<&Expr>,
     torque: bool,
     cx: &mut Diagnostics,
@@ -131,30 +133,32 @@ fn input_force<'g>(
         }
     };
     let input = match target {
-        Target::Coordinate(_, Some(angle)) if angle != torque => {
+        ResolvedTarget::Coordinate(_, Some(angle)) if angle != torque => {
             report_wrong_kind(on, angle, cx);
             return None;
         }
-        Target::Coordinate(c, _) => {
+        ResolvedTarget::Coordinate(c, _) => {
             refuse_direction("joint");
             Input::Coordinate(c)
         }
-        Target::Expression(stretch) => {
+        ResolvedTarget::Expression(stretch) => {
             refuse_direction("expression");
             return Some(input_load(scope.input_index(&action.name.text)?, stretch.rate));
         }
-        Target::Point(place) => match point_input(scope, action, on, &place, direction, torque, cx)? {
-            // The point moves on its body.
-            Input::Force { link, point, along } if is_moving(point) => {
-                let kinematics = &scope.kinematics;
-                let twist = &kinematics.twists[link.0];
-                let along = kinematics.resolve(&along, Some(link), Vec3::zero(scope.graph));
-                let rate = (twist.linear + twist.angular.cross(point)).dot(along);
-                return Some(input_load(scope.input_index(&action.name.text)?, rate));
+        ResolvedTarget::Point(place) => {
+            match point_input(scope, action, on, &place, direction, torque, cx)? {
+                // The point moves on its body.
+                Input::Force { link, point, along } if is_moving(point) => {
+                    let kinematics = &scope.kinematics;
+                    let twist = &kinematics.twists[link.0];
+                    let along = kinematics.resolve(&along, Some(link), Vec3::zero(scope.graph));
+                    let rate = (twist.linear + twist.angular.cross(point)).dot(along);
+                    return Some(input_load(scope.input_index(&action.name.text)?, rate));
+                }
+                Input::Torque { .. } if is_moving(place.pose.translation) => return None,
+                input => input,
             }
-            Input::Torque { .. } if is_moving(place.pose.translation) => return None,
-            input => input,
-        },
+        }
     };
     Some(Forces { input: Some(input), ..Forces::default() })
 }

@@ -10,25 +10,25 @@ mod spring;
 pub use friction::dry_friction;
 pub use inerter::inertance_force;
 pub use load::{input_load, value_load};
-pub use spring::{Law, spring_law};
+pub use spring::{SpringLaw, spring_law};
 
 use super::element_forces::Forces;
 use super::scope::Scope;
-use super::target::{Target, resolve_target};
-use super::terms::{ActedOn, Stretch, coordinate_stretch, distance_between_points};
+use super::target::{ResolvedTarget, resolve_target};
+use super::terms::{ActedOn, distance_between_points};
 use crate::diag::Diagnostics;
-use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target as On};
+use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target};
 
 /// Resolves force elements on coordinates, which need no positions.
 pub fn check_actions<'g>(scope: &Scope<'_, 'g>, cx: &mut Diagnostics) {
     for action in &scope.description.actions {
         let on_joint = match &action.on {
-            On::On(e) => match &e.kind {
+            Target::On(e) => match &e.kind {
                 ExprKind::Name(name) => scope.joint_coordinates(name).is_some(),
                 ExprKind::Field(..) => true,
                 _ => false,
             },
-            On::Between(..) => false,
+            Target::Between(..) => false,
         };
         if on_joint && !needs_motion(action) {
             let _ = forces_of(scope, action, cx);
@@ -54,12 +54,14 @@ pub fn forces_of<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostic
 /// Returns the length or the angle on which a force element acts.
 fn acted_on<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<ActedOn<'g>> {
     match &action.on {
-        On::On(e) => match resolve_target(scope, e, cx)? {
-            Target::Coordinate(c, angle) => Some(ActedOn { stretch: None, angle, coordinate: Some(c) }),
-            Target::Expression(stretch) => {
+        Target::On(e) => match resolve_target(scope, e, cx)? {
+            ResolvedTarget::Coordinate(c, angle) => {
+                Some(ActedOn { stretch: None, angle, coordinate: Some(c) })
+            }
+            ResolvedTarget::Expression(stretch) => {
                 Some(ActedOn { stretch: Some(stretch), angle: None, coordinate: None })
             }
-            Target::Point(_) => {
+            ResolvedTarget::Point(_) => {
                 let phrase = action.kind.name_with_article();
                 cx.report_error(
                     e.place.clone(),
@@ -69,16 +71,11 @@ fn acted_on<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) ->
                 None
             }
         },
-        On::Between(a, b) => {
+        Target::Between(a, b) => {
             let stretch = Some(distance_between_points(scope, a, b, cx)?);
             Some(ActedOn { stretch, angle: Some(false), coordinate: None })
         }
     }
-}
-
-/// Returns the value and the rate of the length or the angle on which an element acts.
-fn stretch_on<'g>(scope: &Scope<'_, 'g>, on: ActedOn<'g>) -> Option<Stretch<'g>> {
-    on.stretch.or_else(|| on.coordinate.map(|c| coordinate_stretch(scope, &c)))
 }
 
 /// Whether an element needs positions and velocities: it acts between points or at a point of a body, or it
@@ -92,8 +89,8 @@ fn needs_motion(action: &Action) -> bool {
     };
     // A point given by a vector may move on its body.
     own || match &action.on {
-        On::Between(..) => true,
-        On::On(e) => matches!(e.kind, ExprKind::Method(..)),
+        Target::Between(..) => true,
+        Target::On(e) => matches!(e.kind, ExprKind::Method(..)),
     }
 }
 

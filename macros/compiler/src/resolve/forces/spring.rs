@@ -1,6 +1,5 @@
 //! Springs: linear, and with a force or an energy as an expression of the stretch.
 
-use super::stretch_on;
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
 use crate::expr::replace::substitute_symbols;
@@ -18,7 +17,7 @@ use std::collections::BTreeSet;
 const HIGHEST_POWER: usize = 9;
 
 /// Force law of a spring, as written.
-pub enum Law<'e> {
+pub enum SpringLaw<'e> {
     /// Force proportional to the stretch, with this stiffness.
     Linear(&'e syntax::Expr),
     /// Force as an expression of `stretch`.
@@ -35,18 +34,18 @@ pub fn spring_force<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let law = match action.written_law()? {
-        (Key::Force, e) => Law::Force(e),
-        (Key::Energy, e) => Law::Energy(e),
-        (_, e) => Law::Linear(e),
+        (Key::Force, e) => SpringLaw::Force(e),
+        (Key::Energy, e) => SpringLaw::Energy(e),
+        (_, e) => SpringLaw::Linear(e),
     };
-    if let (Law::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
+    if let (SpringLaw::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
         let stiffness = scope.resolve_scalar(stiffness, cx);
         let free = free_length(scope, action, angle, cx);
         let spring = Spring { on, stiffness: stiffness?, free: free? };
         return Some(Forces { springs: vec![spring], ..Forces::default() });
     }
     let angle = on.angle;
-    let stretch = stretch_on(scope, on)?;
+    let stretch = on.stretch(scope)?;
     let free = free_length(scope, action, angle, cx)?;
     spring_law(scope, stretch, &law, free, cx)
 }
@@ -55,7 +54,7 @@ pub fn spring_force<'g>(
 pub fn spring_law<'g>(
     scope: &Scope<'_, 'g>,
     stretch: Stretch<'g>,
-    law: &Law<'_>,
+    law: &SpringLaw<'_>,
     free: Expr<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
@@ -71,10 +70,10 @@ pub fn spring_law<'g>(
     let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
     let energy = match law {
         // Smooth even where the points coincide.
-        Law::Linear(k) if free.is_zero() => scope.resolve_scalar(k, cx)? * 0.5 * stretch.square,
-        Law::Linear(k) => scope.resolve_scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
-        Law::Energy(e) => scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?,
-        Law::Force(e) => energy_of(scope, e, &context, cx)?,
+        SpringLaw::Linear(k) if free.is_zero() => scope.resolve_scalar(k, cx)? * 0.5 * stretch.square,
+        SpringLaw::Linear(k) => scope.resolve_scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
+        SpringLaw::Energy(e) => scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?,
+        SpringLaw::Force(e) => energy_of(scope, e, &context, cx)?,
     };
     Some(Forces::of_potentials([substitute_symbols(energy, &|s| (s == symbol).then_some(value))]))
 }
