@@ -224,6 +224,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             release: releasing.map(|(joints, retained)| Release::of_joints(joints, retained)),
             moving_placements: Vec::new(),
             frame_links: Vec::new(),
+            surfaces: Vec::new(),
             partials: Partials::default(),
             group: 0,
             mobility: Diagnostics::new(),
@@ -270,7 +271,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.add_frames();
         check_finite(&self.scope, &self.model, cx);
         if cx.is_empty() && self.scope.description.drawing {
-            (self.model.drawing, self.model.heights) = draw_mechanism(&self.scope, &self.model);
+            (self.model.drawing, self.model.heights) =
+                draw_mechanism(&self.scope, &self.model, &self.surfaces);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Builder of the model: its state, its links and their motion.
 
 use super::closed_form::ClosedFormLoop;
+use super::contact::Surface;
 use super::holders::MovingPlacement;
 use super::reaction::Release;
 use super::scope::{Placed, PlacedKind, Scope};
@@ -27,6 +28,8 @@ pub struct Builder<'a, 'g> {
     pub moving_placements: Vec<MovingPlacement>,
     /// Links of frames that move relative to the link in which they are defined.
     pub frame_links: Vec<LinkId>,
+    /// Surfaces of contacts and of pairs that roll or slip, for the drawing, with the names of the contacts.
+    pub surfaces: Vec<(String, Surface<'g>)>,
     /// Partial derivatives of the poses of the links so far.
     pub partials: Partials<'g>,
     /// Index of the group of constraints that is being added.

@@ -54,7 +54,7 @@ fn holonomic_rows<'g>(
         let rate = time_derivative(scope.configuration_space(), residual);
         rows.push(constraint_row(scope, (name, &constraint.name.place), measure, Some(residual), rate));
     }
-    Some(ConstraintRows { rows, redundant, contact_point: None })
+    Some(ConstraintRows { rows, redundant, ..ConstraintRows::default() })
 }
 
 /// Resolves a constraint, only to report its errors.
@@ -115,7 +115,7 @@ fn nonholonomic_rows<'g>(
         };
         rows.push(constraint_row(scope, (name, &constraint.name.place), measure, None, linear));
     }
-    Some(ConstraintRows { rows, redundant, contact_point: None })
+    Some(ConstraintRows { rows, redundant, ..ConstraintRows::default() })
 }
 
 /// Returns the left side minus the right side: one component, or three with names.

@@ -1,7 +1,7 @@
 //! Pieces of the drawing, added by the option `drawing`. They show the declared elements in the axes of named
 //! frames, so that a viewer needs no traversal of the links.
 
-use super::contact::surface_pieces;
+use super::contact::{Surface, surface_pieces};
 use super::joint::drawing_symbol;
 use super::scope::{Allowed, Context, Placed, PlacedKind, Scope};
 use crate::diag::Diagnostics;
@@ -15,11 +15,16 @@ use crate::syntax::{
 };
 use std::collections::BTreeSet;
 
-/// Returns the pieces of the drawing, and the heights of terrains. `model` is complete but for the drawing.
-pub fn draw_mechanism<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
+/// Returns the pieces of the drawing, and the heights of terrains. `model` is complete but for the drawing;
+/// `surfaces` are those of contacts and pairs, with their names.
+pub fn draw_mechanism<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    surfaces: &[(String, Surface<'g>)],
+) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
     // The second reading of expressions adds no requirements.
     let required = scope.records.borrow().requirements.clone();
-    let drawing = Drawing { scope, model };
+    let drawing = Drawing { scope, model, surfaces };
     let (mut pieces, heights) =
         scope.in_context(Context::new(Allowed::Constant, None), |_| drawing.all_pieces());
     scope.records.borrow_mut().requirements = required;
@@ -34,6 +39,7 @@ pub fn draw_mechanism<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> (Vec<Piec
 struct Drawing<'s, 'a, 'g> {
     scope: &'s Scope<'a, 'g>,
     model: &'s Model<'g>,
+    surfaces: &'s [(String, Surface<'g>)],
 }
 
 impl<'g> Drawing<'_, '_, 'g> {
@@ -47,7 +53,7 @@ impl<'g> Drawing<'_, '_, 'g> {
         }
         self.draw_bodies(&shown, &mut pieces);
         self.draw_joints(&shown, &mut pieces);
-        let (surfaces, heights) = surface_pieces(self.scope, &self.model.frames);
+        let (surfaces, heights) = surface_pieces(self.surfaces, &self.model.frames);
         pieces.extend(surfaces);
         self.draw_actions(&mut pieces);
         (pieces, heights)

@@ -19,7 +19,7 @@ pub fn input_drives(d: &Description) -> impl Iterator<Item = &Drive> {
     d.drives.iter().filter(|drive| matches!(drive.law, DriveLaw::Input(_)))
 }
 
-/// Coordinates of the joints on which an element of a file acts, each multiplied by its weight.
+/// Returns the coordinates of the joints on which an element of a file acts, each multiplied by its weight.
 pub fn weighted_coordinates(scope: &Scope<'_, '_>, drive: &Drive, cx: &mut Diagnostics) -> Vec<Coordinate> {
     let mut terms: Vec<Coordinate> = Vec::new();
     for (joint, weight) in drive.on.weighted_joints() {

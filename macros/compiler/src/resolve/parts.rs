@@ -121,9 +121,8 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds the forces of an element, and records them for free-body diagrams.
     fn add_forces(&mut self, name: &str, forces: Forces<'g>) {
-        let has_diagram = |rank: Rank| rank == Rank::FreeBody;
         if let Some(release) = &mut self.release
-            && self.scope.description.outputs.iter().any(|output| has_diagram(output.rank))
+            && self.scope.description.outputs.iter().any(|output| output.rank == Rank::FreeBody)
         {
             let on_released = forces_on_released(&self.scope, &self.model, (release, &forces), name);
             release.forces.push((name.to_string(), on_released));
@@ -219,6 +218,7 @@ impl<'g> Builder<'_, 'g> {
             self.model.constraints.push(row);
         }
         self.model.redundant.extend(rows.redundant);
+        self.surfaces.extend(rows.surfaces.into_iter().map(|surface| (name.to_string(), surface)));
         if let Some((release, point)) = self.release.as_mut().zip(rows.contact_point) {
             release.contact_points.insert(name.to_string(), point);
         }
@@ -232,18 +232,24 @@ impl<'g> Builder<'_, 'g> {
     /// Adds all contacts to the model: declared contacts in their order, then the stops of limits.
     pub fn add_contacts(&mut self, _: MotionKnown, cx: &mut Diagnostics) {
         let d = self.scope.description;
+        let surfaces_of_pairs = std::mem::take(&mut self.surfaces);
         for contact in &d.contacts {
             let Some(parts) = resolve_contact(&self.scope, &self.model, contact, cx) else { continue };
             let name = &contact.name.text;
+            self.surfaces.extend(parts.surfaces.into_iter().map(|surface| (name.clone(), surface)));
             self.model.contacts.extend(parts.contacts);
             parts.forces.add_to(&mut self.model);
             let kinematics = &mut self.scope.kinematics;
             kinematics.powers.extend(parts.power.map(|power| (name.clone(), power)));
-            kinematics.contact_loads.insert(name.clone(), parts.loads);
+            // Surfaces that cannot move relative to each other exert no forces.
+            if !parts.loads.forces.is_empty() {
+                kinematics.contact_loads.insert(name.clone(), parts.loads);
+            }
             if let Some(release) = &mut self.release {
                 release.contact_points.extend(parts.points);
             }
         }
+        self.surfaces.extend(surfaces_of_pairs);
         for limit in d.limits.iter().filter(|limit| limit.arguments.get(Key::Restitution).is_some()) {
             self.model.contacts.extend(resolve_stops(&self.scope, limit, cx));
         }

@@ -1,5 +1,6 @@
 //! Rows of constraints.
 
+use super::contact::Surface;
 use super::scope::{Scope, Terms};
 use crate::diag::Place;
 use crate::expr::Expr;
@@ -15,6 +16,8 @@ pub struct ConstraintRows<'g> {
     pub redundant: Vec<String>,
     /// Contact point of touching surfaces, from the ground's origin.
     pub contact_point: Option<Terms<'g>>,
+    /// Surfaces of a pair that rolls or slips.
+    pub surfaces: Vec<Surface<'g>>,
 }
 
 /// Returns a row of a declared constraint with this rate.

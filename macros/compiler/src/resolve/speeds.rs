@@ -140,7 +140,7 @@ fn speed_coefficients<'g>(
         matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero())
     });
     let remainder = [vec![at_rest]];
-    if !at_rest.is_zero() && !speeds::named_columns(&model, &remainder.to_vec()).is_empty() {
+    if !at_rest.is_zero() && !speeds::named_columns(model, &remainder.to_vec()).is_empty() {
         cx.report_error(place_of_value(), "a speed cannot have a term without rates").add_help(
             "speeds are velocities and zero at rest: take the rates relative to the moving frame, or \
              declare an `#[output(…)]`",
@@ -165,7 +165,7 @@ fn check_speeds<'g>(
     };
     let (count, all) = (declared.len(), columns.len());
     let last = &declared[count - 1];
-    if let Some(k) = speeds::dependent_row(&model, rows) {
+    if let Some(k) = speeds::dependent_row(model, rows) {
         let speed = &declared[k];
         let what = match k {
             0 => format!("the speed `{}` is zero in every motion", speed.name.text),

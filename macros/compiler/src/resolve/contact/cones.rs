@@ -76,5 +76,5 @@ pub(super) fn rolling_cone_rows<'g>(
     let spin = normal.dot(w_a - w_b);
     let spin = constraint_row(scope, (format!("{name}.spin"), place), Measure::Angle, None, spin);
     rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
-    Some(ConstraintRows { rows, ..ConstraintRows::default() })
+    Some(ConstraintRows { rows, surfaces: pair.written_surfaces(), ..ConstraintRows::default() })
 }

@@ -1,43 +1,19 @@
 //! Surfaces in contact, as pieces of the drawing.
 
-use super::read::read_surface;
 use super::surface::{Surface, SurfaceForm};
-use super::unilateral::contact_surfaces;
-use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::drawing::{anchor_of_pose, entries_by_row, entries_of_vectors};
 use crate::mechanism::{NamedFrame, Piece, PieceKind, Role};
-use crate::resolve::scope::Scope;
-use crate::syntax::ExprKind;
 
-/// Returns the pieces for the surfaces of contacts and of pairs that roll or slip, each once, and the heights
-/// of terrains.
+/// Returns the pieces for surfaces with the names of their contacts, each once, and the heights of terrains.
 pub fn surface_pieces<'g>(
-    scope: &Scope<'_, 'g>,
+    surfaces: &[(String, Surface<'g>)],
     frames: &[NamedFrame<'g>],
 ) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
     let (mut pieces, mut heights) = (Vec::<Piece<'g>>::new(), Vec::new());
-    let mut silent = Diagnostics::discarded_diagnostics();
-    let contacts = scope.description.contacts.iter();
-    let mut found: Vec<(&str, Surface<'g>)> = Vec::new();
-    for contact in contacts {
-        for side in [&contact.first, &contact.second] {
-            let surfaces = contact_surfaces(scope, side, &mut silent).unwrap_or_default();
-            found.extend(surfaces.into_iter().map(|surface| (contact.name.text.as_str(), surface)));
-        }
-    }
-    for constraint in &scope.description.constraints {
-        if let ExprKind::Call(word, pair) = &constraint.value.kind
-            && word.id.is_some()
-            && word.id == constraint.kind.surface_pair_function()
-        {
-            let surfaces = pair.iter().filter_map(|side| read_surface(scope, side, "", &mut silent));
-            found.extend(surfaces.map(|surface| (constraint.name.text.as_str(), surface)));
-        }
-    }
-    for (name, surface) in found {
-        let edges = hull_pieces(frames, name, &surface);
-        for piece in edges.into_iter().chain(surface_piece(frames, name, &surface, &mut heights)) {
+    for (name, surface) in surfaces {
+        let edges = hull_pieces(frames, name, surface);
+        for piece in edges.into_iter().chain(surface_piece(frames, name, surface, &mut heights)) {
             let is_same = |known: &Piece<'g>| {
                 known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
             };

@@ -27,6 +27,7 @@ pub use drawing::surface_pieces;
 pub use force::has_consistent_forces;
 pub use slipping::{check_pressed, slipping_rows};
 pub use stops::resolve_stops;
+pub use surface::Surface;
 pub use terrain::TERRAIN_COORDINATES;
 pub use unilateral::resolve_contact;
 
@@ -69,7 +70,8 @@ pub fn rolling_rows<'g>(
         rows.push(constraint_row(scope, (name, &constraint.name.place), Measure::Length, None, e.dot(slip)));
     }
     let contact_point = Some(pair.contact_position(contact.point));
-    Some(ConstraintRows { rows, contact_point, ..ConstraintRows::default() })
+    let surfaces = pair.written_surfaces();
+    Some(ConstraintRows { rows, contact_point, surfaces, redundant: Vec::new() })
 }
 
 /// Returns the rows that keep a pair in contact: the distance, with the friction caused by its normal

@@ -23,6 +23,8 @@ pub(super) struct SurfacePair<'s, 'g> {
     pub(super) center: Moving<'g>,
     /// Position of the second surface.
     pub(super) base: Moving<'g>,
+    /// Whether the second surface is written before the first.
+    swapped: bool,
 }
 
 /// Returns two surfaces with their motions, in the order that `is_known` accepts.
@@ -40,7 +42,8 @@ pub(super) fn ordered_pair<'s, 'g>(
             .add_help("a contact is between surfaces of bodies that move relative to each other");
         return None;
     }
-    if !is_known(&a.form, &b.form) {
+    let swapped = !is_known(&a.form, &b.form);
+    if swapped {
         std::mem::swap(&mut a, &mut b);
     }
     let joints = &scope.kinematics.joints;
@@ -50,13 +53,19 @@ pub(super) fn ordered_pair<'s, 'g>(
     );
     let center = jet::motion_of_point(joints, &on_a, a.frame.pose.translation);
     let base = jet::motion_of_point(joints, &on_b, b.frame.pose.translation);
-    Some(SurfacePair { kinematics: &scope.kinematics, a, b, on_a, on_b, center, base })
+    Some(SurfacePair { kinematics: &scope.kinematics, a, b, on_a, on_b, center, base, swapped })
 }
 
 impl<'g> SurfacePair<'_, 'g> {
     /// Returns the graph that owns the expressions.
     pub(super) fn graph(&self) -> &'g Graph {
         self.center.value[0].graph()
+    }
+
+    /// Returns the surfaces in the order in which they are written.
+    pub(super) fn written_surfaces(&self) -> Vec<Surface<'g>> {
+        let (a, b) = (self.a.clone(), self.b.clone());
+        if self.swapped { vec![b, a] } else { vec![a, b] }
     }
 
     /// Returns the position of a point given relative to the centre of the first surface.

@@ -36,7 +36,8 @@ pub fn slipping_rows<'g>(
         moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
     let rows = contact_rows(scope, constraint, &contact, slip, friction);
     let contact_point = Some(pair.contact_position(contact.point));
-    Some(ConstraintRows { rows, contact_point, ..ConstraintRows::default() })
+    let surfaces = pair.written_surfaces();
+    Some(ConstraintRows { rows, contact_point, surfaces, redundant: Vec::new() })
 }
 
 /// Returns the coefficient of friction and the speed of the regularisation.

@@ -41,12 +41,14 @@ pub struct ContactParts<'g> {
     pub forces: Forces<'g>,
     /// Forces and moments of the second surface on the first.
     pub loads: ContactLoads<'g>,
+    /// Surfaces of both sides.
+    pub surfaces: Vec<Surface<'g>>,
     /// Power of the contact, if an output uses it.
     pub power: Option<ElementPower<'g>>,
 }
 
-/// Returns the contact points and forces of a declared contact; `None` after an error, and for a contact of a
-/// file whose surfaces do not move relative to each other. `model` has all contacts before it.
+/// Returns the contact points and forces of a declared contact; `None` after an error. A contact of a file
+/// whose surfaces do not move relative to each other has only surfaces. `model` has all contacts before it.
 pub fn resolve_contact<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
@@ -67,9 +69,13 @@ pub fn resolve_contact<'g>(
         None => None,
     };
     let points = separable_points(scope, model, contact, (&firsts, &seconds), cx)?;
+    let surfaces = [firsts, seconds].concat();
+    let mut parts = ContactParts { surfaces, ..ContactParts::default() };
+    if points.is_empty() {
+        return Some(parts);
+    }
     check_relative_rotation(contact, &points, cx);
     let several = points.len() > 1;
-    let mut parts = ContactParts::default();
     for (k, point) in points.iter().enumerate() {
         let name = &contact.name.text;
         let name = if several { format!("{name}.{k}") } else { name.clone() };
@@ -114,7 +120,7 @@ fn separable_points<'g>(
     let count = points.len();
     points.retain(|point| !velocity_gradient(point.rates[0].1).is_empty());
     if contact.of_file && points.is_empty() {
-        return None;
+        return Some(points);
     }
     if points.is_empty() || (points.len() < count && !whole && !contact.of_file) {
         cx.report_error(place, "these surfaces cannot move relative to each other")
@@ -236,7 +242,7 @@ fn candidate_points<'g>(
 
 /// Returns the surfaces of one side of a contact: a surface, a point, or the collision geometry of a
 /// file.
-pub(super) fn contact_surfaces<'g>(
+fn contact_surfaces<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,
