@@ -1,5 +1,7 @@
 //! Drawing of a mechanism: solids, surfaces, joints and force elements, each fixed in named frames.
 
+use super::link::{LinkId, NamedFrame};
+use super::pose::Pose;
 use crate::expr::{Expr, Mat3, Vec3};
 
 /// Piece of the drawing: a shape with its position, for one declared object.
@@ -102,6 +104,22 @@ pub enum PieceKind {
     Terrain(usize),
     /// Mesh, given by axes and scales. The field is the path of the file.
     Mesh(String),
+}
+
+/// A pose relative to a frame: the index of the frame (`None` for the ground), and the pose in it.
+pub type Anchor<'g> = (Option<usize>, Pose<'g>);
+
+/// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
+pub fn anchor_of_pose<'g>(
+    frames: &[NamedFrame<'g>],
+    link: Option<LinkId>,
+    pose: &Pose<'g>,
+) -> Option<Anchor<'g>> {
+    if link.is_none() {
+        return Some((None, pose.clone()));
+    }
+    let index = frames.iter().position(|frame| frame.link == link)?;
+    Some((Some(index), frames[index].pose.inverse().compose_with(pose)))
 }
 
 /// Returns the entries of several vectors, concatenated.

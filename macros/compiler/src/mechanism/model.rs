@@ -6,7 +6,6 @@ use super::drawing::Piece;
 use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
 use super::equilibrium::Equilibrium;
 use super::gradients::Gradients;
-use super::index::{InQ, InV};
 use super::inertia::Inertia;
 use super::limit::Limit;
 use super::link::{Link, NamedFrame, Space};
@@ -187,11 +186,6 @@ impl<'g> Model<'g> {
     /// Returns the number of entries of `v`.
     pub fn nv(&self) -> usize {
         self.velocities.len()
-    }
-
-    /// Returns the indices in `q` and `v` of the next coordinate that is added.
-    pub fn next_coordinate(&self) -> (InQ, InV) {
-        (InQ(self.nq()), InV(self.nv()))
     }
 
     /// Returns the number of entries of `u`.

@@ -1,14 +1,13 @@
 //! Quantities that depend on accelerations: time derivatives of velocity-dependent expressions, and forces
 //! that are linear in the accelerations.
 
-use super::builder::Builder;
 use super::quantities::{in_links, vector_value};
 use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{symbols_in, time_derivative, velocity_gradients};
-use crate::mechanism::{Quantity, Space};
+use crate::mechanism::{Model, Quantity, Space};
 use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
@@ -78,7 +77,12 @@ impl<'g> Scope<'_, 'g> {
         let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::from_symbol).collect();
         let depends_on_quantity = |what: fn(&Quantity) -> bool| quantities.iter().any(what);
         let is_state = |k: &usize| {
-            self.states.iter().any(|(_, state)| state == k).then(|| self.parameters.get(*k)).flatten()
+            self.description
+                .states
+                .iter()
+                .any(|(_, state)| state == k)
+                .then(|| self.description.parameters.get(*k))
+                .flatten()
         };
         let state =
             quantities.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
@@ -127,29 +131,27 @@ impl<'g> Scope<'_, 'g> {
     /// instead of a coordinate.
     pub fn is_moving(&self, argument: &syntax::Expr) -> bool {
         match &argument.kind {
-            ExprKind::Name(name) => self.definitions.iter().any(|definition| definition.name.text == *name),
+            ExprKind::Name(name) => {
+                self.description.definitions.iter().any(|definition| definition.name.text == *name)
+            }
             ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => true,
             _ => false,
         }
     }
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Reports forces that are linear in accelerations in mechanisms with constraints or contacts. The
-    /// constraint and contact forces are computed with a symmetric mass matrix.
-    pub fn check_acceleration_forces(&self, cx: &mut Diagnostics) {
-        let Some(force) = self.model.acceleration_forces.first() else { return };
-        let found = match (self.model.constraints.is_empty(), self.model.contacts.is_empty()) {
-            (true, true) => return,
-            (false, _) => "constraints, such as joints that close loops",
-            (true, false) => "contacts that open and close",
-        };
-        if self.releasing.is_none() {
-            cx.report_error(
-                force.place.clone(),
-                format!("a force cannot depend on accelerations in a mechanism with {found}"),
-            )
-            .add_help("connect the bodies by joints that form a tree, or remove these terms");
-        }
-    }
+/// Reports forces that are linear in accelerations in mechanisms with constraints or contacts. The constraint
+/// and contact forces are computed with a symmetric mass matrix.
+pub fn check_acceleration_forces(model: &Model<'_>, cx: &mut Diagnostics) {
+    let Some(force) = model.acceleration_forces.first() else { return };
+    let found = match (model.constraints.is_empty(), model.contacts.is_empty()) {
+        (true, true) => return,
+        (false, _) => "constraints, such as joints that close loops",
+        (true, false) => "contacts that open and close",
+    };
+    cx.report_error(
+        force.place.clone(),
+        format!("a force cannot depend on accelerations in a mechanism with {found}"),
+    )
+    .add_help("connect the bodies by joints that form a tree, or remove these terms");
 }

@@ -1,16 +1,27 @@
 //! Assembly of the model: scope, tree, links, bodies and force elements.
 
-use super::builder::Builder;
+use super::accelerations::check_acceleration_forces;
+use super::builder::{Builder, MotionKnown};
+use super::chain::check_joint;
+use super::closed_form::find_solved_loops;
+use super::drawing::draw_mechanism;
+use super::equilibria::resolve_equilibria;
+use super::forces::check_actions;
+use super::limit::resolve_limits;
+use super::masses::check_finite;
+use super::numbering::Numbering;
+use super::reaction::Release;
+use super::requirements::gather_requirements;
 use super::scope::{Allowed, Axes, Context, Kinematics, Records, Scope, Value};
-use super::tree::find_tree;
+use super::terms::find_dependencies;
+use super::tree::{find_tree, loop_closing_joints};
 use super::{drive, reaction, units};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::Partials;
 use crate::language::{Builtin, Callable};
 use crate::mechanism::{Constraint, Freedom, Gradients, Inertia, Model, Released, Rule, Units};
-use crate::syntax::{Description, GROUND, Inertias, Name, ScalarType};
-use std::collections::BTreeMap;
+use crate::syntax::{Description, GROUND, Inertias, Name};
 use std::rc::Rc;
 
 /// Maximum number of velocities of a mechanism. The generated code would be unreasonably large beyond it.
@@ -69,8 +80,7 @@ fn build<'g>(
     releasing: Option<(&[usize], &[Constraint<'g>])>,
     cx: &mut Diagnostics,
 ) -> Option<Model<'g>> {
-    let mut builder = Builder { releasing, ..Builder::new(description, graph, cx) };
-    builder.number_coordinates(cx);
+    let mut builder = Builder::new(description, graph, releasing, cx);
     if builder.model.nv() > MAX_VELOCITIES && releasing.is_none() {
         let n = builder.model.nv();
         cx.report_error(
@@ -80,39 +90,18 @@ fn build<'g>(
         .add_help(DIVIDE_HELP);
         return None;
     }
-    builder.number_released_coordinates(releasing.map_or(&[], |(joints, _)| joints));
     let order = find_tree(description, &builder.jointed, &builder.scope, cx);
     match &order {
         Some(order) => builder.place_all(order, cx),
-        None => builder.check_joints(cx),
+        None => description.joints.iter().for_each(|joint| check_joint(&builder.scope, joint, cx)),
     }
     builder.add_masses(cx);
     match order.and_then(|order| Some((order, builder.compute_motion()?))) {
-        Some((order, moving)) => {
-            builder.add_drives(moving, cx);
-            builder.add_actions(moving, cx);
-            builder.add_limits(cx);
-            let solved = builder.add_solved(cx);
-            let constrained = builder.add_constraints(&order.closing, (moving, solved), cx);
-            builder.record_slipping_power();
-            builder.add_contacts(moving, cx);
-            builder.check_acceleration_forces(cx);
-            builder.add_expressions(constrained, cx);
-            if releasing.is_none() {
-                builder.add_equilibria(cx);
-            }
-            builder.find_dependencies(constrained);
-            builder.add_speeds(constrained, cx);
-            builder.add_frames();
-            builder.check_finite(cx);
-            if cx.is_empty() {
-                builder.add_drawing();
-            }
-        }
-        None => builder.check_actions(cx),
+        Some((order, moving)) => builder.add_elements(&order.closing, moving, cx),
+        None => check_actions(&builder.scope, cx),
     }
     builder.check_unused(cx);
-    builder.gather_requirements();
+    builder.model.requirements = gather_requirements(&builder.scope, &builder.model);
     if cx.is_empty() && releasing.is_none() {
         let coordinates = &builder.scope.kinematics.coordinates;
         builder.model.units = units::infer_units(description, &builder.model, coordinates, cx);
@@ -176,7 +165,12 @@ fn empty_model<'g>(
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
-    fn new(description: &'a Description, graph: &'g Graph, cx: &mut Diagnostics) -> Builder<'a, 'g> {
+    fn new(
+        description: &'a Description,
+        graph: &'g Graph,
+        releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
+        cx: &mut Diagnostics,
+    ) -> Builder<'a, 'g> {
         let unplaced = description.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
         let jointed: Vec<&Name> = description.bodies.iter().map(|b| &b.name).chain(unplaced).collect();
         let all =
@@ -184,25 +178,16 @@ impl<'a, 'g> Builder<'a, 'g> {
 
         let scope = Scope {
             graph,
-            parameters: &description.parameters,
-            tables: &description.tables,
+            description,
             bodies: all
                 .clone()
                 .chain(description.frames.iter().map(|f| &f.name))
                 .map(|n| n.text.clone())
                 .collect(),
-            frames: description.frames.iter().map(|f| f.name.text.clone()).collect(),
-            joints: description.joints.iter().map(|j| j.name.text.clone()).collect(),
-            actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
-            inputs: &description.inputs,
             driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count()
                 + drive::input_drives(description).count(),
-            states: &description.states,
-            definitions: &description.definitions,
-            speeds: &description.speeds,
             context: Context::new(Allowed::Constant, None).into(),
             kinematics: Kinematics::default(),
-            is_f32: description.scalar == ScalarType::F32,
             records: Records {
                 used: vec![false; description.parameters.len()],
                 used_tables: vec![false; description.tables.len()],
@@ -211,7 +196,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             .into(),
         };
         graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
-        for name in all.clone().filter(|n| n.text == GROUND) {
+        for name in all.filter(|n| n.text == GROUND) {
             let message = "the name `ground` is reserved for the fixed reference";
             cx.report_error(name.place.clone(), message).add_help(
                 "choose another name, or remove the body: joints can start at `ground` without a declaration",
@@ -231,29 +216,63 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
         scope.record_requirement(Rule::Positive, || "the speed of friction".to_string(), &[friction_speed]);
         let model = empty_model(graph, description, gravity.unwrap_or(Vec3::zero(graph)), friction_speed);
-        let places = vec![None; jointed.len()];
-        let mut placeable: Vec<String> = all.map(|n| n.text.clone()).collect();
-        placeable.extend(description.frames.iter().map(|f| f.name.text.clone()));
-        placeable.extend(description.points.iter().map(|p| p.name.text.clone()));
-        Builder {
+        let mut builder = Builder {
             scope,
             model,
-            description,
             jointed,
-            places,
-            coordinates: Vec::new(),
-            placeable,
-            masses: Vec::new(),
             solved_loops: Vec::new(),
-            releasing: None,
-            joint_frames: BTreeMap::new(),
-            released_forces: Vec::new(),
-            contact_points: BTreeMap::new(),
+            release: releasing.map(|(joints, retained)| Release::of_joints(joints, retained)),
             moving_placements: Vec::new(),
             frame_links: Vec::new(),
+            surfaces: Vec::new(),
             partials: Partials::default(),
             group: 0,
             mobility: Diagnostics::new(),
+        };
+        builder.number_coordinates(cx);
+        builder
+    }
+
+    /// Numbers the entries of `q` and `v`, those of released joints last.
+    fn number_coordinates(&mut self, cx: &mut Diagnostics) {
+        let d = self.scope.description;
+        let closing = loop_closing_joints(d);
+        self.solved_loops = find_solved_loops(d, &closing, cx);
+        let mut numbering = Numbering::of_description(d, (&closing, &self.solved_loops), cx);
+        if let Some(release) = &self.release {
+            self.scope.kinematics.first_released = Some(numbering.next_coordinate());
+            numbering.add_released(d, release.joints);
+        }
+        self.model.configuration = numbering.configuration;
+        self.model.velocities = numbering.velocities;
+        self.model.charts = numbering.charts;
+        self.scope.kinematics.coordinates = numbering.coordinates;
+        self.scope.kinematics.joint_coordinates = numbering.joints;
+    }
+
+    /// Adds all elements to the placed links.
+    fn add_elements(&mut self, closing: &[usize], moving: MotionKnown, cx: &mut Diagnostics) {
+        self.add_drives(moving, cx);
+        self.add_actions(moving, cx);
+        self.model.limits = resolve_limits(&self.scope, &self.model, cx);
+        let solved = self.add_solved(cx);
+        let constrained = self.add_constraints(closing, (moving, solved), cx);
+        self.record_slipping_power();
+        self.add_contacts(moving, cx);
+        if self.release.is_none() {
+            check_acceleration_forces(&self.model, cx);
+        }
+        self.add_expressions(constrained, cx);
+        if self.release.is_none() {
+            self.model.equilibria = resolve_equilibria(&self.scope, &self.model, cx);
+        }
+        find_dependencies(&mut self.model);
+        self.add_speeds(constrained, cx);
+        self.add_frames();
+        check_finite(&self.scope, &self.model, cx);
+        if cx.is_empty() && self.scope.description.drawing {
+            (self.model.drawing, self.model.heights) =
+                draw_mechanism(&self.scope, &self.model, &self.surfaces);
         }
     }
 
@@ -264,11 +283,11 @@ impl<'a, 'g> Builder<'a, 'g> {
             return;
         }
         let records = self.scope.records.borrow();
-        let unused = self.description.parameters.iter().zip(&records.used);
-        let names = self.description.tables.iter().map(|table| &table.name);
+        let unused = self.scope.description.parameters.iter().zip(&records.used);
+        let names = self.scope.description.tables.iter().map(|table| &table.name);
         let unused = unused.chain(names.zip(&records.used_tables));
         // A state counts as used: its value is visible to the caller that integrates it.
-        let is_state = |p: &Name| self.description.states.iter().any(|(state, _)| state.text == p.text);
+        let is_state = |p: &Name| self.scope.description.states.iter().any(|(state, _)| state.text == p.text);
         let unused = unused.filter(|(p, _)| !is_state(p));
         let unused: Vec<_> =
             unused.filter(|(p, used)| !**used && !p.text.starts_with('_')).map(|(p, _)| p).collect();

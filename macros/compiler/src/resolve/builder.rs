@@ -1,73 +1,35 @@
-//! Builder of the checked model, with queries about elements resolved so far.
+//! Builder of the model: its state, its links and their motion.
 
-use super::joint::full_name;
-use super::range::ValueRange;
-use super::scope::{MassProperties, Placed, PlacedKind, Scope, Terms};
-use crate::diag::{Diagnostics, Place};
-use crate::expr::{self, Rotation, Vec3};
-use crate::kinematics::{Partials, joint_of_link, symbols_in};
-use crate::mechanism::{
-    Constraint, Coordinate, InQ, InV, Inertia, Link, LinkId, Model, Motion, Pose, Quantity, Rule,
-};
-use crate::syntax::{Description, Endpoint, Expr, ExprKind, GROUND, Name};
-use std::collections::BTreeMap;
+use super::closed_form::ClosedFormLoop;
+use super::contact::Surface;
+use super::holders::MovingPlacement;
+use super::reaction::Release;
+use super::scope::{Placed, PlacedKind, Scope};
+use crate::diag::Diagnostics;
+use crate::expr::Rotation;
+use crate::kinematics::{Partials, accelerations, joint_of_link, symbols_in, twists};
+use crate::mechanism::{Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
+use crate::syntax::Name;
 
-/// Indices of the coordinates and velocities of a joint.
-pub struct JointCoordinates {
-    /// Index of the joint's first coordinate in `q`.
-    pub q: InQ,
-    /// Index of the joint's first velocity in `v`.
-    pub v: InV,
-    /// Coordinates that force elements can act on: name, coordinate, and whether it is an angle.
-    pub plain: Vec<(String, Coordinate, bool)>,
-}
-
-/// A loop that is solved in closed form, with the joints that are solved for.
-pub struct ClosedFormLoop {
-    /// Index of the joint that closes the loop solved in closed form.
-    pub closing: usize,
-    /// Indices of the joints whose children are the parent and the child of the closing joint.
-    pub sides: [usize; 2],
-}
-
-/// Index into the list of bodies and jointed particles.
-pub type BodyIndex = usize;
-
-/// Builder of the model, which resolves all elements of a description.
+/// Builder of the model: places the elements of a description, and adds the parts that resolved elements
+/// return.
 pub struct Builder<'a, 'g> {
     /// Scope in which names of expressions are resolved.
     pub scope: Scope<'a, 'g>,
     /// Model of the mechanism that has been built so far.
     pub model: Model<'g>,
-    /// Description of the mechanism as the user wrote it.
-    pub description: &'a Description,
     /// Bodies, and particles without a position of their own, which can be children of joints.
     pub jointed: Vec<&'a Name>,
-    /// Link and pose of each body, once its placement is resolved.
-    pub places: Vec<Option<(Option<LinkId>, Pose<'g>)>>,
-    /// Names of all elements that have a position or axes.
-    pub placeable: Vec<String>,
-    /// Mass, centre of mass and central inertia of each body.
-    pub masses: Vec<Option<MassProperties<'g>>>,
-    /// Coordinates and velocities of each joint.
-    pub coordinates: Vec<JointCoordinates>,
     /// Loops that are solved in closed form.
     pub solved_loops: Vec<ClosedFormLoop>,
-    /// Joints to release, and the constraints that the mechanism with released joints keeps.
-    pub releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
-    /// Frame of each tree joint on its parent before the release, by index of the joint. Bodies placed by
-    /// `at` and `frame` have their own frame in this map.
-    pub joint_frames: BTreeMap<usize, Placed<'g>>,
-    /// Name and generalized forces on the coordinates of released joints, for each force element, energy and
-    /// dissipation.
-    pub released_forces: Vec<(String, Vec<expr::Expr<'g>>)>,
-    /// Bodies and particles placed by a moving `at` or `frame`: index among the releasable joints, and the
-    /// link that carries them.
-    pub moving_placements: Vec<(usize, Option<LinkId>)>,
+    /// Joints that are released.
+    pub release: Option<Release<'a, 'g>>,
+    /// Bodies and particles placed by a moving `at` or `frame`.
+    pub moving_placements: Vec<MovingPlacement>,
     /// Links of frames that move relative to the link in which they are defined.
     pub frame_links: Vec<LinkId>,
-    /// Contact point of each constraint of touching surfaces, by name, from the ground's origin.
-    pub contact_points: BTreeMap<String, Terms<'g>>,
+    /// Surfaces of contacts and of pairs that roll or slip, for the drawing, with the names of the contacts.
+    pub surfaces: Vec<(String, Surface<'g>)>,
     /// Partial derivatives of the poses of the links so far.
     pub partials: Partials<'g>,
     /// Index of the group of constraints that is being added.
@@ -76,64 +38,15 @@ pub struct Builder<'a, 'g> {
     pub mobility: Diagnostics,
 }
 
+/// Proof that the motion of all links is known, so that expressions with velocities can be read. Created only
+/// by [`Builder::compute_motion`].
+#[derive(Clone, Copy)]
+pub struct MotionKnown(());
+
 impl<'g> Builder<'_, 'g> {
     /// Returns the loop whose closed-form solution determines a joint's coordinate.
     pub fn solving_loop(&self, j: usize) -> Option<&ClosedFormLoop> {
         self.solved_loops.iter().find(|e| e.sides.contains(&j))
-    }
-
-    /// Returns the index of a body or jointed particle.
-    pub fn jointed_index(&self, name: &str) -> Option<usize> {
-        self.jointed.iter().position(|h| h.text == name)
-    }
-
-    /// Returns the coordinates of a joint that force elements can act on; `None` if the joint does not exist.
-    pub fn joint_coordinates(&self, name: &str) -> Option<Vec<(String, Coordinate, bool)>> {
-        let j = self.description.joints.iter().position(|j| j.name.text == name)?;
-        Some(self.coordinates[j].plain.clone())
-    }
-
-    /// Whether an expression is the name of a coordinate that is an angle.
-    pub fn is_angle(&self, e: &Expr) -> bool {
-        let name = match &e.kind {
-            ExprKind::Name(name) => name.clone(),
-            ExprKind::Field(joint, member) => full_name(joint.as_name().unwrap_or_default(), &member.text),
-            _ => return false,
-        };
-        let kinematics = &self.scope.kinematics;
-        kinematics.coordinates.iter().any(|(known, _, angle)| *known == name && *angle)
-    }
-
-    /// Returns the names of all joints.
-    pub fn joint_names(&self) -> Vec<String> {
-        self.description.joints.iter().map(|j| j.name.text.clone()).collect()
-    }
-
-    /// Returns the frame of a joint on the body of one of its ends.
-    pub fn frame_of_endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
-        let translation = match &end.at {
-            Some(at) => self.scope.own_vector(at, cx).filter(|v| {
-                let range = ValueRange::of_scalar(&self.description.scalar);
-                let describe_joint_position = || format!("the position of a joint on `{}`", end.body.text);
-                v.0.iter().for_each(|c| {
-                    self.scope.record_requirement(Rule::Length, describe_joint_position, &[*c])
-                });
-                v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
-            }),
-            None => Some(Vec3::zero(self.scope.graph)),
-        };
-        let rotation = self.scope.resolve_rotation(&end.rotated, cx);
-        Some(Pose { rotation: rotation?, translation: translation? })
-    }
-
-    /// Returns a substitute pose for an element with an error. Its generic values avoid follow-up errors.
-    pub fn substitute_pose(&self, moves: bool) -> Pose<'g> {
-        let g = self.scope.graph;
-        let mut translation = Vec3::from_numbers(g, [0.731, 0.417, 0.593]);
-        if moves {
-            translation += Vec3::coordinate_axis(g, 0) * Quantity::Time.expr(g);
-        }
-        Pose { rotation: Rotation::identity(g), translation }
     }
 
     /// Adds a massless link for a placement that moves, and returns the link. A constant placement is
@@ -167,13 +80,26 @@ impl<'g> Builder<'_, 'g> {
         self.scope.kinematics.places.insert(name.to_string(), Placed { link, pose, kind });
     }
 
-    /// Returns the placement of the parent of a joint: a body or a point.
-    pub fn joint_parent(&self, name: &Name, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
-        if name.text == GROUND {
-            return Some((None, Pose::identity(self.scope.graph)));
+    /// Records a joint whose reactions can be outputs. They are resolved in the axes of a frame on a link.
+    pub fn record_transmission(&mut self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
+        let name = self.scope.description.joints[j].name.text.clone();
+        self.scope.kinematics.transmissions.insert(name, (j, link, rotation.clone()));
+    }
+
+    /// Computes twists and accelerations of the links, for expressions with velocities. Returns `None` if an
+    /// element has not been placed.
+    pub fn compute_motion(&mut self) -> Option<MotionKnown> {
+        let places = &self.scope.kinematics.places;
+        if !self.jointed.iter().all(|name| places.contains_key(&name.text)) {
+            return None;
         }
-        let place: Place = name.place.clone();
-        let e = Expr { kind: ExprKind::Name(name.text.clone()), place };
-        self.scope.resolve_placement(&e, cx).map(|p| (p.link, p.pose))
+        let g = self.scope.graph;
+        self.scope.kinematics.charts.clone_from(&self.model.charts);
+        let v: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Velocity(k).expr(g)).collect();
+        let a: Vec<_> = (0..self.model.nv()).map(|k| Quantity::Acceleration(k).expr(g)).collect();
+        let kinematics = &mut self.scope.kinematics;
+        kinematics.twists = twists(&self.model, &kinematics.joints, &v);
+        kinematics.accelerations = accelerations(&self.model, &kinematics.joints, &kinematics.twists, &v, &a);
+        Some(MotionKnown(()))
     }
 }

@@ -11,7 +11,7 @@ use crate::mechanism::{LinkId, Pose};
 use crate::syntax;
 
 /// Motion of a body relative to a frame, in the axes of the body's link.
-struct Relative<'g> {
+struct RelativeMotion<'g> {
     link: Option<LinkId>,
     /// Velocity of the origin of the body, m/s.
     v: Vec3<'g>,
@@ -25,7 +25,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `instant_center(body / frame)`: the vector from the body's origin to the point at rest,
     /// `ω × v / ω²`, with the velocity `v` of the origin.
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
+        let RelativeMotion { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         if !always_equals(w.dot(v), 0.0) {
             cx.report_error(
@@ -44,14 +44,14 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the
     /// screw axis (Mozzi, Chasles), `ω × v / ω²`.
     pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
+        let RelativeMotion { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         Some(vector_value(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// Resolves `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
     pub fn screw_pitch(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
+        let RelativeMotion { v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         Some(Value::Scalar(w.dot(v) / square))
     }
@@ -59,7 +59,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to
     /// the point without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
     pub fn acceleration_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { link, w, rates, .. } = self.relative_motion(call, Allowed::Acceleration, cx)?;
+        let RelativeMotion { link, w, rates, .. } = self.relative_motion(call, Allowed::Acceleration, cx)?;
         let [a, alpha] = rates?;
         let square = w.dot(w);
         if !(is_always_zero(w.cross(alpha)) && always_equals(w.dot(a), 0.0)) {
@@ -80,7 +80,7 @@ impl<'g> Scope<'_, 'g> {
         call: &Call<'_>,
         allowed: Allowed,
         cx: &mut Diagnostics,
-    ) -> Option<Relative<'g>> {
+    ) -> Option<RelativeMotion<'g>> {
         let Ok([body, frame]) = <[_; 2]>::try_from(call.slash_operands()) else {
             return call.reject_arguments(cx);
         };
@@ -105,7 +105,7 @@ impl<'g> Scope<'_, 'g> {
         frame: &syntax::Expr,
         accelerates: bool,
         cx: &mut Diagnostics,
-    ) -> Option<Relative<'g>> {
+    ) -> Option<RelativeMotion<'g>> {
         let (body_link, frame_link) = (self.resolve_frame_link(body, cx), self.resolve_frame_link(frame, cx));
         let place = self.resolve_placement(body, cx);
         let (_, frame_link, place) = (body_link?, frame_link?, place?);
@@ -123,7 +123,7 @@ impl<'g> Scope<'_, 'g> {
                 ),
             ]
         });
-        Some(Relative {
+        Some(RelativeMotion {
             link,
             v: resolve_at_link(&kinematics.velocity_in(&place, &from, frame_link, self.graph)),
             w: resolve_at_link(&kinematics.angular_velocity_in(link, frame_link, self.graph)),

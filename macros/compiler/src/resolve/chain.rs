@@ -1,62 +1,55 @@
-//! Conversion of joints to chains of links, one link per elementary motion.
+//! Links of joints, one link per elementary motion, and of placements that move.
 
 use super::builder::Builder;
+use super::closed_form::solved_pose;
 use super::elementary::Elementary;
+use super::holders::is_on_frame;
 use super::joint::{self, own_coordinate};
-use super::scope::{Placed, PlacedKind};
+use super::reaction::RELEASED;
+use super::scope::{Placed, PlacedKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
-use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Pose, Rule};
+use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Motion, Pose, Rule};
 use crate::syntax::Joint;
 
+/// Resolves the arguments of a joint, only to report their errors.
+pub fn check_joint(scope: &Scope<'_, '_>, joint: &Joint, cx: &mut Diagnostics) {
+    let _ = scope.motions_of_joint(joint, cx);
+    let _ = scope.frame_of_endpoint(&joint.parent, cx);
+    let _ = scope.frame_of_endpoint(&joint.child, cx);
+}
+
 impl<'g> Builder<'_, 'g> {
-    /// Resolves the arguments of all joints although the tree is broken, to report all errors at once.
-    pub fn check_joints(&self, cx: &mut Diagnostics) {
-        for joint in &self.description.joints {
-            self.check_joint(joint, cx);
-        }
-    }
-
-    /// Resolves the arguments of a joint, only to report their errors.
-    pub fn check_joint(&self, joint: &Joint, cx: &mut Diagnostics) {
-        let _ = self.scope.motions_of_joint(joint, cx);
-        let _ = self.frame_of_endpoint(&joint.parent, cx);
-        let _ = self.frame_of_endpoint(&joint.child, cx);
-    }
-
-    /// Places the child body of a joint relative to its parent.
+    /// Places the child body of a joint.
     pub fn place_joint(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
-        let joint = &self.description.joints[j];
+        let joint = &self.scope.description.joints[j];
         let motions = self.scope.motions_of_joint(joint, cx);
         let (on_parent, on_child) =
-            (self.frame_of_endpoint(&joint.parent, cx), self.frame_of_endpoint(&joint.child, cx));
-        let start = self.joint_parent(&joint.parent.body, cx);
+            (self.scope.frame_of_endpoint(&joint.parent, cx), self.scope.frame_of_endpoint(&joint.child, cx));
+        let start = self.scope.joint_parent(&joint.parent.body, cx);
         // A joint with an error gets default motions, so that its dependents are checked as well.
         let motions = motions.unwrap_or_else(|| joint::default_motions(self.scope.graph, joint));
-        let on_parent = on_parent.unwrap_or_else(|| self.substitute_pose(false));
-        let on_child = on_child.unwrap_or_else(|| self.substitute_pose(false));
+        let on_parent = on_parent.unwrap_or_else(|| self.scope.substitute_pose(false));
+        let on_child = on_child.unwrap_or_else(|| self.scope.substitute_pose(false));
         if let Some((link, pose)) = start {
             let frame = pose.compose_with(&on_parent);
             self.record_transmission(j, link, &frame.rotation);
-            let placed = Placed { link, pose: frame.clone(), kind: PlacedKind::Body };
-            self.joint_frames.insert(j, placed);
-            let (joints, _) = self.releasing.unwrap_or_default();
-            let (link, frame) = match joints.iter().position(|open| *open == j) {
-                Some(index) => self.released_joint_frame(index, joints.len(), link, frame),
-                None => (link, frame),
-            };
+            let (link, frame) = self.release_if_requested(j, link, frame);
             let (link, pose) = match self.solving_loop(j) {
-                Some(_) => {
-                    let solved = self.solved_pose(j, cx).unwrap_or_else(|| self.substitute_pose(true));
+                Some(solved) => {
+                    let solved = solved_pose(&self.scope, solved, j, cx)
+                        .unwrap_or_else(|| self.scope.substitute_pose(true));
                     self.link_if_moving(link, frame.compose_with(&solved))
                 }
                 None => self.add_chain(j, &motions, link, frame),
             };
             let pose = pose.compose_with(&on_child.inverse());
-            let kind =
-                if child < self.description.bodies.len() { PlacedKind::Body } else { PlacedKind::Point };
-            self.register_placement(&self.jointed[child].text, link, pose.clone(), kind);
-            self.places[child] = Some((link, pose));
+            let kind = if child < self.scope.description.bodies.len() {
+                PlacedKind::Body
+            } else {
+                PlacedKind::Point
+            };
+            self.register_placement(&self.jointed[child].text, link, pose, kind);
         }
         self.add_passive(j, joint, cx);
     }
@@ -71,7 +64,7 @@ impl<'g> Builder<'_, 'g> {
     ) -> (Option<LinkId>, Pose<'g>) {
         let graph = self.scope.graph;
         for (k, motion) in motions.iter().enumerate() {
-            let own = &self.coordinates[j];
+            let own = &self.scope.kinematics.joint_coordinates[j];
             let coordinate = own.plain.get(k).map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
             let (motion, aligned) = motion.motion_of_link(graph, coordinate, (own.q, own.v));
             let placement =
@@ -85,7 +78,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds damping, friction and the motor of a joint with one degree of freedom to the model.
     fn add_passive(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
-        let [(name, coordinate, _)] = self.coordinates[j].plain.as_slice() else {
+        let [(name, coordinate, _)] = self.scope.kinematics.joint_coordinates[j].plain.as_slice() else {
             return;
         };
         let (name, coordinate) = (name.clone(), *coordinate);
@@ -104,8 +97,57 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Returns whether every body has been placed.
-    pub fn is_placed(&self) -> bool {
-        self.places.iter().all(Option::is_some)
+    /// Returns the link of a placed body or particle, with a new link if its placement moves. If the
+    /// placement is released, returns the last of six further links.
+    pub fn link_of_place(
+        &mut self,
+        number: usize,
+        carrier: Option<LinkId>,
+        pose: Pose<'g>,
+    ) -> (Option<LinkId>, Pose<'g>) {
+        let (mut link, mut pose) = self.link_if_moving(carrier, pose);
+        let mut holder = carrier;
+        if link == carrier {
+            let frame = carrier.filter(|link| {
+                self.frame_links.contains(link) && is_on_frame(self.scope.description, number)
+            });
+            let Some(frame) = frame else { return (link, pose) };
+            // The link that carries the frame is the holder; other bodies on the frame have connections of
+            // their own.
+            holder = self.model.links.get(frame.0).and_then(|frame| frame.parent);
+            let (motion, inertia) = (Motion::Placed, Inertia::zero(self.scope.graph));
+            link = Some(self.add_link(Link { parent: Some(frame), placement: pose, motion, inertia }));
+            pose = Pose::identity(self.scope.graph);
+        }
+        self.moving_placements.push((number, holder));
+        self.release_if_requested(number, link, pose)
+    }
+
+    /// Returns the frame of a connection on its parent. If the connection is released, the frame is moved by
+    /// the six coordinates of the release.
+    fn release_if_requested(
+        &mut self,
+        number: usize,
+        mut link: Option<LinkId>,
+        mut pose: Pose<'g>,
+    ) -> (Option<LinkId>, Pose<'g>) {
+        let Some((release, (q, v))) = self.release.as_mut().zip(self.scope.kinematics.first_released) else {
+            return (link, pose);
+        };
+        let Some(index) = release.index_of(number) else { return (link, pose) };
+        release.frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
+        let g = self.scope.graph;
+        let (q, v) = (q + RELEASED * index, v + RELEASED * index);
+        for k in 0..RELEASED {
+            let (axis, coordinate) = (Vec3::coordinate_axis(g, k % 3), own_coordinate(q + k, v + k));
+            let motion = match k {
+                0..3 => Motion::Slide { axis, coordinate },
+                _ => Motion::Turn { axis, coordinate },
+            };
+            let inertia = Inertia::zero(g);
+            link = Some(self.add_link(Link { parent: link, placement: pose, motion, inertia }));
+            pose = Pose::identity(g);
+        }
+        (link, pose)
     }
 }

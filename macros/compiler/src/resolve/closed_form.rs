@@ -3,16 +3,13 @@
 //! the other coordinates, by the intersection of two circles, or of a circle and a line (Bottema and Roth,
 //! *Theoretical Kinematics*, 1979, ch. XI). The argument `branch` selects one of the two assembly modes.
 
-use super::builder::{Builder, ClosedFormLoop};
 use super::elementary::Elementary;
-use super::reaction::RELEASED;
-use super::scope::{Placed, PlacedKind};
+use super::scope::{Placed, PlacedKind, Scope};
 use crate::diag::Diagnostics;
-use crate::expr::replace::replace_all;
 use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{change_axes, perpendicular_directions};
-use crate::mechanism::{LinkId, Pose, Quantity, SolvedSide};
+use crate::mechanism::{LinkId, Pose, SolvedSide};
 use crate::syntax::{Description, Endpoint, GROUND, Joint, JointKind};
 
 /// Side of a loop with its joint coordinate at zero, in the axes of the joint of the first side.
@@ -25,8 +22,13 @@ struct Side<'g> {
     slide: Option<Vec3<'g>>,
 }
 
-/// Proof that the joints for which loops are solved are recorded. Created only by [`Builder::add_solved`].
-pub struct Solved(());
+/// A loop that is solved in closed form, with the joints that are solved for.
+pub struct ClosedFormLoop {
+    /// Index of the joint that closes the loop.
+    pub closing: usize,
+    /// Indices of the joints whose children are the parent and the child of the closing joint.
+    pub sides: [usize; 2],
+}
 
 const CLOSED_FORM_HELP: &str = "a loop is solved in closed form if a Pin closes it between two bodies that \
                                 are connected by Pins, or by a Pin and a Sleeve, in one plane; without \
@@ -70,124 +72,120 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
     found
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Records the joints for which loops are solved in closed form, with their axes.
-    pub fn add_solved(&mut self, cx: &mut Diagnostics) -> Solved {
-        let solved_side_of_joint = |j: &usize| {
-            let joint = &self.description.joints[*j];
-            let (_, axis) = self.joint_frame(*j, cx)?;
-            Some(SolvedSide { joint: *j, turns: joint.kind == JointKind::Pin, axis })
-        };
-        self.model.solved =
-            self.solved_loops.iter().flat_map(|e| e.sides.iter()).map_while(solved_side_of_joint).collect();
-        Solved(())
-    }
+/// Returns the joints for which loops are solved in closed form, with their axes.
+pub fn solved_sides<'g>(
+    scope: &Scope<'_, 'g>,
+    loops: &[ClosedFormLoop],
+    cx: &mut Diagnostics,
+) -> Vec<SolvedSide<'g>> {
+    let solved_side_of_joint = |j: &usize| {
+        let (_, axis) = joint_frame(scope, *j, cx)?;
+        Some(SolvedSide { joint: *j, turns: scope.description.joints[*j].kind == JointKind::Pin, axis })
+    };
+    loops.iter().flat_map(|e| e.sides.iter()).map_while(solved_side_of_joint).collect()
+}
 
-    /// Returns the child's joint frame in the parent's joint frame, for the solved joint coordinate.
-    pub fn solved_pose(&self, j: usize, cx: &mut Diagnostics) -> Option<Pose<'g>> {
-        let ClosedFormLoop { closing, sides } = self.solving_loop(j)?;
-        let joint = &self.description.joints[*closing];
-        let branch = self.scope.resolve_scalar(joint.branch.as_ref()?, cx)?;
-        let place = joint.branch.as_ref().map_or(&joint.name.place, |b| &b.place);
-        if !branch.constant_value().is_some_and(|b| b.abs() == 1.0) {
-            cx.report_error(place.clone(), "unknown branch").add_help("write `branch = 1` or `branch = -1`");
-            return None;
+/// Returns the child's joint frame in the parent's joint frame, for the solved joint coordinate.
+pub fn solved_pose<'g>(
+    scope: &Scope<'_, 'g>,
+    solved: &ClosedFormLoop,
+    j: usize,
+    cx: &mut Diagnostics,
+) -> Option<Pose<'g>> {
+    let ClosedFormLoop { closing, sides } = solved;
+    let joint = &scope.description.joints[*closing];
+    let branch = scope.resolve_scalar(joint.branch.as_ref()?, cx)?;
+    let place = joint.branch.as_ref().map_or(&joint.name.place, |b| &b.place);
+    if !branch.constant_value().is_some_and(|b| b.abs() == 1.0) {
+        cx.report_error(place.clone(), "unknown branch").add_help("write `branch = 1` or `branch = -1`");
+        return None;
+    }
+    // The first side is a Pin; all following vectors are in the axes of its joint.
+    let pin = usize::from(scope.description.joints[sides[0]].kind != JointKind::Pin);
+    let (first, second) = (sides[pin], sides[1 - pin]);
+    let (frame, axis) = joint_frame(scope, first, cx)?;
+    let ends = [&joint.parent, &joint.child];
+    let a = solved_side(scope, first, ends[pin], &frame, cx)?;
+    let b = solved_side(scope, second, ends[1 - pin], &frame, cx)?;
+    let (second_frame, second_axis) = joint_frame(scope, second, cx)?;
+    let normal =
+        in_frame(scope, &frame, second_frame.link, second_frame.pose.rotation.to_parent(second_axis));
+    let is_always_zero = |e: Expr<'g>| always_equals(e, 0.0);
+    let in_plane = match b.slide {
+        None => normal.cross(axis).0.iter().all(|e| is_always_zero(*e)),
+        Some(slide) => is_always_zero(slide.dot(axis)),
+    };
+    if !in_plane || !is_always_zero((b.base + b.point - a.point).dot(axis)) {
+        cx.report_error(place.clone(), "this loop does not lie in one plane").add_help(CLOSED_FORM_HELP);
+        return None;
+    }
+    let [(_, e1), (_, e2)] = perpendicular_directions(axis);
+    let in_plane_components = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
+    let closing_point = closing_point(&a, &b, branch, &in_plane_components);
+    if j == first {
+        let angle = angle_between(in_plane_components(a.point), closing_point);
+        return Some(rotation_pose(scope, axis, angle));
+    }
+    let reached = e1 * closing_point[0] + e2 * closing_point[1] - b.base;
+    Some(match b.slide {
+        // Slide by the remaining distance, in the axes of the second joint.
+        Some(slide) => {
+            let length = (reached - b.point).dot(slide);
+            Pose { rotation: Rotation::identity(scope.graph), translation: second_axis * length }
         }
-        // The first side is a Pin; all following vectors are in the axes of its joint.
-        let pin = usize::from(self.description.joints[sides[0]].kind != JointKind::Pin);
-        let (first, second) = (sides[pin], sides[1 - pin]);
-        let (frame, axis) = self.joint_frame(first, cx)?;
-        let ends = [&joint.parent, &joint.child];
-        let a = self.solved_side(first, ends[pin], &frame, cx)?;
-        let b = self.solved_side(second, ends[1 - pin], &frame, cx)?;
-        let (second_frame, second_axis) = self.joint_frame(second, cx)?;
-        let normal =
-            self.in_frame(&frame, second_frame.link, second_frame.pose.rotation.to_parent(second_axis));
-        let is_always_zero = |e: Expr<'g>| always_equals(e, 0.0);
-        let in_plane = match b.slide {
-            None => normal.cross(axis).0.iter().all(|e| is_always_zero(*e)),
-            Some(slide) => is_always_zero(slide.dot(axis)),
-        };
-        if !in_plane || !is_always_zero((b.base + b.point - a.point).dot(axis)) {
-            cx.report_error(place.clone(), "this loop does not lie in one plane").add_help(CLOSED_FORM_HELP);
-            return None;
+        None => {
+            let sense = normal.dot(axis);
+            rotation_pose(
+                scope,
+                second_axis,
+                angle_between(in_plane_components(b.point), in_plane_components(reached)) * sense,
+            )
         }
-        let [(_, e1), (_, e2)] = perpendicular_directions(axis);
-        let in_plane_components = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
-        let closing_point = closing_point(&a, &b, branch, &in_plane_components);
-        if j == first {
-            let angle = angle_between(in_plane_components(a.point), closing_point);
-            return Some(self.rotation_pose(axis, angle));
-        }
-        let reached = e1 * closing_point[0] + e2 * closing_point[1] - b.base;
-        Some(match b.slide {
-            // Slide by the remaining distance, in the axes of the second joint.
-            Some(slide) => {
-                let length = (reached - b.point).dot(slide);
-                Pose { rotation: Rotation::identity(self.scope.graph), translation: second_axis * length }
-            }
-            None => {
-                let sense = normal.dot(axis);
-                self.rotation_pose(
-                    second_axis,
-                    angle_between(in_plane_components(b.point), in_plane_components(reached)) * sense,
-                )
-            }
-        })
-    }
+    })
+}
 
-    fn rotation_pose(&self, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
-        Pose {
-            rotation: Rotation::rotation_about_axis(axis, angle),
-            translation: Vec3::zero(self.scope.graph),
-        }
-    }
+fn rotation_pose<'g>(scope: &Scope<'_, 'g>, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
+    Pose { rotation: Rotation::rotation_about_axis(axis, angle), translation: Vec3::zero(scope.graph) }
+}
 
-    /// Returns the frame of a joint on its parent, and its axis in that frame.
-    fn joint_frame(&self, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
-        let joint = &self.description.joints[j];
-        let (link, pose) = self.joint_parent(&joint.parent.body, cx)?;
-        let pose = pose.compose_with(&self.frame_of_endpoint(&joint.parent, cx)?);
-        let axis = match self.scope.motions_of_joint(joint, cx)?.first()? {
-            Elementary::Turn(axis) | Elementary::Slide(axis) => *axis,
-            _ => return None,
-        };
-        Some((Placed { link, pose, kind: PlacedKind::Body }, axis))
-    }
+/// Returns the frame of a joint on its parent, and its axis in that frame.
+fn joint_frame<'g>(scope: &Scope<'_, 'g>, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
+    let joint = &scope.description.joints[j];
+    let (link, pose) = scope.joint_parent(&joint.parent.body, cx)?;
+    let pose = pose.compose_with(&scope.frame_of_endpoint(&joint.parent, cx)?);
+    let axis = match scope.motions_of_joint(joint, cx)?.first()? {
+        Elementary::Turn(axis) | Elementary::Slide(axis) => *axis,
+        _ => return None,
+    };
+    Some((Placed { link, pose, kind: PlacedKind::Body }, axis))
+}
 
-    fn solved_side(
-        &self,
-        j: usize,
-        end: &Endpoint,
-        frame: &Placed<'g>,
-        cx: &mut Diagnostics,
-    ) -> Option<Side<'g>> {
-        let joint = &self.description.joints[j];
-        let (joint_frame, axis) = self.joint_frame(j, cx)?;
-        let on_child = self.frame_of_endpoint(&joint.child, cx)?;
-        let closing = self.frame_of_endpoint(end, cx)?.translation;
-        let point = on_child.inverse().transform_point(closing);
-        let in_first_frame =
-            |v| self.in_frame(frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
-        let terms = self.scope.kinematics.position_between(&joint_frame, frame);
-        let zero = Vec3::zero(self.scope.graph);
-        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.in_frame(frame, *link, *v));
-        let slide = (joint.kind == JointKind::Sleeve).then(|| in_first_frame(axis));
-        Some(Side { base, point: in_first_frame(point), slide })
-    }
+fn solved_side<'g>(
+    scope: &Scope<'_, 'g>,
+    j: usize,
+    end: &Endpoint,
+    frame: &Placed<'g>,
+    cx: &mut Diagnostics,
+) -> Option<Side<'g>> {
+    let joint = &scope.description.joints[j];
+    let (joint_frame, axis) = joint_frame(scope, j, cx)?;
+    let on_child = scope.frame_of_endpoint(&joint.child, cx)?;
+    let closing = scope.frame_of_endpoint(end, cx)?.translation;
+    let point = on_child.inverse().transform_point(closing);
+    let in_first_frame = |v| in_frame(scope, frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
+    let terms = scope.kinematics.position_between(&joint_frame, frame);
+    let zero = Vec3::zero(scope.graph);
+    let base = terms.iter().fold(zero, |sum, (link, v)| sum + in_frame(scope, frame, *link, *v));
+    let slide = (joint.kind == JointKind::Sleeve).then(|| in_first_frame(axis));
+    Some(Side { base, point: in_first_frame(point), slide })
+}
 
-    /// Transforms a vector from the axes of a link to those of a frame. Released joints are treated as
-    /// closed: the solution is that of the original mechanism.
-    fn in_frame(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
-        let v = change_axes(&self.scope.kinematics.joints, v, link, frame.link);
-        let v = frame.pose.rotation.to_child(v);
-        let Some((joints, _)) = self.releasing else { return v };
-        let first_released = self.model.nq() - RELEASED * joints.len();
-        let is_released_coordinate =
-            |s| matches!(Quantity::from_symbol(s), Quantity::Configuration(k) if k >= first_released);
-        let closed = replace_all(&v.0, &|s| is_released_coordinate(s).then(|| self.scope.graph.zero()));
-        closed.try_into().map_or(v, Vec3)
-    }
+/// Transforms a vector from the axes of a link to those of a frame. Released joints are treated as
+/// closed: the solution is that of the original mechanism.
+fn in_frame<'g>(scope: &Scope<'_, 'g>, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
+    let v = change_axes(&scope.kinematics.joints, v, link, frame.link);
+    let v = frame.pose.rotation.to_child(v);
+    scope.with_released_at_zero(&v.0).try_into().map_or(v, Vec3)
 }
 
 /// Returns the point in the plane of the loop at which both sides meet, relative to the origin of the first

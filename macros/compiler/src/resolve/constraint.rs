@@ -2,241 +2,177 @@
 //! and slipping pairs. Each row has its rate and the time derivative of the rate. Motions are relative to the
 //! nearest link that carries both ends, so that their common motion cancels.
 
-use super::builder::Builder;
-use super::closed_form::Solved;
+use super::contact::{check_pair, rolling_rows, slipping_rows};
 use super::corrections;
-use super::motion::Moving;
-use super::rows::ConstraintRows;
-use super::scope::{Allowed, Context, Value};
+use super::rows::{ConstraintRows, constraint_row};
+use super::scope::{Allowed, Context, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
 use crate::expr::replace::substitute_symbols;
 use crate::expr::sample::{always_equals, sample_of_symbol};
-use crate::expr::{Expr, Rotation, Vec3};
+use crate::expr::{Expr, Vec3};
 use crate::kinematics::{AXES, symbols_in, time_derivative, velocity_gradient};
 use crate::language::{Callable, FunctionId};
-use crate::mechanism::{Freedom, Measure, Pose, Quantity};
-use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
+use crate::mechanism::{Measure, Model, Pose, Quantity};
+use crate::syntax::{self, ConstraintKind, ExprKind};
 
-/// Maximum number of scalar constraints of a mechanism: twice the maximum number of velocities, because half
-/// of the constraints may be redundant.
-const MAX_CONSTRAINTS: usize = 256;
+/// Returns the rows of a declared constraint, the `index`-th; `None` after an error.
+pub fn resolve_constraint<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    (index, constraint): (usize, &syntax::Constraint),
+    cx: &mut Diagnostics,
+) -> Option<ConstraintRows<'g>> {
+    let measure = Measure::Declared(index);
+    match constraint.kind {
+        ConstraintKind::Holonomic => holonomic_rows(scope, constraint, measure, cx),
+        ConstraintKind::Nonholonomic => nonholonomic_rows(scope, constraint, measure, cx),
+        ConstraintKind::Rolling => rolling_rows(scope, model, constraint, cx),
+        ConstraintKind::Slipping => slipping_rows(scope, model, constraint, cx),
+    }
+}
 
-/// Proof that all constraints have been added. Created only by [`Builder::add_constraints`].
-#[derive(Clone, Copy)]
-pub struct Constrained(());
-
-impl<'g> Builder<'_, 'g> {
-    /// Adds all constraints: first those of loop-closing joints, then the declared ones.
-    pub fn add_constraints(
-        &mut self,
-        closing: &[usize],
-        _: (Moving, Solved),
-        cx: &mut Diagnostics,
-    ) -> Constrained {
-        if !cx.is_empty() {
-            for j in closing {
-                self.check_joint(&self.description.joints[*j], cx);
-                self.record_transmission(*j, None, &Rotation::identity(self.scope.graph));
-            }
-            for constraint in &self.description.constraints {
-                self.check_constraint(constraint, cx);
-            }
-            return Constrained(());
-        }
-        let solved: Vec<usize> = self.solved_loops.iter().map(|e| e.closing).collect();
-        for j in closing.iter().filter(|j| !solved.contains(j)) {
-            self.group += 1;
-            self.close_loop(*j, cx);
-        }
-        for (index, constraint) in self.description.constraints.iter().enumerate() {
-            let measure = Measure::Declared(index);
-            let rows = match constraint.kind {
-                ConstraintKind::Holonomic => self.holonomic_rows(constraint, measure, cx),
-                ConstraintKind::Nonholonomic => self.nonholonomic_rows(constraint, measure, cx),
-                ConstraintKind::Rolling => self.rolling_rows(constraint, cx),
-                ConstraintKind::Slipping => self.slipping_rows(constraint, cx),
-            };
-            self.add_rows(&constraint.name.text, rows.unwrap_or_default());
-        }
-        self.model.constraints.sort_by_key(|c| c.residual.is_none());
-        self.model.freedom = Freedom { coordinates: self.model.nv(), velocities: self.model.nv() };
-        if let (Formulation::Speeds(_, place), true) =
-            (&self.description.formulation, self.model.constraints.is_empty())
+/// Returns the rows of a constraint on configurations; `None` after an error.
+fn holonomic_rows<'g>(
+    scope: &Scope<'_, 'g>,
+    constraint: &syntax::Constraint,
+    measure: Measure,
+    cx: &mut Diagnostics,
+) -> Option<ConstraintRows<'g>> {
+    scope.records.borrow_mut().in_holonomic_constraint = true;
+    let rows = difference(scope, constraint, Allowed::Placement, cx);
+    scope.records.borrow_mut().in_holonomic_constraint = false;
+    let (components, redundant) = without_vanishing(rows);
+    let mut rows = Vec::new();
+    for (name, residual) in components {
+        if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::from_symbol(*s), Quantity::Parameter(_)))
         {
-            cx.report_error(place.clone(), "all speeds are independent: this mechanism has no constraint")
-                .add_help("remove this argument");
+            cx.report_error(constraint.value.place.clone(), "this does not constrain any coordinate")
+                .add_help("a holonomic constraint sets an expression of coordinates to zero, or equal to another one");
+            return None;
         }
-        let count = self.model.constraints.len();
-        if count > MAX_CONSTRAINTS {
-            let place = self.description.name.place.clone();
-            let message = format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}");
-            cx.report_error(place, message).add_help(
-                "each loop adds up to five of them: connect the bodies as a tree where possible, or divide \
-                 the mechanism",
-            );
-            return Constrained(());
-        }
-        for j in &solved {
-            self.record_transmission(*j, None, &Rotation::identity(self.scope.graph));
-        }
-        if let Some((_, retained)) = self.releasing {
-            self.model.constraints.retain(|c| retained.iter().any(|k| k.name == c.name));
-            for j in &solved {
-                self.close_in_plane(*j, cx);
-            }
-            return Constrained(());
-        }
-        if cx.is_empty() && !self.model.constraints.is_empty() {
-            let mut found = Diagnostics::new();
-            self.check_mobility(&mut found);
-            self.mobility = found;
-        }
-        Constrained(())
+        let rate = time_derivative(scope.configuration_space(), residual);
+        rows.push(constraint_row(scope, (name, &constraint.name.place), measure, Some(residual), rate));
     }
+    Some(ConstraintRows { rows, redundant, ..ConstraintRows::default() })
+}
 
-    /// Returns the rows of a constraint on configurations; `None` after an error.
-    fn holonomic_rows(
-        &self,
-        constraint: &syntax::Constraint,
-        measure: Measure,
-        cx: &mut Diagnostics,
-    ) -> Option<ConstraintRows<'g>> {
-        self.scope.records.borrow_mut().in_holonomic_constraint = true;
-        let rows = self.difference(constraint, Allowed::Placement, cx);
-        self.scope.records.borrow_mut().in_holonomic_constraint = false;
-        let (components, redundant) = without_vanishing(rows);
-        let mut rows = Vec::new();
-        for (name, residual) in components {
-            if symbols_in(&[residual])
-                .iter()
-                .all(|s| matches!(Quantity::from_symbol(*s), Quantity::Parameter(_)))
-            {
-                cx.report_error(constraint.value.place.clone(), "this does not constrain any coordinate")
-                    .add_help("a holonomic constraint sets an expression of coordinates to zero, or equal to another one");
-                return None;
-            }
-            let rate = time_derivative(self.model.configuration_space(), residual);
-            rows.push(self.constraint_row((name, &constraint.name.place), measure, Some(residual), rate));
+/// Resolves a constraint, only to report its errors.
+pub fn check_constraint<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    constraint: &syntax::Constraint,
+    cx: &mut Diagnostics,
+) {
+    let holonomic = constraint.kind == ConstraintKind::Holonomic;
+    match constraint.kind {
+        ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
+            scope.records.borrow_mut().in_holonomic_constraint = holonomic;
+            let allowed = if holonomic { Allowed::Placement } else { Allowed::Motion };
+            let _ = difference(scope, constraint, allowed, cx);
+            scope.records.borrow_mut().in_holonomic_constraint = false;
         }
-        Some(ConstraintRows { rows, redundant, contact_point: None })
+        ConstraintKind::Rolling | ConstraintKind::Slipping => check_pair(scope, model, constraint, cx),
     }
+}
 
-    /// Resolves a constraint to report its errors, and discards the result.
-    fn check_constraint(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) {
-        let holonomic = constraint.kind == ConstraintKind::Holonomic;
-        match constraint.kind {
-            ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
-                self.scope.records.borrow_mut().in_holonomic_constraint = holonomic;
-                let allowed = if holonomic { Allowed::Placement } else { Allowed::Motion };
-                let _ = self.difference(constraint, allowed, cx);
-                self.scope.records.borrow_mut().in_holonomic_constraint = false;
-            }
-            ConstraintKind::Rolling | ConstraintKind::Slipping => self.check_pair(constraint, cx),
-        }
-    }
-
-    /// Returns the rows of a constraint on velocities; `None` after an error.
-    fn nonholonomic_rows(
-        &self,
-        constraint: &syntax::Constraint,
-        measure: Measure,
-        cx: &mut Diagnostics,
-    ) -> Option<ConstraintRows<'g>> {
-        let (components, redundant) = without_vanishing(self.difference(constraint, Allowed::Motion, cx));
-        let mut rows = Vec::new();
-        for (name, rate) in components {
-            let place = &constraint.value.place;
-            let gradient = velocity_gradient(rate);
-            let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
-            let depends_on_quantity = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
-                symbols_in(e).into_iter().any(|s| f(Quantity::from_symbol(s)))
-            };
-            if gradient.is_empty() {
-                cx.report_error(place.clone(), "this does not constrain any velocity")
-                    .add_help("a constraint on coordinates is a `Holonomic` one");
-                return None;
-            }
-            if depends_on_quantity(&[rate], |q| matches!(q, Quantity::Input(_))) {
-                cx.report_error(place.clone(), "a constraint contains no input")
-                    .add_help("a prescribed motion is an expression of time `t`");
-                return None;
-            }
-            let linear = match depends_on_quantity(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
-                true => linear_form(rate, &gradient),
-                false => Some(rate),
-            };
-            let Some(linear) = linear else {
-                cx.report_error(place.clone(), "this constraint is not linear in the velocities").add_help(
-                    "each term contains at most one velocity, as in `dot(v(skate / ground / ground), \
-                     sled.y)`",
-                );
-                return None;
-            };
-            rows.push(self.constraint_row((name, &constraint.name.place), measure, None, linear));
-        }
-        Some(ConstraintRows { rows, redundant, contact_point: None })
-    }
-
-    /// Returns the left side minus the right side: one component, or three with names.
-    fn difference(
-        &self,
-        constraint: &syntax::Constraint,
-        allowed: Allowed,
-        cx: &mut Diagnostics,
-    ) -> Vec<(String, Expr<'g>)> {
-        let name = &constraint.name.text;
-        let context_of_difference = || Context::new(allowed, Some((None, Pose::identity(self.scope.graph))));
-        let is_angle_expression = |e: &syntax::Expr| match &e.kind {
-            ExprKind::Call(word, _) => word.id == Some(Callable::Function(FunctionId::Angle)),
-            _ => self.is_angle(e),
+/// Returns the rows of a constraint on velocities; `None` after an error.
+fn nonholonomic_rows<'g>(
+    scope: &Scope<'_, 'g>,
+    constraint: &syntax::Constraint,
+    measure: Measure,
+    cx: &mut Diagnostics,
+) -> Option<ConstraintRows<'g>> {
+    let (components, redundant) = without_vanishing(difference(scope, constraint, Allowed::Motion, cx));
+    let mut rows = Vec::new();
+    for (name, rate) in components {
+        let place = &constraint.value.place;
+        let gradient = velocity_gradient(rate);
+        let coefficients: Vec<Expr<'g>> = gradient.iter().map(|(_, c)| *c).collect();
+        let depends_on_quantity = |e: &[Expr<'g>], f: fn(Quantity) -> bool| {
+            symbols_in(e).into_iter().any(|s| f(Quantity::from_symbol(s)))
         };
-        let pair = [Some(&constraint.value), constraint.other.as_ref()];
-        for (side, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
-            if let (Some(side), Some(other)) = (side, other)
-                && allowed == Allowed::Placement
-                && is_angle_expression(side)
-                && !corrections::check_angle(other, cx)
-            {
-                return Vec::new();
-            }
+        if gradient.is_empty() {
+            cx.report_error(place.clone(), "this does not constrain any velocity")
+                .add_help("a constraint on coordinates is a `Holonomic` one");
+            return None;
         }
-        let left = self
-            .scope
-            .in_context(context_of_difference(), |scope| scope.resolve_value(&constraint.value, cx));
-        if left.is_none() {
-            // Report the errors of the other side as well.
-            if let Some(other) = &constraint.other {
-                let _ =
-                    self.scope.in_context(context_of_difference(), |scope| scope.resolve_value(other, cx));
-            }
+        if depends_on_quantity(&[rate], |q| matches!(q, Quantity::Input(_))) {
+            cx.report_error(place.clone(), "a constraint contains no input")
+                .add_help("a prescribed motion is an expression of time `t`");
+            return None;
+        }
+        let linear = match depends_on_quantity(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
+            true => linear_form(rate, &gradient),
+            false => Some(rate),
+        };
+        let Some(linear) = linear else {
+            cx.report_error(place.clone(), "this constraint is not linear in the velocities").add_help(
+                "each term contains at most one velocity, as in `dot(v(skate / ground / ground), \
+                 sled.y)`",
+            );
+            return None;
+        };
+        rows.push(constraint_row(scope, (name, &constraint.name.place), measure, None, linear));
+    }
+    Some(ConstraintRows { rows, redundant, ..ConstraintRows::default() })
+}
+
+/// Returns the left side minus the right side: one component, or three with names.
+fn difference<'g>(
+    scope: &Scope<'_, 'g>,
+    constraint: &syntax::Constraint,
+    allowed: Allowed,
+    cx: &mut Diagnostics,
+) -> Vec<(String, Expr<'g>)> {
+    let name = &constraint.name.text;
+    let context_of_difference = || Context::new(allowed, Some((None, Pose::identity(scope.graph))));
+    let is_angle_expression = |e: &syntax::Expr| match &e.kind {
+        ExprKind::Call(word, _) => word.id == Some(Callable::Function(FunctionId::Angle)),
+        _ => scope.is_angle(e),
+    };
+    let pair = [Some(&constraint.value), constraint.other.as_ref()];
+    for (side, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+        if let (Some(side), Some(other)) = (side, other)
+            && allowed == Allowed::Placement
+            && is_angle_expression(side)
+            && !corrections::check_angle(other, cx)
+        {
             return Vec::new();
         }
-        let vector = matches!(left, Some(Value::Vector(_)));
-        let mut sides = vec![&constraint.value];
-        sides.extend(&constraint.other);
-        if !vector {
-            let values: Vec<Option<Expr<'g>>> = sides
-                .iter()
-                .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.resolve_scalar(e, cx)))
-                .collect();
-            return match values.as_slice() {
-                [Some(left), Some(right)] => vec![(name.clone(), *left - *right)],
-                [Some(left)] => vec![(name.clone(), *left)],
-                _ => Vec::new(),
-            };
-        }
-        let terms: Vec<_> = sides
-            .iter()
-            .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.resolve_terms(e, cx)))
-            .collect();
-        let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
-        let kinematics = &self.scope.kinematics;
-        let zero = Vec3::zero(self.scope.graph);
-        let sides: Vec<Vec3<'g>> = terms.iter().map(|t| kinematics.resolve(t, None, zero)).collect();
-        let gap = sides.get(1).map_or(sides[0], |right| sides[0] - *right);
-        (0..3).map(|k| (format!("{name}.{}", AXES[k]), gap[k])).collect()
     }
+    let left = scope.in_context(context_of_difference(), |scope| scope.resolve_value(&constraint.value, cx));
+    if left.is_none() {
+        // Report the errors of the other side as well.
+        if let Some(other) = &constraint.other {
+            let _ = scope.in_context(context_of_difference(), |scope| scope.resolve_value(other, cx));
+        }
+        return Vec::new();
+    }
+    let vector = matches!(left, Some(Value::Vector(_)));
+    let mut sides = vec![&constraint.value];
+    sides.extend(&constraint.other);
+    if !vector {
+        let values: Vec<Option<Expr<'g>>> = sides
+            .iter()
+            .map(|e| scope.in_context(context_of_difference(), |scope| scope.resolve_scalar(e, cx)))
+            .collect();
+        return match values.as_slice() {
+            [Some(left), Some(right)] => vec![(name.clone(), *left - *right)],
+            [Some(left)] => vec![(name.clone(), *left)],
+            _ => Vec::new(),
+        };
+    }
+    let terms: Vec<_> = sides
+        .iter()
+        .map(|e| scope.in_context(context_of_difference(), |scope| scope.resolve_terms(e, cx)))
+        .collect();
+    let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
+    let kinematics = &scope.kinematics;
+    let zero = Vec3::zero(scope.graph);
+    let sides: Vec<Vec3<'g>> = terms.iter().map(|t| kinematics.resolve(t, None, zero)).collect();
+    let gap = sides.get(1).map_or(sides[0], |right| sides[0] - *right);
+    (0..3).map(|k| (format!("{name}.{}", AXES[k]), gap[k])).collect()
 }
 
 /// Separates the components of a vector that vanish identically, such as the component normal to the plane of

@@ -1,67 +1,66 @@
 //! Pieces of the drawing, added by the option `drawing`. They show the declared elements in the axes of named
 //! frames, so that a viewer needs no traversal of the links.
 
-use super::builder::Builder;
+use super::contact::{Surface, surface_pieces};
 use super::joint::drawing_symbol;
-use super::scope::{Allowed, Context, Placed, PlacedKind};
+use super::scope::{Allowed, Context, Placed, PlacedKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::language::{Callable, Method, Solid};
-use crate::mechanism::drawing::{entries_by_row, entries_of_vectors};
-use crate::mechanism::{Input, LinkId, Piece, PieceKind, Pose, Quantity, Role};
+use crate::mechanism::drawing::{Anchor, anchor_of_pose, entries_by_row, entries_of_vectors};
+use crate::mechanism::{Input, LinkId, Model, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
     self, Action, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
 };
 use std::collections::BTreeSet;
 
-/// A pose relative to a frame: the index of the frame (`None` for the ground), and the pose in it.
-pub type Anchor<'g> = (Option<usize>, Pose<'g>);
+/// Returns the pieces of the drawing, and the heights of terrains. `model` is complete but for the drawing;
+/// `surfaces` are those of contacts and pairs, with their names.
+pub fn draw_mechanism<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    surfaces: &[(String, Surface<'g>)],
+) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
+    // The second reading of expressions adds no requirements.
+    let required = scope.records.borrow().requirements.clone();
+    let drawing = Drawing { scope, model, surfaces };
+    let (mut pieces, heights) =
+        scope.in_context(Context::new(Allowed::Constant, None), |_| drawing.all_pieces());
+    scope.records.borrow_mut().requirements = required;
+    let is_fixed = |e: &[Expr<'g>]| {
+        symbols_in(e).into_iter().all(|s| matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
+    };
+    pieces.retain(|piece| is_fixed(&piece.numbers));
+    (pieces, heights)
+}
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds the pieces of the drawing to the model if the drawing is requested.
-    pub fn add_drawing(&mut self) {
-        if !self.description.drawing {
-            return;
-        }
-        // The second reading of expressions adds no requirements.
-        let required = self.scope.records.borrow().requirements.clone();
-        let context = Context::new(Allowed::Constant, None);
-        let previous = self.scope.context.replace(context);
+/// Elements that are drawn, and the frames in which they are drawn.
+struct Drawing<'s, 'a, 'g> {
+    scope: &'s Scope<'a, 'g>,
+    model: &'s Model<'g>,
+    surfaces: &'s [(String, Surface<'g>)],
+}
+
+impl<'g> Drawing<'_, '_, 'g> {
+    fn all_pieces(&self) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
         let mut pieces = Vec::new();
         let shown = self.draw_visuals(&mut pieces);
         if !self.model.gravity.is_zero() {
             let numbers = entries_of_vectors(&[Vec3::zero(self.scope.graph), self.model.gravity]);
-            let name = "gravity".to_string();
-            pieces.push(Piece {
-                name,
-                role: Role::Gravity,
-                kind: PieceKind::Gravity,
-                frames: [None, None],
-                numbers,
-            });
+            let (name, frames) = ("gravity".to_string(), [None, None]);
+            pieces.push(Piece { name, role: Role::Gravity, kind: PieceKind::Gravity, frames, numbers });
         }
         self.draw_bodies(&shown, &mut pieces);
         self.draw_joints(&shown, &mut pieces);
-        let heights = self.draw_surfaces(&mut pieces);
+        let (surfaces, heights) = surface_pieces(self.surfaces, &self.model.frames);
+        pieces.extend(surfaces);
         self.draw_actions(&mut pieces);
-        self.scope.context.replace(previous);
-        self.scope.records.borrow_mut().requirements = required;
-        let is_fixed = |e: &[Expr<'g>]| {
-            symbols_in(e).into_iter().all(|s| matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
-        };
-        pieces.retain(|piece: &Piece<'g>| is_fixed(&piece.numbers));
-        self.model.drawing = pieces;
-        self.model.heights = heights;
+        (pieces, heights)
     }
 
-    /// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
-    pub(super) fn anchor_of_pose(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
-        if link.is_none() {
-            return Some((None, pose.clone()));
-        }
-        let index = self.model.frames.iter().position(|frame| frame.link == link)?;
-        Some((Some(index), self.model.frames[index].pose.inverse().compose_with(pose)))
+    fn anchor_of_pose(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
+        anchor_of_pose(&self.model.frames, link, pose)
     }
 
     /// Returns the index of a body's own frame.
@@ -72,14 +71,14 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the link and the pose of the end of a joint.
     fn joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
         let mut silent = Diagnostics::discarded_diagnostics();
-        let on_body = self.frame_of_endpoint(end, &mut silent)?;
+        let on_body = self.scope.frame_of_endpoint(end, &mut silent)?;
         if end.body.text == GROUND {
             return Some((None, on_body));
         }
         if let Some(frame) = self.body_frame(&end.body.text) {
             return Some((Some(frame), on_body));
         }
-        let (link, pose) = self.joint_parent(&end.body, &mut silent)?;
+        let (link, pose) = self.scope.joint_parent(&end.body, &mut silent)?;
         self.anchor_of_pose(link, &pose.compose_with(&on_body))
     }
 
@@ -88,7 +87,7 @@ impl<'g> Builder<'_, 'g> {
     /// read.
     fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
-        for Visual { on, shape, mesh } in &self.description.visuals {
+        for Visual { on, shape, mesh } in &self.scope.description.visuals {
             let Some((frame, pose)) = self.joint_end(on) else { continue };
             let z = pose.rotation.to_parent(Vec3::coordinate_axis(g, 2));
             let number_expression = |x: f64| g.num(x);
@@ -132,10 +131,10 @@ impl<'g> Builder<'_, 'g> {
     /// Adds solids and particles, except for the bodies in `shown`.
     fn draw_bodies(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
         let g = self.scope.graph;
-        for (k, body) in self.description.bodies.iter().enumerate() {
+        for body in &self.scope.description.bodies {
             let name = &body.name.text;
             let (Some(frame), Some((mass, com, inertia))) =
-                (self.body_frame(name), self.masses.get(k).copied().flatten())
+                (self.body_frame(name), self.scope.kinematics.masses.get(name).copied())
             else {
                 continue;
             };
@@ -167,7 +166,7 @@ impl<'g> Builder<'_, 'g> {
                 numbers,
             }));
         }
-        for particle in &self.description.particles {
+        for particle in &self.scope.description.particles {
             let name = particle.name.text.clone();
             let frames = [self.body_frame(&name), None];
             let numbers = entries_of_vectors(&[Vec3::zero(g)]);
@@ -231,7 +230,7 @@ impl<'g> Builder<'_, 'g> {
     /// Adds joints, and bars from a body's first joint to its other joints and to its centre of mass.
     fn draw_joints(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
         let mut joint_positions: Vec<(&str, Vec3<'g>)> = Vec::new();
-        for joint in &self.description.joints {
+        for joint in &self.scope.description.joints {
             let (Some((parent, on_parent)), Some((_, on_child))) =
                 (self.joint_end(&joint.parent), self.joint_end(&joint.child))
             else {
@@ -250,12 +249,12 @@ impl<'g> Builder<'_, 'g> {
             let name = joint.name.text.clone();
             pieces.push(Piece { name, role: Role::Joint, kind, frames: [parent, None], numbers });
         }
-        for (k, body) in self.description.bodies.iter().enumerate() {
+        for body in &self.scope.description.bodies {
             let name = &body.name.text;
             let Some(frame) = self.body_frame(name).filter(|_| !shown.contains(name)) else { continue };
             let mut places = joint_positions.iter().filter(|(of, _)| of == name).map(|(_, place)| *place);
             let Some(first) = places.next() else { continue };
-            let com = self.masses.get(k).copied().flatten().map(|(_, com, _)| com);
+            let com = self.scope.kinematics.masses.get(name).map(|(_, com, _)| *com);
             for other in places.chain(com).filter(|other| !(*other - first).is_zero()) {
                 pieces.push(Piece {
                     name: name.clone(),
@@ -283,7 +282,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds the drawing of springs, dashpots and inputs.
     fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
-        for action in &self.description.actions {
+        for action in &self.scope.description.actions {
             let row = action.kind.row();
             if let Some([long, round]) = &row.pieces
                 && (!row.drawn_between || matches!(action.on, Target::Between(..)))
@@ -326,7 +325,7 @@ impl<'g> Builder<'_, 'g> {
     #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
     fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
         let name = on.as_name()?;
-        let joint = self.description.joints.iter().find(|joint| joint.name.text == name)?;
+        let joint = self.scope.description.joints.iter().find(|joint| joint.name.text == name)?;
         let ((a, on_a), (b, on_b)) = self.joint_end(&joint.parent).zip(self.joint_end(&joint.child))?;
         let (kind, axis) = self.joint_symbol(joint)?;
         let axis = on_a.rotation.to_parent(axis?);
@@ -335,7 +334,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the joint that an input of a file drives.
     fn driven_joint(&self, input: &str) -> Option<&str> {
-        let drives = &self.description.drives;
+        let drives = &self.scope.description.drives;
         let found =
             drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
         found.and_then(|drive| drive.on.weighted_joints().first()).map(|(joint, _)| joint.text.as_str())
@@ -352,13 +351,13 @@ impl<'g> Builder<'_, 'g> {
         let (link, point, direction, torque) = match input {
             Input::Named | Input::Sum(..) => return None,
             Input::Coordinate(_) => {
-                let on = self.description.actions.iter().find(|action| action.name.text == name);
+                let on = self.scope.description.actions.iter().find(|action| action.name.text == name);
                 let joint = match on.map(|action| &action.on) {
                     Some(Target::On(on)) => self.on_joint(on),
                     Some(Target::Between(..)) => None,
                     None => {
                         let joint = self.driven_joint(name).unwrap_or(name).to_string();
-                        let place = self.description.name.place.clone();
+                        let place = self.scope.description.name.place.clone();
                         self.on_joint(&syntax::Expr { kind: ExprKind::Name(joint), place })
                     }
                 };

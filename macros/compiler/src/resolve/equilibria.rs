@@ -1,11 +1,10 @@
 //! Declared equilibria, with the values of all coordinates, inputs and states. The equations of motion are
 //! checked elsewhere.
 
-use super::builder::Builder;
 use crate::diag::Diagnostics;
 use crate::expr::Expr as Value;
-use crate::mechanism::{DRY_FRICTION, Equilibrium, RestingState};
-use crate::resolve::scope::{Allowed, Context};
+use crate::mechanism::{DRY_FRICTION, Equilibrium, Model, RestingState};
+use crate::resolve::scope::{Allowed, Context, Scope};
 use crate::syntax::{self, Action, Expr, ForceKind, RATE_OF_STATE};
 use std::collections::BTreeSet;
 
@@ -17,139 +16,159 @@ enum Variable {
     State(usize),
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds all declared equilibria to the model.
-    pub fn add_equilibria(&mut self, cx: &mut Diagnostics) {
-        let is_friction = |action: &Action| action.kind == ForceKind::Friction;
-        let dry = self.description.actions.iter().any(is_friction);
-        for declared in &self.description.equilibria {
-            if dry {
-                cx.report_error(
-                    declared.name.place.clone(),
-                    format!("dry friction cannot be linearised about `{}`", declared.name.text),
-                )
-                .add_help(DRY_FRICTION);
-            } else if self.model.kinematic {
-                cx.report_error(declared.name.place.clone(), "linear equations of motion need inertia")
-                    .add_help(
-                        "remove the equilibrium, or `inertia = none`: without inertia there are no dynamics",
-                    );
-            } else if let Some(found) = self.resolve_equilibrium(declared, cx) {
-                self.model.equilibria.push(found);
-            }
+/// Returns all declared equilibria.
+pub fn resolve_equilibria<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    cx: &mut Diagnostics,
+) -> Vec<Equilibrium<'g>> {
+    let mut equilibria = Vec::new();
+    let is_friction = |action: &Action| action.kind == ForceKind::Friction;
+    let dry = scope.description.actions.iter().any(is_friction);
+    for declared in &scope.description.equilibria {
+        if dry {
+            cx.report_error(
+                declared.name.place.clone(),
+                format!("dry friction cannot be linearised about `{}`", declared.name.text),
+            )
+            .add_help(DRY_FRICTION);
+        } else if model.kinematic {
+            cx.report_error(declared.name.place.clone(), "linear equations of motion need inertia").add_help(
+                "remove the equilibrium, or `inertia = none`: without inertia there are no dynamics",
+            );
+        } else if let Some(found) = resolve_equilibrium(scope, model, declared, cx) {
+            equilibria.push(found);
         }
     }
+    equilibria
+}
 
-    fn resolve_equilibrium(
-        &self,
-        declared: &syntax::Equilibrium,
-        cx: &mut Diagnostics,
-    ) -> Option<Equilibrium<'g>> {
-        let g = self.scope.graph;
-        let mut found = Equilibrium {
-            name: declared.name.text.clone(),
-            place: declared.name.place.clone(),
-            configuration: vec![g.zero(); self.model.nq()],
-            inputs: vec![g.zero(); self.model.nu()],
-            states: self.resting_states(),
-        };
-        for chart in &self.model.charts {
-            if let Some(first) = chart.first_quaternion_index() {
-                found.configuration[first.0 + 3] = g.one();
-            }
+fn resolve_equilibrium<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    declared: &syntax::Equilibrium,
+    cx: &mut Diagnostics,
+) -> Option<Equilibrium<'g>> {
+    let g = scope.graph;
+    let mut found = Equilibrium {
+        name: declared.name.text.clone(),
+        place: declared.name.place.clone(),
+        configuration: vec![g.zero(); model.nq()],
+        inputs: vec![g.zero(); model.nu()],
+        states: resting_states(scope, model),
+    };
+    for chart in &model.charts {
+        if let Some(first) = chart.first_quaternion_index() {
+            found.configuration[first.0 + 3] = g.one();
         }
-        let before = cx.len();
-        let mut given = BTreeSet::new();
-        for (place, value) in &declared.values {
-            let Some(variable) = self.resolve_variable(place, cx) else { continue };
-            if !given.insert(variable) {
-                cx.report_error(place.place.clone(), format!("`{}` is given twice", place.to_source()))
-                    .add_help("remove one of the two");
-                continue;
-            }
-            let Some(value) = self.value_at_rest(variable, value, cx) else { continue };
-            match variable {
-                Variable::Coordinate(k) => found.configuration[k] = value,
-                Variable::Input(k) => found.inputs[k] = value,
-                Variable::State(k) => found.states[k].value = value,
-            }
+    }
+    let before = cx.len();
+    let mut given = BTreeSet::new();
+    for (place, value) in &declared.values {
+        let Some(variable) = resolve_variable(scope, model, place, cx) else { continue };
+        if !given.insert(variable) {
+            cx.report_error(place.place.clone(), format!("`{}` is given twice", place.to_source()))
+                .add_help("remove one of the two");
+            continue;
         }
-        (cx.len() == before).then_some(found)
+        let Some(value) = value_at_rest(scope, model, variable, value, cx) else { continue };
+        match variable {
+            Variable::Coordinate(k) => found.configuration[k] = value,
+            Variable::Input(k) => found.inputs[k] = value,
+            Variable::State(k) => found.states[k].value = value,
+        }
     }
+    (cx.len() == before).then_some(found)
+}
 
-    /// Returns the states of first order with the value zero.
-    fn resting_states(&self) -> Vec<RestingState<'g>> {
-        let g = self.scope.graph;
-        let rate_of_state = |name: &str| {
-            let rate = format!("{name}{RATE_OF_STATE}");
-            let output = self.model.outputs.iter().find(|output| output.name == rate);
-            output.and_then(|output| output.values.first().copied()).unwrap_or(g.zero())
-        };
-        let states = self.description.states.iter();
-        states
-            .map(|(name, parameter)| RestingState {
-                parameter: *parameter,
-                value: g.zero(),
-                rate: rate_of_state(&name.text),
-            })
-            .collect()
-    }
-
-    /// Returns the value of a variable, an expression of the parameters.
-    fn value_at_rest(&self, variable: Variable, value: &Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let name = match variable {
-            Variable::Coordinate(k) => self.model.configuration.get(k)?,
-            Variable::Input(_) | Variable::State(_) => "",
-        };
-        let coordinates = &self.scope.kinematics.coordinates;
-        let angle = coordinates.iter().any(|(known, _, angle)| known == name && *angle);
-        self.scope.in_context(Context::new(Allowed::Constant, None), |scope| match angle {
-            true => scope.plane_angle(value, cx),
-            false => scope.resolve_scalar(value, cx),
+/// Returns the states of first order with the value zero.
+fn resting_states<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> Vec<RestingState<'g>> {
+    let g = scope.graph;
+    let rate_of_state = |name: &str| {
+        let rate = format!("{name}{RATE_OF_STATE}");
+        let output = model.outputs.iter().find(|output| output.name == rate);
+        output.and_then(|output| output.values.first().copied()).unwrap_or(g.zero())
+    };
+    let states = scope.description.states.iter();
+    states
+        .map(|(name, parameter)| RestingState {
+            parameter: *parameter,
+            value: g.zero(),
+            rate: rate_of_state(&name.text),
         })
-    }
+        .collect()
+}
 
-    /// Returns the variable with this name, or reports an error.
-    fn resolve_variable(&self, place: &Expr, cx: &mut Diagnostics) -> Option<Variable> {
-        let text = place.to_source();
-        let coordinate = self.model.configuration.iter().position(|name| *name == text);
-        let find_input = || self.model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
-        let state =
-            || self.description.states.iter().position(|(name, _)| name.text == text).map(Variable::State);
-        let found = coordinate.map(Variable::Coordinate).or_else(find_input).or_else(state);
-        if found.is_none() {
-            self.report_no_variable(place, &text, cx);
-        }
-        found
-    }
+/// Returns the value of a variable, an expression of the parameters.
+fn value_at_rest<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    variable: Variable,
+    value: &Expr,
+    cx: &mut Diagnostics,
+) -> Option<Value<'g>> {
+    let name = match variable {
+        Variable::Coordinate(k) => model.configuration.get(k)?,
+        Variable::Input(_) | Variable::State(_) => "",
+    };
+    let coordinates = &scope.kinematics.coordinates;
+    let angle = coordinates.iter().any(|(known, _, angle)| known == name && *angle);
+    scope.in_context(Context::new(Allowed::Constant, None), |scope| match angle {
+        true => scope.plane_angle(value, cx),
+        false => scope.resolve_scalar(value, cx),
+    })
+}
 
-    fn report_no_variable(&self, place: &Expr, text: &str, cx: &mut Diagnostics) {
-        let own: Vec<&str> = self
-            .model
-            .configuration
-            .iter()
-            .filter(|name| name.strip_prefix(text).is_some_and(|rest| rest.starts_with('.')))
-            .map(String::as_str)
-            .collect();
-        let states = self.description.states.iter().map(|(name, _)| name.text.as_str());
-        let inputs = self.model.inputs.iter().map(|(name, _)| name.as_str());
-        let known: Vec<&str> =
-            self.model.configuration.iter().map(String::as_str).chain(inputs).chain(states).collect();
-        let follows = self.scope.joints.iter().any(|joint| joint == text);
-        let what = self.scope.kind_of_name(text);
-        let error = cx.report_error(place.place.clone(), format!("`{text}` cannot have a value at rest"));
-        match (own.as_slice(), what) {
-            ([first, ..], _) => error.add_help(format!("give its coordinates values: write `{first} = …`")),
-            (_, Some("a parameter")) => error.add_help(
-                "parameters have their values in the struct; values here can be expressions of parameters",
-            ),
-            _ if follows => {
-                error.add_help("it has no coordinate: it is welded, closes a loop, or follows others")
-            }
-            _ => error.suggest_name(text, known),
-        };
-        if error.is_bare() {
-            error.add_help("coordinates, inputs and states have values: `#[equilibrium(joint = angle)]`");
+/// Returns the variable with this name, or reports an error.
+fn resolve_variable<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    place: &Expr,
+    cx: &mut Diagnostics,
+) -> Option<Variable> {
+    let text = place.to_source();
+    let coordinate = model.configuration.iter().position(|name| *name == text);
+    let find_input = || model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
+    let state =
+        || scope.description.states.iter().position(|(name, _)| name.text == text).map(Variable::State);
+    let found = coordinate.map(Variable::Coordinate).or_else(find_input).or_else(state);
+    if found.is_none() {
+        report_no_variable(scope, model, place, &text, cx);
+    }
+    found
+}
+
+fn report_no_variable<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    place: &Expr,
+    text: &str,
+    cx: &mut Diagnostics,
+) {
+    let own: Vec<&str> = model
+        .configuration
+        .iter()
+        .filter(|name| name.strip_prefix(text).is_some_and(|rest| rest.starts_with('.')))
+        .map(String::as_str)
+        .collect();
+    let states = scope.description.states.iter().map(|(name, _)| name.text.as_str());
+    let inputs = model.inputs.iter().map(|(name, _)| name.as_str());
+    let known: Vec<&str> =
+        model.configuration.iter().map(String::as_str).chain(inputs).chain(states).collect();
+    let follows = scope.description.joints.iter().any(|joint| joint.name.text == text);
+    let what = scope.kind_of_name(text);
+    let error = cx.report_error(place.place.clone(), format!("`{text}` cannot have a value at rest"));
+    match (own.as_slice(), what) {
+        ([first, ..], _) => error.add_help(format!("give its coordinates values: write `{first} = …`")),
+        (_, Some("a parameter")) => error.add_help(
+            "parameters have their values in the struct; values here can be expressions of parameters",
+        ),
+        _ if follows => {
+            error.add_help("it has no coordinate: it is welded, closes a loop, or follows others")
         }
+        _ => error.suggest_name(text, known),
+    };
+    if error.is_bare() {
+        error.add_help("coordinates, inputs and states have values: `#[equilibrium(joint = angle)]`");
     }
 }

@@ -5,7 +5,7 @@ use super::corrections::VECTOR_SYNTAX;
 use super::scope::{Axes, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::syntax::{self, BinaryOp, ExprKind};
+use crate::syntax::{self, BinaryOp, ExprKind, ScalarType};
 
 impl<'a, 'g> Scope<'a, 'g> {
     /// Returns the value of a scalar expression.
@@ -110,7 +110,7 @@ impl<'a, 'g> Scope<'a, 'g> {
         match &e.kind {
             ExprKind::Number(n) => {
                 let small = *n != 0.0 && n.abs() < f64::from(f32::MIN_POSITIVE);
-                if self.is_f32 && (small || n.abs() > f64::from(f32::MAX)) {
+                if self.description.scalar == ScalarType::F32 && (small || n.abs() > f64::from(f32::MAX)) {
                     let what = if small { "small" } else { "large" };
                     cx.report_error(e.place.clone(), format!("this number is too {what} for `f32`: {n:e}"))
                         .add_help("use `f64`, or other units");

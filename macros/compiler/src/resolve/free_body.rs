@@ -5,18 +5,18 @@
 //! fixed. The wrenches of joints are their reactions, including the motors, springs and dashpots on their own
 //! coordinates.
 
-use super::builder::Builder;
 use super::element_forces::Forces;
-use super::holders::name_of;
-use super::reaction::RELEASED;
-use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};
+use super::holders::{MovingPlacement, holders_of, name_of};
+use super::output::output_axes;
+use super::power::power_of_input;
+use super::reaction::{RELEASED, Release};
+use super::scope::{Allowed, Context, Placed, PlacedKind, Scope, Terms};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
-use crate::expr::replace::replace_all;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Function, Symbol, Vec3};
 use crate::kinematics::{random_configuration, time_derivative, velocity_gradient};
-use crate::mechanism::{Diagram, LinkId, Origin, OutputValue, Pose, Quantity};
+use crate::mechanism::{Diagram, LinkId, Model, Origin, OutputValue, Pose, Quantity};
 use crate::syntax::{self, Definition, Endpoint, ExprKind, JointKind, Target};
 use std::collections::BTreeMap;
 
@@ -27,13 +27,16 @@ const ROUNDING: f64 = 1e-10;
 
 /// Force and torque about the centre of mass of the body, in the axes of one link.
 #[derive(Clone, Copy)]
-struct Wrench<'g> {
+struct ActionWrench<'g> {
     force: Vec3<'g>,
     torque: Vec3<'g>,
 }
 
 /// Body whose free-body diagram is derived.
-struct FreedBody<'g> {
+struct FreedBody<'s, 'a, 'g> {
+    scope: &'s Scope<'a, 'g>,
+    model: &'s Model<'g>,
+    release: &'s Release<'s, 'g>,
     name: String,
     link: Option<LinkId>,
     mass: Expr<'g>,
@@ -44,174 +47,167 @@ struct FreedBody<'g> {
     axes: (Option<LinkId>, Pose<'g>),
 }
 
-/// Action in a free-body diagram: name, origin, point of action, and wrench.
-type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
+/// An action: name, origin, point of action, and wrench.
+type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, ActionWrench<'g>);
 
-impl<'g> Builder<'_, 'g> {
-    /// Returns expressions with the coordinates of released joints, and their rates, set to zero.
-    pub fn with_released_at_zero(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let Some((joints, _)) = self.releasing else { return e.to_vec() };
-        let open = RELEASED * joints.len();
-        let (nq, nv) = (self.model.nq() - open, self.model.nv() - open);
-        replace_all(e, &|s| {
-            let released = match Quantity::from_symbol(s) {
-                Quantity::Configuration(k) => k >= nq,
-                Quantity::Velocity(k) | Quantity::Acceleration(k) => k >= nv,
-                _ => false,
-            };
-            released.then(|| self.model.graph.zero())
-        })
+/// Returns the generalized forces of an element on the coordinates of released joints.
+pub fn forces_on_released<'g>(
+    scope: &Scope<'_, 'g>,
+    m: &Model<'g>,
+    (release, applied): (&Release<'_, 'g>, &Forces<'g>),
+    name: &str,
+) -> Vec<Expr<'g>> {
+    let open = RELEASED * release.joints.len();
+    let first = m.nv() - open;
+    let mut forces = vec![m.graph.zero(); open];
+    let mut add = |rate: Expr<'g>, force: Expr<'g>| {
+        for (k, d) in velocity_gradient(rate).into_iter().filter(|(k, _)| *k >= first) {
+            forces[k - first] += force * d;
+        }
+    };
+    let acceleration_expression = |k: usize| Quantity::Acceleration(k).expr(m.graph);
+    for load in &applied.loads {
+        add(load.rate, load.force);
     }
-
-    /// Records the generalized forces of an element on the coordinates of released joints.
-    pub fn record_applied(&mut self, applied: &Forces<'g>, name: &str) {
-        let Some((joints, _)) = self.releasing else { return };
-        if self.description.outputs.iter().all(|output| output.rank != syntax::Rank::FreeBody) {
-            return;
-        }
-        let (m, open) = (&self.model, RELEASED * joints.len());
-        let first = m.nv() - open;
-        let mut forces = vec![m.graph.zero(); open];
-        let mut add = |rate: Expr<'g>, force: Expr<'g>| {
-            for (k, d) in velocity_gradient(rate).into_iter().filter(|(k, _)| *k >= first) {
-                forces[k - first] += force * d;
-            }
-        };
-        let acceleration_expression = |k: usize| Quantity::Acceleration(k).expr(m.graph);
-        for load in &applied.loads {
-            add(load.rate, load.force);
-        }
-        for energy in &applied.potentials {
-            add(time_derivative(m.configuration_space(), *energy), -m.graph.one());
-        }
-        for function in &applied.dissipations {
-            add(*function, -m.graph.one());
-        }
-        for element in &applied.inertances {
-            let gradient = velocity_gradient(element.rate);
-            let start = time_derivative(m.configuration_space(), element.rate);
-            let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * acceleration_expression(k));
-            add(element.rate, -(element.inertance * change));
-        }
-        for force in &applied.acceleration_forces {
-            let value = force
-                .factors
-                .iter()
-                .fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * acceleration_expression(*k));
-            add(force.rate, value);
-        }
-        add(self.power_of_input(name), m.graph.one());
-        self.released_forces.push((name.to_string(), forces));
+    for energy in &applied.potentials {
+        add(time_derivative(m.configuration_space(), *energy), -m.graph.one());
     }
-
-    /// Returns the free-body diagram of an output. The diagram has no actions until joints are released.
-    pub fn free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<OutputValue<'g>> {
-        let name = self.check_free_body(output, cx)?;
-        let axes = self.output_axes(output, cx)?;
-        let holders = self.holders_of(&name);
-        let released: Vec<usize> = holders.iter().map(|(number, _)| *number).collect();
-        let empty = Diagram { body: name.clone(), actions: Vec::new(), released };
-        let output_value =
-            |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
-        let Some((released, _)) = self.releasing else { return Some(output_value(Vec::new(), empty)) };
-        let released_index = |number: &usize| released.iter().position(|open| open == number);
-        let joints: Vec<(usize, bool)> =
-            holders.iter().filter_map(|(number, holds)| Some((released_index(number)?, *holds))).collect();
-        let (link, mass, center) = self.rigid_part(&name, &joints, output, cx)?;
-        let body = FreedBody { name, link, mass, center, joints, axes };
-        let mut all: Vec<DiagramAction<'g>> = self.gravity_on(&body).into_iter().collect();
-        all.extend(self.elements_on(&body));
-        all.extend(self.joints_on(&body));
-        all.extend(self.constraints_on(&body));
-        all.extend(self.contacts_on(&body));
-        let (mut values, mut actions) = (Vec::new(), Vec::new());
-        let rotation = &body.axes.1.rotation;
-        for (name, origin, place, wrench) in all {
-            let zero = Vec3::zero(self.scope.graph);
-            let point = place.map_or(zero, |terms| self.arm_from_center(&body, &terms));
-            values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
-            actions.push((name, origin));
-        }
-        Some(output_value(self.with_released_at_zero(&values), Diagram { body: body.name, actions, ..empty }))
+    for function in &applied.dissipations {
+        add(*function, -m.graph.one());
     }
+    for element in &applied.inertances {
+        let gradient = velocity_gradient(element.rate);
+        let start = time_derivative(m.configuration_space(), element.rate);
+        let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * acceleration_expression(k));
+        add(element.rate, -(element.inertance * change));
+    }
+    for force in &applied.acceleration_forces {
+        let value = force
+            .factors
+            .iter()
+            .fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * acceleration_expression(*k));
+        add(force.rate, value);
+    }
+    add(power_of_input(scope, m, name), m.graph.one());
+    forces
+}
 
-    /// Returns the name of the body, if it can have a diagram.
-    fn check_free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<String> {
-        let ground = Some((None, Pose::identity(self.scope.graph)));
-        let e = &output.value;
-        self.scope
-            .in_context(Context::new(Allowed::Reaction, ground), |scope| scope.body_with_mass(e, cx))?;
-        let name = e.as_name()?;
-        if self.holders_of(name).iter().all(|(_, holds)| !holds) {
-            cx.report_error(e.place.clone(), format!("`{name}` has no joint that can be released")).add_help(
-                "a free-body diagram is available for a body or a particle with a joint or with its own `at` \
-                 and `frame`; a body fixed to another one belongs to the diagram of that one",
-            );
+/// Returns the free-body diagram of an output. The diagram has no actions until joints are released.
+pub fn resolve_free_body<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    (release, placements): (Option<&Release<'_, 'g>>, &[MovingPlacement]),
+    output: &Definition,
+    cx: &mut Diagnostics,
+) -> Option<OutputValue<'g>> {
+    let name = check_free_body(scope, placements, output, cx)?;
+    let axes = output_axes(scope, output, cx)?;
+    let holders = holders_of(scope, placements, &name);
+    let released: Vec<usize> = holders.iter().map(|(number, _)| *number).collect();
+    let empty = Diagram { body: name.clone(), actions: Vec::new(), released };
+    let output_value =
+        |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
+    let Some(release) = release else { return Some(output_value(Vec::new(), empty)) };
+    let joints: Vec<(usize, bool)> =
+        holders.iter().filter_map(|(number, holds)| Some((release.index_of(*number)?, *holds))).collect();
+    let (link, mass, center) = rigid_part(scope, model, (&name, &joints), output, cx)?;
+    let body = FreedBody { scope, model, release, name, link, mass, center, joints, axes };
+    let mut all: Vec<DiagramAction<'g>> = body.gravity_on().into_iter().collect();
+    all.extend(body.elements_on());
+    all.extend(body.joints_on());
+    all.extend(body.constraints_on());
+    all.extend(body.contacts_on());
+    let (mut values, mut actions) = (Vec::new(), Vec::new());
+    let rotation = &body.axes.1.rotation;
+    for (name, origin, place, wrench) in all {
+        let zero = Vec3::zero(scope.graph);
+        let point = place.map_or(zero, |terms| body.arm_from_center(&terms));
+        values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
+        actions.push((name, origin));
+    }
+    Some(output_value(scope.with_released_at_zero(&values), Diagram { body: body.name, actions, ..empty }))
+}
+
+/// Returns the name of the body, if it can have a diagram.
+fn check_free_body<'g>(
+    scope: &Scope<'_, 'g>,
+    placements: &[MovingPlacement],
+    output: &Definition,
+    cx: &mut Diagnostics,
+) -> Option<String> {
+    let ground = Some((None, Pose::identity(scope.graph)));
+    let e = &output.value;
+    scope.in_context(Context::new(Allowed::Reaction, ground), |scope| scope.body_with_mass(e, cx))?;
+    let name = e.as_name()?;
+    if holders_of(scope, placements, name).iter().all(|(_, holds)| !holds) {
+        cx.report_error(e.place.clone(), format!("`{name}` has no joint that can be released")).add_help(
+            "a free-body diagram is available for a body or a particle with a joint or with its own `at` \
+             and `frame`; a body fixed to another one belongs to the diagram of that one",
+        );
+        return None;
+    }
+    Some(name.to_string())
+}
+
+/// Returns the link, the mass and the centre of mass of a body and all elements fixed to it. Reports
+/// elements that move on it without a joint.
+fn rigid_part<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    (name, joints): (&str, &[(usize, bool)]),
+    output: &Definition,
+    cx: &mut Diagnostics,
+) -> Option<(Option<LinkId>, Expr<'g>, Placed<'g>)> {
+    let g = scope.graph;
+    let kinematics = &scope.kinematics;
+    let link = kinematics.places.get(name)?.link;
+    let released: Vec<Option<LinkId>> =
+        joints.iter().filter_map(|(at, holds)| (!holds).then_some(first_released_link(scope, *at))).collect();
+    let (mut mass, mut sum) = (g.zero(), Vec3::zero(g));
+    for (other, (m, com, _)) in &kinematics.masses {
+        let Some(placed) = kinematics.places.get(other) else { continue };
+        let path = std::iter::successors(placed.link, |l| model.links[l.0].parent);
+        let path: Vec<LinkId> = path.collect();
+        let freed = path.iter().any(|l| released.contains(&Some(*l)));
+        if freed || !path.iter().any(|l| Some(*l) == link) {
+            continue;
+        }
+        if placed.link != link {
+            cx.report_error(
+                output.value.place.clone(),
+                format!(
+                    "`{other}` moves relative to `{name}` without a joint, so `{name}` cannot be \
+                     isolated"
+                ),
+            )
+            .add_help("connect it by a joint, whose reaction acts on both");
             return None;
         }
-        Some(name.to_string())
+        mass += *m;
+        sum += placed.pose.transform_point(*com) * *m;
     }
+    let at = &kinematics.places.get(name)?.pose;
+    let translation = if mass.is_zero() { at.translation } else { sum.map(|c| c / mass) };
+    let pose = Pose { translation, rotation: at.rotation.clone() };
+    Some((link, mass, Placed { link, pose, kind: PlacedKind::Point }))
+}
 
-    /// Returns the link, the mass and the centre of mass of a body and all elements fixed to it. Reports
-    /// elements that move on it without a joint.
-    fn rigid_part(
-        &self,
-        name: &str,
-        joints: &[(usize, bool)],
-        output: &Definition,
-        cx: &mut Diagnostics,
-    ) -> Option<(Option<LinkId>, Expr<'g>, Placed<'g>)> {
-        let g = self.scope.graph;
-        let kinematics = &self.scope.kinematics;
-        let link = kinematics.places.get(name)?.link;
-        let released: Vec<Option<LinkId>> = joints
-            .iter()
-            .filter_map(|(at, holds)| (!holds).then_some(self.first_released_link(*at)))
-            .collect();
-        let (mut mass, mut sum) = (g.zero(), Vec3::zero(g));
-        for (other, (m, com, _)) in &kinematics.masses {
-            let Some(placed) = kinematics.places.get(other) else { continue };
-            let path = std::iter::successors(placed.link, |l| self.model.links[l.0].parent);
-            let path: Vec<LinkId> = path.collect();
-            let freed = path.iter().any(|l| released.contains(&Some(*l)));
-            if freed || !path.iter().any(|l| Some(*l) == link) {
-                continue;
-            }
-            if placed.link != link {
-                cx.report_error(
-                    output.value.place.clone(),
-                    format!(
-                        "`{other}` moves relative to `{name}` without a joint, so `{name}` cannot be \
-                         isolated"
-                    ),
-                )
-                .add_help("connect it by a joint, whose reaction acts on both");
-                return None;
-            }
-            mass += *m;
-            sum += placed.pose.transform_point(*com) * *m;
-        }
-        let at = &kinematics.places.get(name)?.pose;
-        let translation = if mass.is_zero() { at.translation } else { sum.map(|c| c / mass) };
-        let pose = Pose { translation, rotation: at.rotation.clone() };
-        Some((link, mass, Placed { link, pose, kind: PlacedKind::Point }))
-    }
+/// Returns the first link of the motions of a released joint.
+fn first_released_link(scope: &Scope<'_, '_>, index: usize) -> Option<LinkId> {
+    let (_, v) = scope.kinematics.first_released?;
+    let joints = &scope.kinematics.joints;
+    joints
+        .iter()
+        .position(|joint| joint.dofs.iter().any(|dof| dof.index == v.0 + RELEASED * index))
+        .map(LinkId)
+}
 
-    /// Returns the first link of the motions of a released joint.
-    fn first_released_link(&self, index: usize) -> Option<LinkId> {
-        let count = self.releasing?.0.len();
-        let v = self.model.nv() - RELEASED * (count - index);
-        let links = &self.scope.kinematics;
-        let has_released_velocity =
-            |joint: &crate::kinematics::Joint<'g>| joint.dofs.iter().any(|dof| dof.index == v);
-        links.joints.iter().position(has_released_velocity).map(LinkId)
-    }
-
+impl<'g> FreedBody<'_, '_, 'g> {
     /// Returns a position relative to the centre of mass, in the axes of the result's link.
-    fn arm_from_center(&self, body: &FreedBody<'g>, place: &Terms<'g>) -> Vec3<'g> {
+    fn arm_from_center(&self, place: &Terms<'g>) -> Vec3<'g> {
         let kinematics = &self.scope.kinematics;
         let mut terms = place.clone();
-        let center = kinematics.position_of_point(body.center.link, body.center.pose.translation);
+        let center = kinematics.position_of_point(self.center.link, self.center.pose.translation);
         for (axes, v) in center {
             match terms.iter_mut().find(|(known, _)| *known == axes) {
                 Some((_, total)) => *total -= v,
@@ -219,30 +215,30 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         terms.retain(|(_, v)| !v.is_zero());
-        kinematics.resolve(&terms, body.axes.0, Vec3::zero(self.scope.graph))
+        kinematics.resolve(&terms, self.axes.0, Vec3::zero(self.scope.graph))
     }
 
     fn position_of(&self, placed: &Placed<'g>) -> Terms<'g> {
         self.scope.kinematics.position_of_point(placed.link, placed.pose.translation)
     }
 
-    fn gravity_on(&self, body: &FreedBody<'g>) -> Option<DiagramAction<'g>> {
+    fn gravity_on(&self) -> Option<DiagramAction<'g>> {
         let zero = Vec3::zero(self.scope.graph);
-        let weight = self.model.gravity * body.mass;
+        let weight = self.model.gravity * self.mass;
         if weight.is_zero() {
             return None;
         }
-        let force = self.scope.kinematics.resolve(&vec![(None, weight)], body.axes.0, zero);
-        Some(("gravity".to_string(), Origin::Gravity, None, Wrench { force, torque: zero }))
+        let force = self.scope.kinematics.resolve(&vec![(None, weight)], self.axes.0, zero);
+        Some(("gravity".to_string(), Origin::Gravity, None, ActionWrench { force, torque: zero }))
     }
 
     /// Returns the wrench on the body from generalized forces on the coordinates of released joints.
-    fn wrench_on_body(&self, body: &FreedBody<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
+    fn wrench_on_body(&self, forces: &[Expr<'g>]) -> ActionWrench<'g> {
         let zero = Vec3::zero(self.scope.graph);
-        let mut sum = Wrench { force: zero, torque: zero };
-        for (index, holds) in &body.joints {
+        let mut sum = ActionWrench { force: zero, torque: zero };
+        for (index, holds) in &self.joints {
             let reaction_vector = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * index + k + i]));
-            let Some(w) = self.joint_wrench(body, *index, reaction_vector(0), reaction_vector(3)) else {
+            let Some(w) = self.joint_wrench(*index, reaction_vector(0), reaction_vector(3)) else {
                 continue;
             };
             let sign = self.scope.graph.num(if *holds { 1.0 } else { -1.0 });
@@ -254,42 +250,35 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the wrench about the centre of mass of a force and a torque at a released joint, given in the
     /// frame of the joint.
-    fn joint_wrench(
-        &self,
-        body: &FreedBody<'g>,
-        index: usize,
-        force: Vec3<'g>,
-        torque: Vec3<'g>,
-    ) -> Option<Wrench<'g>> {
+    fn joint_wrench(&self, index: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<ActionWrench<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         if force.is_zero() && torque.is_zero() {
-            return Some(Wrench { force: zero, torque: zero });
+            return Some(ActionWrench { force: zero, torque: zero });
         }
-        let j = self.releasing?.0.get(index)?;
-        let frame = self.joint_frames.get(j)?;
+        let frame = self.release.frames.get(self.release.joints.get(index)?)?;
         let in_result_axes = |v: Vec3<'g>| {
             let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
-            self.scope.kinematics.resolve(&terms, body.axes.0, zero)
+            self.scope.kinematics.resolve(&terms, self.axes.0, zero)
         };
         let (force, torque) = (in_result_axes(force), in_result_axes(torque));
-        let arm = self.arm_from_center(body, &self.position_of(frame));
-        Some(Wrench { force, torque: torque + arm.cross(force) })
+        let arm = self.arm_from_center(&self.position_of(frame));
+        Some(ActionWrench { force, torque: torque + arm.cross(force) })
     }
 
-    fn elements_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
+    fn elements_on(&self) -> Vec<DiagramAction<'g>> {
         let mut all = Vec::new();
-        for (name, forces) in &self.released_forces {
-            let forces = self.with_released_at_zero(forces);
-            let wrench = self.wrench_on_body(body, &forces);
+        for (name, forces) in &self.release.forces {
+            let forces = self.scope.with_released_at_zero(forces);
+            let wrench = self.wrench_on_body(&forces);
             if !self.is_nonzero(&wrench, &forces) {
                 continue;
             }
             let is_input = self.model.inputs.iter().any(|(input, _)| input == name);
             let origin = if is_input { Origin::Input } else { Origin::Element };
-            let place = self.place_of_element(body, name);
+            let place = self.place_of_element(name);
             let wrench = match &place {
                 // A force through its point of action has no torque about that point.
-                Some(_) => Wrench { torque: Vec3::zero(self.scope.graph), ..wrench },
+                Some(_) => ActionWrench { torque: Vec3::zero(self.scope.graph), ..wrench },
                 None => wrench,
             };
             all.push((name.clone(), origin, place, wrench));
@@ -298,19 +287,19 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the point of the body at which an element acts, if it acts at a single point.
-    fn place_of_element(&self, body: &FreedBody<'g>, name: &str) -> Option<Terms<'g>> {
-        let action = self.description.actions.iter().find(|action| action.name.text == name)?;
+    fn place_of_element(&self, name: &str) -> Option<Terms<'g>> {
+        let action = self.scope.description.actions.iter().find(|action| action.name.text == name)?;
         let mut unread = Diagnostics::discarded_diagnostics();
         let mut here = |e: &syntax::Expr| {
             let placed = self.scope.current_place(e, &mut unread)?;
-            (placed.link == body.link).then(|| self.position_of(&placed))
+            (placed.link == self.link).then(|| self.position_of(&placed))
         };
         let row = action.kind.row();
         match &action.on {
             _ if !row.at_point => None,
             Target::Between(a, b) => here(a).or_else(|| here(b)),
             Target::On(e) if row.on_bodies => match &e.kind {
-                ExprKind::Name(name) if self.joint_coordinates(name).is_some() => None,
+                ExprKind::Name(name) if self.scope.joint_coordinates(name).is_some() => None,
                 ExprKind::Name(_) | ExprKind::Method(..) => here(e),
                 _ => None,
             },
@@ -319,35 +308,35 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the reactions on the body of the tree's joints, and of elements placed by `at` and `frame`.
-    fn joints_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
+    fn joints_on(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
-        let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
         let mut all = Vec::new();
-        for (index, holds) in &body.joints {
-            let Some(&j) = released.get(*index) else { continue };
-            let (name, origin) = match (self.description.joints.get(j), name_of(self.description, j)) {
-                (Some(joint), _) if joint.kind == JointKind::Free => continue,
-                (Some(joint), _) => (joint.name.text.clone(), Origin::Joint),
-                (None, Some(name)) => (format!("{}.place", name.text), Origin::Constraint),
-                (None, None) => continue,
-            };
-            let Some(frame) = self.joint_frames.get(&j) else { continue };
+        for (index, holds) in &self.joints {
+            let Some(&j) = self.release.joints.get(*index) else { continue };
+            let (name, origin) =
+                match (self.scope.description.joints.get(j), name_of(self.scope.description, j)) {
+                    (Some(joint), _) if joint.kind == JointKind::Free => continue,
+                    (Some(joint), _) => (joint.name.text.clone(), Origin::Joint),
+                    (None, Some(name)) => (format!("{}.place", name.text), Origin::Constraint),
+                    (None, None) => continue,
+                };
+            let Some(frame) = self.release.frames.get(&j) else { continue };
             let sign = g.num(if *holds { 1.0 } else { -1.0 });
             let reaction_part = |k: usize| {
                 let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
                 let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
-                self.scope.kinematics.resolve(&terms, body.axes.0, Vec3::zero(g))
+                self.scope.kinematics.resolve(&terms, self.axes.0, Vec3::zero(g))
             };
-            let wrench = Wrench { force: reaction_part(0), torque: reaction_part(3) };
+            let wrench = ActionWrench { force: reaction_part(0), torque: reaction_part(3) };
             all.push((name, origin, Some(self.position_of(frame)), wrench));
         }
         all
     }
 
-    /// Returns the wrenches of constraints and of loop-closing joints on the body.
-    fn constraints_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
+    /// Returns the wrenches of constraints and of loop-closing joints on the self.
+    fn constraints_on(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
-        let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
+        let open = RELEASED * self.release.joints.len();
         let first = self.model.nv() - open;
         let mut by_name: Vec<(String, Vec<Expr<'g>>)> = Vec::new();
         let mut index: BTreeMap<String, usize> = BTreeMap::new();
@@ -368,20 +357,20 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         let action_of = |(name, forces): (String, Vec<Expr<'g>>)| {
-            let forces = self.with_released_at_zero(&forces);
-            let wrench = self.wrench_on_body(body, &forces);
+            let forces = self.scope.with_released_at_zero(&forces);
+            let wrench = self.wrench_on_body(&forces);
             if !self.is_nonzero(&wrench, &forces) {
                 return None;
             }
-            let joint = self.description.joints.iter().find(|joint| joint.name.text == name);
+            let joint = self.scope.description.joints.iter().find(|joint| joint.name.text == name);
             if let Some(joint) = joint {
-                let place = self.joint_end_on(body, [&joint.parent, &joint.child]);
-                let wrench = self.wrench_about(body, place.as_ref(), wrench);
+                let place = self.joint_end_on([&joint.parent, &joint.child]);
+                let wrench = self.wrench_about(place.as_ref(), wrench);
                 return Some((name, Origin::Joint, place, wrench));
             }
-            let place = self.contact_points.get(&name).cloned();
+            let place = self.release.contact_points.get(&name).cloned();
             let wrench = match &place {
-                Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
+                Some(_) => ActionWrench { torque: Vec3::zero(g), ..wrench },
                 None => wrench,
             };
             Some((name, Origin::Constraint, place, wrench))
@@ -389,10 +378,10 @@ impl<'g> Builder<'_, 'g> {
         by_name.into_iter().filter_map(action_of).collect()
     }
 
-    /// Returns the wrenches of unilateral contacts on the body.
-    fn contacts_on(&self, body: &FreedBody<'g>) -> Vec<DiagramAction<'g>> {
+    /// Returns the wrenches of unilateral contacts on the self.
+    fn contacts_on(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
-        let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
+        let open = RELEASED * self.release.joints.len();
         let first = self.model.nv() - open;
         let (mut all, mut number) = (Vec::new(), 0);
         for contact in &self.model.contacts {
@@ -404,12 +393,12 @@ impl<'g> Builder<'_, 'g> {
                     forces[v - first] += force * d;
                 }
             }
-            let forces = self.with_released_at_zero(&forces);
-            let wrench = self.wrench_on_body(body, &forces);
+            let forces = self.scope.with_released_at_zero(&forces);
+            let wrench = self.wrench_on_body(&forces);
             if self.is_nonzero(&wrench, &forces) {
-                let place = self.contact_points.get(&contact.name).cloned();
+                let place = self.release.contact_points.get(&contact.name).cloned();
                 let wrench = match &place {
-                    Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
+                    Some(_) => ActionWrench { torque: Vec3::zero(g), ..wrench },
                     None => wrench,
                 };
                 all.push((contact.name.clone(), Origin::Contact, place, wrench));
@@ -418,34 +407,34 @@ impl<'g> Builder<'_, 'g> {
         all
     }
 
-    /// Returns the position of the end of a joint that belongs to the body.
-    fn joint_end_on(&self, body: &FreedBody<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
+    /// Returns the position of the end of a joint that belongs to the self.
+    fn joint_end_on(&self, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
         let mut unread = Diagnostics::discarded_diagnostics();
         ends.into_iter().find_map(|end| {
-            let (link, pose) = self.joint_parent(&end.body, &mut unread)?;
-            let on_body = self.frame_of_endpoint(end, &mut unread)?;
+            let (link, pose) = self.scope.joint_parent(&end.body, &mut unread)?;
+            let on_body = self.scope.frame_of_endpoint(end, &mut unread)?;
             let placed = Placed { link, pose: pose.compose_with(&on_body), kind: PlacedKind::Point };
-            (link == body.link).then(|| self.position_of(&placed))
+            (link == self.link).then(|| self.position_of(&placed))
         })
     }
 
-    /// Returns the same wrench about another point of the body.
-    fn wrench_about(&self, body: &FreedBody<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
+    /// Returns the wrench about another point of the self.
+    fn wrench_about(&self, place: Option<&Terms<'g>>, w: ActionWrench<'g>) -> ActionWrench<'g> {
         let Some(place) = place else { return w };
-        let arm = self.arm_from_center(body, place);
-        Wrench { torque: w.torque - arm.cross(w.force), ..w }
+        let arm = self.arm_from_center(place);
+        ActionWrench { torque: w.torque - arm.cross(w.force), ..w }
     }
 
     /// Whether a sum of forces on several joints is nonzero. Forces between two bodies that the same joint
     /// carries cancel up to rounding.
-    fn is_nonzero(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
-        let all = self.with_released_at_zero(&[wrench.force.0, wrench.torque.0].concat());
+    fn is_nonzero(&self, wrench: &ActionWrench<'g>, forces: &[Expr<'g>]) -> bool {
+        let all = self.scope.with_released_at_zero(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {
             return false;
         }
         (0..SAMPLES).any(|seed| {
             // Sampled quaternions have unit length, because terms may cancel only for rotations.
-            let q = random_configuration(&self.model, seed);
+            let q = random_configuration(self.model, seed);
             let value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k],
                 _ => sample_of_symbol(s, seed),

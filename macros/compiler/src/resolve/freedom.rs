@@ -1,79 +1,80 @@
 //! Degrees of freedom: removal of redundant rows, and choice of independent velocities.
 
-use super::builder::Builder;
 use super::contact;
 use crate::diag::Diagnostics;
 use crate::kinematics::{Rows, mobility, redundancy};
+use crate::mechanism::Model;
 use crate::syntax::{ExprKind, Formulation};
 
-impl<'g> Builder<'_, 'g> {
-    /// Removes redundant constraint rows and counts the degrees of freedom.
-    pub fn check_mobility(&mut self, cx: &mut Diagnostics) {
-        let mut rows = Rows::new(&self.model);
-        let constant = redundancy::constant_rows(&self.model, &rows);
-        redundancy::check_constant(&self.model, &constant, cx);
-        if !cx.is_empty() {
-            return;
-        }
-        let samples = mobility::sample_configurations(&self.model, &rows, cx);
-        let before = self.model.constraints.clone();
-        if redundancy::prune_redundant_rows(&mut self.model, &rows, &constant, &samples) {
-            contact::check_pressed(&before, &self.model.redundant, cx);
-            rows = Rows::new(&self.model);
-        }
-        self.model.freedom = mobility::degrees_of_freedom(&self.model, &rows, &samples, cx);
-        self.choose_speeds(&rows, &samples, cx);
+/// Removes redundant rows and counts the degrees of freedom.
+pub fn check_mobility(model: &mut Model<'_>, formulation: &Formulation, cx: &mut Diagnostics) {
+    let mut rows = Rows::new(model);
+    let constant = redundancy::constant_rows(model, &rows);
+    redundancy::check_constant(model, &constant, cx);
+    if !cx.is_empty() {
+        return;
     }
+    let samples = mobility::sample_configurations(model, &rows, cx);
+    let before = model.constraints.clone();
+    if redundancy::prune_redundant_rows(model, &rows, &constant, &samples) {
+        contact::check_pressed(&before, &model.redundant, cx);
+        rows = Rows::new(model);
+    }
+    model.freedom = mobility::degrees_of_freedom(model, &rows, &samples, cx);
+    choose_speeds(model, formulation, (&rows, &samples), cx);
+}
 
-    /// Expresses the velocities in independent ones, if independent velocities are requested.
-    fn choose_speeds(&mut self, rows: &Rows<'_>, samples: &[mobility::Sample], cx: &mut Diagnostics) {
-        let Formulation::Speeds(names, place) = &self.description.formulation else { return };
-        if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {
-            cx.report_error(
-                place.clone(),
-                "independent speeds eliminate the normal force that friction depends on",
-            )
-            .add_help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
-            return;
-        }
-        let mut independent = Vec::new();
-        for e in names {
-            let name = match &e.kind {
-                ExprKind::Field(joint, member) => {
-                    joint.as_name().map(|joint| format!("{joint}.{}", member.text))
-                }
-                _ => e.as_name().map(str::to_string),
-            };
-            let velocity_names = || self.model.velocities.iter().map(|(name, _)| name.as_str());
-            match velocity_names().position(|v| Some(v) == name.as_deref()) {
-                Some(k) => independent.push(k),
-                None => {
-                    cx.report_error(e.place.clone(), "expected a velocity")
-                        .suggest_name(name.as_deref().unwrap_or(""), velocity_names());
-                    return;
-                }
+/// Expresses the velocities in independent ones, if independent velocities are requested.
+fn choose_speeds(
+    model: &mut Model<'_>,
+    formulation: &Formulation,
+    (rows, samples): (&Rows<'_>, &[mobility::Sample]),
+    cx: &mut Diagnostics,
+) {
+    let Formulation::Speeds(names, place) = formulation else { return };
+    if model.constraints.iter().any(|c| !c.friction.is_empty()) {
+        cx.report_error(
+            place.clone(),
+            "independent speeds eliminate the normal force that friction depends on",
+        )
+        .add_help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
+        return;
+    }
+    let mut independent = Vec::new();
+    for e in names {
+        let name = match &e.kind {
+            ExprKind::Field(joint, member) => joint.as_name().map(|joint| format!("{joint}.{}", member.text)),
+            _ => e.as_name().map(str::to_string),
+        };
+        let velocity_names = || model.velocities.iter().map(|(name, _)| name.as_str());
+        match velocity_names().position(|v| Some(v) == name.as_deref()) {
+            Some(k) => independent.push(k),
+            None => {
+                cx.report_error(e.place.clone(), "expected a velocity")
+                    .suggest_name(name.as_deref().unwrap_or(""), velocity_names());
+                return;
             }
         }
-        let free = self.model.freedom.velocities;
-        if !independent.is_empty() && independent.len() != free {
-            cx.report_error(
-                place.clone(),
-                format!("{} independent speeds for {free} degrees of freedom", independent.len()),
-            )
-            .add_help(format!("name {free}, or remove `independent` to have them chosen"));
-            return;
-        }
-        if !cx.is_empty() {
-            return;
-        }
-        self.model.dependent = mobility::dependent_velocities(&self.model, rows, samples, &independent);
-        if self.model.dependent.is_none() {
-            let diagnostic = cx
-                .report_error(place.clone(), "the independent speeds do not determine the other velocities");
-            diagnostic.add_help(
-                "constraints are redundant, or these speeds depend on each other: use `formulation = \
-                 multipliers`, or others",
-            );
-        }
+    }
+    let free = model.freedom.velocities;
+    if !independent.is_empty() && independent.len() != free {
+        cx.report_error(
+            place.clone(),
+            format!("{} independent speeds for {free} degrees of freedom", independent.len()),
+        )
+        .add_help(format!("name {free}, or remove `independent` to have them chosen"));
+        return;
+    }
+    if !cx.is_empty() {
+        return;
+    }
+    model.dependent = mobility::dependent_velocities(model, rows, samples, &independent);
+    if model.dependent.is_none() {
+        let diagnostic =
+            cx.report_error(place.clone(), "the independent speeds do not determine the other velocities");
+        diagnostic.add_help(
+            "constraints are redundant, or these speeds depend on each other: use `formulation = \
+             multipliers`, or others",
+        );
     }
 }

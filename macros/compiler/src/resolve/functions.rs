@@ -2,7 +2,7 @@
 
 use super::call::Call;
 use super::corrections::{DOMAIN_HELP, check_angle, degrees_to_radians};
-use super::momenta::Sum;
+use super::momenta::SummedQuantity;
 use super::scope::{Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
@@ -21,7 +21,7 @@ impl<'g> Scope<'_, 'g> {
         if let Some(Callable::Elementary(f)) = callee.id {
             return self.resolve_elementary(f, callee, arguments, cx);
         }
-        if let Some(k) = self.tables.iter().position(|table| table.name.text == callee.text) {
+        if let Some(k) = self.description.tables.iter().position(|table| table.name.text == callee.text) {
             return self.resolve_table_lookup(k, callee, arguments, cx);
         }
         match callee.id {
@@ -91,9 +91,9 @@ impl<'g> Scope<'_, 'g> {
             F::ReactionTorque => self.resolve_reaction(call, 3, cx),
             F::ContactForce => self.contact_force(call, cx),
             F::ContactMoment => self.contact_moment(call, cx),
-            F::Momentum => self.resolve_momentum(call, Sum::Momentum, cx),
-            F::AngularMomentum => self.resolve_momentum(call, Sum::AngularMomentum, cx),
-            F::KineticEnergy => self.resolve_momentum(call, Sum::Energy, cx),
+            F::Momentum => self.resolve_momentum(call, SummedQuantity::Momentum, cx),
+            F::AngularMomentum => self.resolve_momentum(call, SummedQuantity::AngularMomentum, cx),
+            F::KineticEnergy => self.resolve_momentum(call, SummedQuantity::Energy, cx),
             F::MomentOfInertia => self.moment_of_inertia(call, cx),
             F::CenterOfMass => self.center_of_mass(call, cx),
             F::CenterOfPercussion => self.center_of_percussion(call, cx),
@@ -189,7 +189,7 @@ impl<'g> Scope<'_, 'g> {
     /// Reports an unknown function, with the function that is most likely meant.
     fn report_function(&self, callee: &Callee, solid: Option<Solid>, cx: &mut Diagnostics) {
         let text = callee.text.as_str();
-        let own = self.tables.iter().map(|table| table.name.text.as_str());
+        let own = self.description.tables.iter().map(|table| table.name.text.as_str());
         let known = Function::ALL.iter().map(|(name, _)| *name).chain(FunctionId::names()).chain(own);
         let known: Vec<&str> = known.collect();
         let error = cx.report_error(callee.place.clone(), format!("unknown function `{text}`"));
@@ -215,7 +215,7 @@ impl<'g> Scope<'_, 'g> {
         arguments: &[syntax::Expr],
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let table = self.tables.get(k)?;
+        let table = self.description.tables.get(k)?;
         let (found, expected) = (arguments.len(), table.variables);
         if found != expected {
             let plural = if expected == 1 { "" } else { "s" };

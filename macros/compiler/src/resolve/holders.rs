@@ -1,10 +1,9 @@
 //! Releasable connections of bodies, for free-body diagrams: joints of the tree, and placements by `at` and
 //! `frame`.
 
-use super::builder::Builder;
-use super::scope::{Placed, PlacedKind};
+use super::scope::Scope;
 use super::tree;
-use crate::mechanism::{Inertia, Link, LinkId, Motion, Pose};
+use crate::mechanism::LinkId;
 use crate::syntax::{self, Description, GROUND, Rank};
 
 /// Returns the index of a body's placement among the releasable connections: joints are first, then bodies,
@@ -25,84 +24,56 @@ pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
     joints.chain(bodies).chain(d.particles.iter().map(|particle| &particle.name)).nth(number)
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Returns the link of a placed body or particle, with a new link if its placement moves. If the
-    /// placement is released, returns the last of six further links.
-    pub fn link_of_place(
-        &mut self,
-        number: usize,
-        carrier: Option<LinkId>,
-        pose: Pose<'g>,
-    ) -> (Option<LinkId>, Pose<'g>) {
-        let (mut link, mut pose) = self.link_if_moving(carrier, pose);
-        let mut holder = carrier;
-        if link == carrier {
-            let frame = carrier.filter(|link| self.frame_links.contains(link) && self.is_on_frame(number));
-            let Some(frame) = frame else { return (link, pose) };
-            // The link that carries the frame is the holder; other bodies on the frame have connections of
-            // their own.
-            holder = self.model.links.get(frame.0).and_then(|frame| frame.parent);
-            let (motion, inertia) = (Motion::Placed, Inertia::zero(self.scope.graph));
-            link = Some(self.add_link(Link { parent: Some(frame), placement: pose, motion, inertia }));
-            pose = Pose::identity(self.scope.graph);
-        }
-        self.moving_placements.push((number, holder));
-        let Some((released, _)) = self.releasing else { return (link, pose) };
-        let Some(index) = released.iter().position(|open| *open == number) else { return (link, pose) };
-        self.joint_frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
-        self.released_joint_frame(index, released.len(), link, pose)
-    }
+/// Placement of a body or a particle by a moving `at` or `frame`: index among the releasable connections, and
+/// the link that carries the body.
+pub type MovingPlacement = (usize, Option<LinkId>);
 
-    /// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism
-    /// with free-body diagrams.
-    fn is_on_frame(&self, number: usize) -> bool {
-        let d = self.description;
-        let is_placed = |e: &syntax::Expr| {
-            let base = tree::base_name(e);
-            base.is_some_and(|base| base != GROUND && d.frames.iter().all(|frame| frame.name.text != base))
-        };
-        let body = number.checked_sub(d.joints.len()).and_then(|k| d.bodies.get(k));
-        let particle = number.checked_sub(d.joints.len() + d.bodies.len()).and_then(|k| d.particles.get(k));
-        let places = [
-            body.and_then(|body| body.frame.as_ref()),
-            body.and_then(|body| body.at.as_ref()),
-            particle.and_then(|particle| particle.at.as_ref()),
-        ];
-        d.outputs.iter().any(|output| output.rank == Rank::FreeBody)
-            && !places.into_iter().flatten().any(is_placed)
-    }
+/// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism
+/// with free-body diagrams.
+pub fn is_on_frame(d: &Description, number: usize) -> bool {
+    let is_placed = |e: &syntax::Expr| {
+        let base = tree::base_name(e);
+        base.is_some_and(|base| base != GROUND && d.frames.iter().all(|frame| frame.name.text != base))
+    };
+    let body = number.checked_sub(d.joints.len()).and_then(|k| d.bodies.get(k));
+    let particle = number.checked_sub(d.joints.len() + d.bodies.len()).and_then(|k| d.particles.get(k));
+    let places = [
+        body.and_then(|body| body.frame.as_ref()),
+        body.and_then(|body| body.at.as_ref()),
+        particle.and_then(|particle| particle.at.as_ref()),
+    ];
+    d.outputs.iter().any(|output| output.rank == Rank::FreeBody)
+        && !places.into_iter().flatten().any(is_placed)
+}
 
-    /// Returns the body that carries a point or a particle fixed on it; for a body, the body itself.
-    fn body_carrying<'b>(&'b self, name: &'b str) -> &'b str {
-        let d = self.description;
-        let has_moving_placement = |name: &str| {
-            let numbers = self.moving_placements.iter().map(|(number, _)| *number);
-            numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
-        };
-        let carrier_name = |name: &str| {
-            let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
-            let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
-            tree::base_name(point.or(particle.filter(|_| !has_moving_placement(name)))?)
-        };
-        (0..=d.points.len() + d.particles.len())
-            .fold(name, |current, _| carrier_name(current).unwrap_or(current))
-    }
+/// Returns the body that carries a point or a particle fixed on it; for a body, the body itself.
+fn body_carrying<'b>(d: &'b Description, placements: &[MovingPlacement], name: &'b str) -> &'b str {
+    let has_moving_placement = |name: &str| {
+        let numbers = placements.iter().map(|(number, _)| *number);
+        numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
+    };
+    let carrier_name = |name: &str| {
+        let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
+        let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
+        tree::base_name(point.or(particle.filter(|_| !has_moving_placement(name)))?)
+    };
+    (0..=d.points.len() + d.particles.len()).fold(name, |current, _| carrier_name(current).unwrap_or(current))
+}
 
-    /// Returns the connections of a body: joints of the tree and placements. The flag is true if the body is
-    /// the child.
-    pub fn holders_of(&self, body: &str) -> Vec<(usize, bool)> {
-        let d = self.description;
-        let closing = tree::loop_closing_joints(d);
-        let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
-            let holds = joint.child.body.text == body;
-            let joins = holds || self.body_carrying(&joint.parent.body.text) == body;
-            (joins && closing.get(j) == Some(&false)).then_some((j, holds))
-        });
-        let own = self.scope.kinematics.places.get(body).and_then(|placed| placed.link);
-        let places = self.moving_placements.iter().filter_map(|(number, carrier)| {
-            let holds = name_of(d, *number).is_some_and(|name| name.text == body);
-            (holds || (carrier.is_some() && *carrier == own)).then_some((*number, holds))
-        });
-        joints.chain(places).collect()
-    }
+/// Returns the connections of a body: joints of the tree and placements. The flag is true if the body is
+/// the child.
+pub fn holders_of(scope: &Scope<'_, '_>, placements: &[MovingPlacement], body: &str) -> Vec<(usize, bool)> {
+    let d = scope.description;
+    let closing = tree::loop_closing_joints(d);
+    let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
+        let holds = joint.child.body.text == body;
+        let joins = holds || body_carrying(d, placements, &joint.parent.body.text) == body;
+        (joins && closing.get(j) == Some(&false)).then_some((j, holds))
+    });
+    let own = scope.kinematics.places.get(body).and_then(|placed| placed.link);
+    let places = placements.iter().filter_map(|(number, carrier)| {
+        let holds = name_of(d, *number).is_some_and(|name| name.text == body);
+        (holds || (carrier.is_some() && *carrier == own)).then_some((*number, holds))
+    });
+    joints.chain(places).collect()
 }

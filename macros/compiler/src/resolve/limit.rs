@@ -1,123 +1,125 @@
 //! Conversion of limits to bounds of the entries of `q` and `v`. All limits of one entry apply
 //! simultaneously.
 
-use super::builder::Builder;
+use super::scope::Scope;
+use super::target::resolve_limited_coordinate;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr as Value, Extreme};
 use crate::language::Key;
-use crate::mechanism::{Coordinate, Limit};
+use crate::mechanism::{Coordinate, Limit, Model};
 use crate::syntax;
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds all declared coordinate limits to the model.
-    pub fn add_limits(&mut self, cx: &mut Diagnostics) {
-        let mut known = Vec::new();
-        for limit in &self.description.limits {
-            if self.scope.is_moving(&limit.on) {
-                self.check_stop(limit, cx);
-                continue;
-            }
-            let Some((coordinate, angle)) = self.resolve_limited_coordinate(&limit.on, cx) else { continue };
-            let bounds = self
-                .resolve_bounds(limit, angle == Some(true), cx)
-                .filter(|bounds| check_bounds(limit, bounds, cx));
-            if let Some(bounds) = bounds {
-                let found = self.limit_of(&coordinate, bounds);
-                self.add_bounds(limit, found, &known, cx);
-                known.push((limit, found));
-            }
+/// Returns the bounds of all limits.
+pub fn resolve_limits<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, cx: &mut Diagnostics) -> Vec<Limit<'g>> {
+    let (mut limits, mut known) = (Vec::new(), Vec::new());
+    for limit in &scope.description.limits {
+        if scope.is_moving(&limit.on) {
+            check_stop(scope, limit, cx);
+            continue;
+        }
+        let Some((coordinate, angle)) = resolve_limited_coordinate(scope, &limit.on, cx) else { continue };
+        let bounds = resolve_bounds(scope, limit, angle == Some(true), cx)
+            .filter(|bounds| check_bounds(limit, bounds, cx));
+        if let Some(bounds) = bounds {
+            let found = limit_of(scope, &coordinate, bounds);
+            add_bounds((&mut limits, model), limit, found, &known, cx);
+            known.push((limit, found));
         }
     }
+    limits
+}
 
-    /// Reads the limit of an expression, which is a stop, only to report its errors.
-    fn check_stop(&self, limit: &syntax::Limit, cx: &mut Diagnostics) {
-        let given = &limit.arguments;
-        if let Some((key, e)) =
-            [Key::MaxSpeed, Key::MaxEffort].iter().find_map(|key| Some((key, given.get(*key)?)))
-        {
-            let name = key.name();
-            let message = format!("`{name}` applies to a coordinate, but this is an expression");
-            cx.report_error(e.place.clone(), message).add_help("write it in a limit of the joint");
-        } else if given.get(Key::Restitution).is_none() {
-            cx.report_error(limit.on.place.clone(), "a limit of an expression is a stop and needs a restitution").add_help(
-                "add `restitution = e`, from 0 to 1: the ratio of the speeds after and before the impact on the bound",
-            );
-        } else if let Some(bounds) = self.resolve_bounds(limit, false, cx) {
-            check_bounds(limit, &bounds, cx);
-        }
-    }
-
-    /// Returns the values of the four bounds; `None` after an error.
-    fn resolve_bounds(
-        &self,
-        limit: &syntax::Limit,
-        angle: bool,
-        cx: &mut Diagnostics,
-    ) -> Option<[Option<Value<'g>>; 4]> {
-        let mut good = true;
-        let bounds = [Key::From, Key::To, Key::MaxSpeed, Key::MaxEffort].map(|key| {
-            let e = limit.arguments.get(key)?;
-            let angle = angle && matches!(key, Key::From | Key::To);
-            // Angles in a file are in radians, without a limit on revolutions.
-            let value = match angle && e.place.file.is_none() {
-                true => self.scope.plane_angle(e, cx),
-                false => self.scope.resolve_scalar(e, cx),
-            };
-            good &= value.is_some();
-            value
-        });
-        good.then_some(bounds)
-    }
-
-    /// Converts bounds of `ratio × q + offset` to bounds of the coordinate `q`.
-    fn limit_of(&self, c: &Coordinate, [from, to, speed, effort]: [Option<Value<'g>>; 4]) -> Limit<'g> {
-        let number_expression = |x: f64| self.scope.graph.num(x);
-        let to_coordinate =
-            |bound: Value<'g>| (bound - number_expression(c.offset)) / number_expression(c.ratio);
-        let (from, to) = (from.map(to_coordinate), to.map(to_coordinate));
-        let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
-        let speed = speed.map(|speed| speed / number_expression(c.ratio.abs()));
-        let effort = effort.map(|effort| effort * number_expression(c.ratio.abs()));
-        Limit { q: c.q, v: c.v, lower, upper, speed, effort }
-    }
-
-    /// Adds bounds of a coordinate, and reports bounds that contradict one of the `earlier` limits.
-    fn add_bounds(
-        &mut self,
-        limit: &syntax::Limit,
-        found: Limit<'g>,
-        earlier: &[(&syntax::Limit, Limit<'g>)],
-        cx: &mut Diagnostics,
-    ) {
-        let Some(known) = self.model.limits.iter_mut().find(|known| known.v == found.v) else {
-            self.model.limits.push(found);
-            return;
+/// Adds bounds of a coordinate, and reports bounds that contradict one of the `earlier` limits.
+fn add_bounds<'g>(
+    (limits, model): (&mut Vec<Limit<'g>>, &Model<'g>),
+    limit: &syntax::Limit,
+    found: Limit<'g>,
+    earlier: &[(&syntax::Limit, Limit<'g>)],
+    cx: &mut Diagnostics,
+) {
+    let Some(known) = limits.iter_mut().find(|known| known.v == found.v) else {
+        limits.push(found);
+        return;
+    };
+    let both = tighter_bounds(known, &found);
+    let has_range = |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
+    if has_range(known) && has_range(&found) && !has_range(&both) {
+        let name = model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
+        let contradicts_found_limit = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
+            other.v == found.v && !has_range(&tighter_bounds(other, &found))
         };
-        let both = tighter_bounds(known, &found);
-        let has_range = |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
-        if has_range(known) && has_range(&found) && !has_range(&both) {
-            let name = self.model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
-            let contradicts_found_limit = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
-                other.v == found.v && !has_range(&tighter_bounds(other, &found))
-            };
-            let other = earlier.iter().find(contradicts_found_limit).map(|(other, _)| *other);
-            // If both limits are from a file, the one that does not belong to the coordinate itself is
-            // reported.
-            let own = limit.name.text == name;
-            let follower = if own { other.unwrap_or(limit) } else { limit };
-            let place = if limit.on.place.file.is_some() { &follower.name.place } else { &limit.on.place };
-            let error = cx.report_error(place.clone(), format!("the limits of `{name}` exclude every value"));
-            match follower.name.text == name || limit.on.place.file.is_none() {
-                true => error.add_help("all limits of a coordinate apply, including those of a file"),
-                false => error.add_help(format!(
-                    "`{}` follows it and has its own limits; to ignore limits, write `#[mechanism(…, limits \
-                     = ignore)]`",
-                    follower.name.text
-                )),
-            };
-        }
-        *known = both;
+        let other = earlier.iter().find(contradicts_found_limit).map(|(other, _)| *other);
+        // If both limits are from a file, the one that does not belong to the coordinate itself is
+        // reported.
+        let own = limit.name.text == name;
+        let follower = if own { other.unwrap_or(limit) } else { limit };
+        let place = if limit.on.place.file.is_some() { &follower.name.place } else { &limit.on.place };
+        let error = cx.report_error(place.clone(), format!("the limits of `{name}` exclude every value"));
+        match follower.name.text == name || limit.on.place.file.is_none() {
+            true => error.add_help("all limits of a coordinate apply, including those of a file"),
+            false => error.add_help(format!(
+                "`{}` follows it and has its own limits; to ignore limits, write `#[mechanism(…, limits \
+                 = ignore)]`",
+                follower.name.text
+            )),
+        };
     }
+    *known = both;
+}
+
+/// Reads the limit of an expression, which is a stop, only to report its errors.
+fn check_stop<'g>(scope: &Scope<'_, 'g>, limit: &syntax::Limit, cx: &mut Diagnostics) {
+    let given = &limit.arguments;
+    if let Some((key, e)) =
+        [Key::MaxSpeed, Key::MaxEffort].iter().find_map(|key| Some((key, given.get(*key)?)))
+    {
+        let name = key.name();
+        let message = format!("`{name}` applies to a coordinate, but this is an expression");
+        cx.report_error(e.place.clone(), message).add_help("write it in a limit of the joint");
+    } else if given.get(Key::Restitution).is_none() {
+        cx.report_error(limit.on.place.clone(), "a limit of an expression is a stop and needs a restitution").add_help(
+            "add `restitution = e`, from 0 to 1: the ratio of the speeds after and before the impact on the bound",
+        );
+    } else if let Some(bounds) = resolve_bounds(scope, limit, false, cx) {
+        check_bounds(limit, &bounds, cx);
+    }
+}
+
+/// Returns the values of the four bounds; `None` after an error.
+fn resolve_bounds<'g>(
+    scope: &Scope<'_, 'g>,
+    limit: &syntax::Limit,
+    angle: bool,
+    cx: &mut Diagnostics,
+) -> Option<[Option<Value<'g>>; 4]> {
+    let mut good = true;
+    let bounds = [Key::From, Key::To, Key::MaxSpeed, Key::MaxEffort].map(|key| {
+        let e = limit.arguments.get(key)?;
+        let angle = angle && matches!(key, Key::From | Key::To);
+        // Angles in a file are in radians, without a limit on revolutions.
+        let value = match angle && e.place.file.is_none() {
+            true => scope.plane_angle(e, cx),
+            false => scope.resolve_scalar(e, cx),
+        };
+        good &= value.is_some();
+        value
+    });
+    good.then_some(bounds)
+}
+
+/// Converts bounds of `ratio × q + offset` to bounds of the coordinate `q`.
+fn limit_of<'g>(
+    scope: &Scope<'_, 'g>,
+    c: &Coordinate,
+    [from, to, speed, effort]: [Option<Value<'g>>; 4],
+) -> Limit<'g> {
+    let number_expression = |x: f64| scope.graph.num(x);
+    let to_coordinate = |bound: Value<'g>| (bound - number_expression(c.offset)) / number_expression(c.ratio);
+    let (from, to) = (from.map(to_coordinate), to.map(to_coordinate));
+    let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
+    let speed = speed.map(|speed| speed / number_expression(c.ratio.abs()));
+    let effort = effort.map(|effort| effort * number_expression(c.ratio.abs()));
+    Limit { q: c.q, v: c.v, lower, upper, speed, effort }
 }
 
 /// Returns the tighter bounds of two limits of one coordinate.

@@ -1,200 +1,167 @@
 //! Masses of bodies and particles, which are added to the links that carry them.
 
-use super::builder::Builder;
 use super::inertia::check_inertia;
 use super::range::ValueRange;
-use super::scope::{MassProperties, Placed};
+use super::scope::{MassProperties, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::language::{Callable, Solid};
-use crate::mechanism::{Inertia, LinkId, Pose, Rule};
+use crate::mechanism::{Model, Rule};
 use crate::syntax::{self, Body, Callee, ExprKind, Inertias, Particle};
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds the masses of all bodies and particles to their links.
-    pub fn add_masses(&mut self, cx: &mut Diagnostics) {
-        for (k, body) in self.description.bodies.iter().enumerate() {
-            // Inertial parameters of a body that a file fixes to the ground enter no equation.
-            let is_fixed = matches!(self.places[k], Some((None, _)));
-            let from_file = body.name.place.file.is_some();
-            let mut silent = Diagnostics::new();
-            let inertia = self.body_inertia(body, if is_fixed && from_file { &mut silent } else { cx });
-            self.masses.push(inertia);
-            let known = inertia.map(|inertia| (body.name.text.clone(), inertia));
-            self.scope.kinematics.masses.extend(known);
-            if let Some(inertia) = inertia
-                && let Some((Some(link), pose)) = self.places[k].clone()
-            {
-                self.attach_mass(link, &pose, inertia);
-            }
-        }
-        for particle in &self.description.particles {
-            self.add_particle(particle, cx);
-        }
+/// Returns the mass of a particle.
+pub fn particle_mass<'g>(
+    scope: &Scope<'_, 'g>,
+    particle: &Particle,
+    cx: &mut Diagnostics,
+) -> Option<Expr<'g>> {
+    let mass = scope.resolve_scalar(&particle.mass, cx);
+    if let Some(mass) = mass {
+        ValueRange::of_scalar(&scope.description.scalar).check_mass(mass, &particle.mass.place, cx);
+        scope.record_requirement(Rule::Mass, || format!("the mass of `{}`", particle.name.text), &[mass]);
     }
+    if let Some(m) = mass.and_then(|m| m.constant_value()).filter(|m| *m <= 0.0) {
+        cx.report_error(
+            particle.mass.place.clone(),
+            format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
+        )
+        .add_help("a point without mass is a `Point`");
+    }
+    mass
+}
 
-    /// Returns mass, centre of mass and central inertia of a body.
-    fn body_inertia(&self, body: &Body, cx: &mut Diagnostics) -> Option<MassProperties<'g>> {
-        let graph = self.scope.graph;
-        let name = &body.name.text;
-        let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| self.scope.resolve_scalar(e, cx));
-        if let Some(mass) = mass {
-            self.scope.record_requirement(Rule::Mass, || format!("the mass of `{name}`"), &[mass]);
-        }
-        let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
-        let inertia =
-            body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.resolve_inertia(e, cx));
-        let inertia = match &body.about {
-            Some(about) => self.about_center(body, about, (mass, com, inertia), cx),
-            None => inertia,
-        };
-        if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.constant_value()))
-            && m < 0.0
-        {
+/// Reports inertial parameters whose products are not finite.
+pub fn check_finite<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, cx: &mut Diagnostics) {
+    if !cx.is_empty() {
+        return;
+    }
+    let range = ValueRange::of_scalar(&scope.description.scalar);
+    let is_infinite =
+        |e: &Expr<'g>| e.constant_value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
+    for body in &scope.description.bodies {
+        let placed = scope.kinematics.places.get(&body.name.text);
+        let Some(link) = placed.and_then(|placed| placed.link) else { continue };
+        let i = &model.links[link.0].inertia;
+        let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
+        if all.into_iter().any(is_infinite) {
+            let name = &body.name;
             cx.report_error(
-                e.place.clone(),
-                format!("the mass of `{name}` cannot be negative, but it is {m}"),
+                name.place.clone(),
+                format!("the inertial parameters of `{}` are too large", name.text),
             )
-            .add_help("a mass is zero or more, kg; the sign belongs to gravity");
-        }
-        let range = ValueRange::of_scalar(&self.description.scalar);
-        let mut is_valid = true;
-        if let (Some(e), Some(m)) = (&body.mass, mass) {
-            is_valid &= range.check_mass(m, &e.place, cx);
-        }
-        if let (Some(e), Some(com)) = (&body.com, com) {
-            is_valid &= com.0.iter().all(|c| range.check_length(*c, &e.place, cx));
-        }
-        if let (Some(e), Some(i)) = (&body.inertia, &inertia) {
-            is_valid = is_valid && i.diagonal.iter().all(|c| range.check_mass(*c, &e.place, cx));
-        }
-        if !is_valid {
-            return None;
-        }
-        if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
-            && self.description.inertias == Inertias::Check
-        {
-            let hint = match e.place.file {
-                None if body.about.is_some() => {
-                    "these are the moments about the centre of mass, transformed from `about`; to accept the \
-                     inertia unchanged, write `#[mechanism(…, inertia = trust)]`"
-                }
-                Some(_) => {
-                    "correct the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to accept the \
-                     inertia unchanged"
-                }
-                None => "to accept the inertia unchanged, write `#[mechanism(…, inertia = trust)]`",
-            };
-            check_inertia(name, mass.and_then(|m| m.constant_value()), inertia, &e.place, hint, cx);
-        }
-        let found = (mass?, com?, inertia?);
-        self.require_physical_inertia(name, &found);
-        Some(found)
-    }
-
-    /// Converts an inertia about another point to one about the centre of mass by the parallel-axis theorem.
-    fn about_center(
-        &self,
-        body: &Body,
-        about: &syntax::Expr,
-        (mass, com, inertia): (Option<Expr<'g>>, Option<Vec3<'g>>, Option<Sym3<'g>>),
-        cx: &mut Diagnostics,
-    ) -> Option<Sym3<'g>> {
-        let solid = body.inertia.as_ref().and_then(|e| {
-            e.subexpressions().into_iter().find_map(|part| match &part.kind {
-                ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, _) => Some(*solid),
-                _ => None,
-            })
-        });
-        if let Some(solid) = solid.filter(|solid| *solid != Solid::Diagonal) {
-            cx.report_error(
-                about.place.clone(),
-                format!("the inertia of a `{}` is about its centre", solid.name()),
-            )
-            .add_help(
-                "remove `about`, and give the centre by `com`; `about` is for `diagonal(xx, yy, zz)` or \
-                     a matrix",
-            );
-            return None;
-        }
-        let about = match about.literal_number() {
-            Some(0.0) => Some(Vec3::zero(self.scope.graph)),
-            _ => self.scope.own_vector(about, cx),
-        };
-        Some(inertia? - Sym3::point_mass_inertia(mass?, com? - about?))
-    }
-
-    /// Adds the requirements for inertial parameters that can be checked only at run time, when their
-    /// parameters have values.
-    fn require_physical_inertia(&self, name: &str, (mass, com, inertia): &MassProperties<'g>) {
-        for c in com.0 {
-            self.scope.record_requirement(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
-        }
-        let entries: Vec<Expr<'g>> =
-            inertia.diagonal.iter().chain(&inertia.off).chain([mass]).copied().collect();
-        let describe_inertia = || format!("the inertia of `{name}`");
-        match self.description.inertias {
-            Inertias::Check => self.scope.record_requirement(Rule::Inertia, describe_inertia, &entries),
-            _ => entries
-                .iter()
-                .for_each(|entry| self.scope.record_requirement(Rule::Finite, describe_inertia, &[*entry])),
-        }
-    }
-
-    /// Adds the mass of an element with this pose on a link to that of the link.
-    fn attach_mass(&mut self, link: LinkId, pose: &Pose<'g>, (mass, com, central): MassProperties<'g>) {
-        let added = Inertia::of_body(mass, pose.transform_point(com), pose.rotation.sym_to_parent(central));
-        let sum = &mut self.model.links[link.0].inertia;
-        *sum = sum.plus(&added);
-    }
-
-    /// Reports inertial parameters whose products are not finite.
-    pub fn check_finite(&self, cx: &mut Diagnostics) {
-        if !cx.is_empty() {
+            .add_help("mass times the square of the distance from the joint overflows in products");
             return;
         }
-        let range = ValueRange::of_scalar(&self.description.scalar);
-        let is_infinite =
-            |e: &Expr<'g>| e.constant_value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
-        for (k, body) in self.description.bodies.iter().enumerate() {
-            let Some((Some(link), _)) = &self.places[k] else { continue };
-            let i = &self.model.links[link.0].inertia;
-            let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
-            if all.into_iter().any(is_infinite) {
-                let name = &body.name;
-                cx.report_error(
-                    name.place.clone(),
-                    format!("the inertial parameters of `{}` are too large", name.text),
-                )
-                .add_help("mass times the square of the distance from the joint overflows in products");
-                return;
-            }
-        }
     }
+}
 
-    fn add_particle(&mut self, particle: &Particle, cx: &mut Diagnostics) {
-        let graph = self.scope.graph;
-        let mass = self.scope.resolve_scalar(&particle.mass, cx);
-        if let Some(mass) = mass {
-            ValueRange::of_scalar(&self.description.scalar).check_mass(mass, &particle.mass.place, cx);
-            self.scope.record_requirement(
-                Rule::Mass,
-                || format!("the mass of `{}`", particle.name.text),
-                &[mass],
-            );
-        }
-        if let Some(m) = mass.and_then(|m| m.constant_value()).filter(|m| *m <= 0.0) {
-            cx.report_error(
-                particle.mass.place.clone(),
-                format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
-            )
-            .add_help("a point without mass is a `Point`");
-        }
-        let placed = self.scope.kinematics.places.get(&particle.name.text).cloned();
-        if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
-            let masses = (mass, Vec3::zero(graph), Sym3::zero(graph));
-            self.scope.kinematics.masses.insert(particle.name.text.clone(), masses);
-            self.attach_mass(link, &pose, masses);
-        }
+/// Returns mass, centre of mass and central inertia of a body.
+pub fn body_inertia<'g>(
+    scope: &Scope<'_, 'g>,
+    body: &Body,
+    cx: &mut Diagnostics,
+) -> Option<MassProperties<'g>> {
+    let graph = scope.graph;
+    let name = &body.name.text;
+    let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| scope.resolve_scalar(e, cx));
+    if let Some(mass) = mass {
+        scope.record_requirement(Rule::Mass, || format!("the mass of `{name}`"), &[mass]);
+    }
+    let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| scope.own_vector(e, cx));
+    let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| scope.resolve_inertia(e, cx));
+    let inertia = match &body.about {
+        Some(about) => about_center(scope, body, about, (mass, com, inertia), cx),
+        None => inertia,
+    };
+    if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.constant_value()))
+        && m < 0.0
+    {
+        cx.report_error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"))
+            .add_help("a mass is zero or more, kg; the sign belongs to gravity");
+    }
+    let range = ValueRange::of_scalar(&scope.description.scalar);
+    let mut is_valid = true;
+    if let (Some(e), Some(m)) = (&body.mass, mass) {
+        is_valid &= range.check_mass(m, &e.place, cx);
+    }
+    if let (Some(e), Some(com)) = (&body.com, com) {
+        is_valid &= com.0.iter().all(|c| range.check_length(*c, &e.place, cx));
+    }
+    if let (Some(e), Some(i)) = (&body.inertia, &inertia) {
+        is_valid = is_valid && i.diagonal.iter().all(|c| range.check_mass(*c, &e.place, cx));
+    }
+    if !is_valid {
+        return None;
+    }
+    if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
+        && scope.description.inertias == Inertias::Check
+    {
+        let hint = match e.place.file {
+            None if body.about.is_some() => {
+                "these are the moments about the centre of mass, transformed from `about`; to accept the \
+                 inertia unchanged, write `#[mechanism(…, inertia = trust)]`"
+            }
+            Some(_) => {
+                "correct the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to accept the \
+                 inertia unchanged"
+            }
+            None => "to accept the inertia unchanged, write `#[mechanism(…, inertia = trust)]`",
+        };
+        check_inertia(name, mass.and_then(|m| m.constant_value()), inertia, &e.place, hint, cx);
+    }
+    let found = (mass?, com?, inertia?);
+    require_physical_inertia(scope, name, &found);
+    Some(found)
+}
+
+/// Converts an inertia about another point to one about the centre of mass by the parallel-axis theorem.
+fn about_center<'g>(
+    scope: &Scope<'_, 'g>,
+    body: &Body,
+    about: &syntax::Expr,
+    (mass, com, inertia): (Option<Expr<'g>>, Option<Vec3<'g>>, Option<Sym3<'g>>),
+    cx: &mut Diagnostics,
+) -> Option<Sym3<'g>> {
+    let solid = body.inertia.as_ref().and_then(|e| {
+        e.subexpressions().into_iter().find_map(|part| match &part.kind {
+            ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, _) => Some(*solid),
+            _ => None,
+        })
+    });
+    if let Some(solid) = solid.filter(|solid| *solid != Solid::Diagonal) {
+        cx.report_error(
+            about.place.clone(),
+            format!("the inertia of a `{}` is about its centre", solid.name()),
+        )
+        .add_help(
+            "remove `about`, and give the centre by `com`; `about` is for `diagonal(xx, yy, zz)` or \
+                 a matrix",
+        );
+        return None;
+    }
+    let about = match about.literal_number() {
+        Some(0.0) => Some(Vec3::zero(scope.graph)),
+        _ => scope.own_vector(about, cx),
+    };
+    Some(inertia? - Sym3::point_mass_inertia(mass?, com? - about?))
+}
+
+/// Adds the requirements for inertial parameters that can be checked only at run time, when their
+/// parameters have values.
+fn require_physical_inertia<'g>(
+    scope: &Scope<'_, 'g>,
+    name: &str,
+    (mass, com, inertia): &MassProperties<'g>,
+) {
+    for c in com.0 {
+        scope.record_requirement(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
+    }
+    let entries: Vec<Expr<'g>> = inertia.diagonal.iter().chain(&inertia.off).chain([mass]).copied().collect();
+    let describe_inertia = || format!("the inertia of `{name}`");
+    match scope.description.inertias {
+        Inertias::Check => scope.record_requirement(Rule::Inertia, describe_inertia, &entries),
+        _ => entries
+            .iter()
+            .for_each(|entry| scope.record_requirement(Rule::Finite, describe_inertia, &[*entry])),
     }
 }

@@ -12,7 +12,7 @@ use crate::syntax::{self, ExprKind, words};
 
 /// Quantity that a function of the language sums over bodies.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Sum {
+pub enum SummedQuantity {
     /// Sum of the momenta.
     Momentum,
     /// Sum of the angular momenta about a point.
@@ -25,9 +25,14 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the momentum, the angular momentum or the kinetic energy of bodies, for their motion relative
     /// to the ground. With the velocity `v` of the centre of mass, its position `r` relative to the point,
     /// and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
-    pub fn resolve_momentum(&self, call: &Call<'_>, sum: Sum, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_momentum(
+        &self,
+        call: &Call<'_>,
+        sum: SummedQuantity,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         let (text, parts) = (call.function_name(), call.slash_operands());
-        let (count, point) = if sum == Sum::AngularMomentum { (2, " / point") } else { (1, "") };
+        let (count, point) = if sum == SummedQuantity::AngularMomentum { (2, " / point") } else { (1, "") };
         if parts.len() != count {
             let row = call.id.row();
             let error = cx.report_error(call.place.clone(), format!("`{text}` takes {}", row.takes));
@@ -67,7 +72,7 @@ impl<'g> Scope<'_, 'g> {
             let r = kinematics.resolve(&offset, link, zero);
             momenta.push((link, spin + r.cross(v * mass)));
         }
-        Some(if sum == Sum::Energy { Value::Scalar(energy) } else { vector_value(momenta) })
+        Some(if sum == SummedQuantity::Energy { Value::Scalar(energy) } else { vector_value(momenta) })
     }
 
     /// Resolves `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of

@@ -11,16 +11,16 @@ use crate::syntax::{self, ExprKind, GROUND, Name, words};
 impl<'g> Scope<'_, 'g> {
     /// Returns the kind of element with this name, with an article, for messages.
     pub fn kind_of_name(&self, name: &str) -> Option<&'static str> {
-        let is_in_list = |list: &[String]| list.iter().any(|known| known == name);
+        let d = self.description;
         match name {
-            _ if self.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
-            _ if self.tables.iter().any(|table| table.name.text == name) => Some("a table"),
-            _ if is_in_list(&self.frames) => Some("a frame"),
-            _ if name == GROUND || is_in_list(&self.bodies) => Some("a body"),
-            _ if is_in_list(&self.joints) => Some("a joint"),
-            _ if self.inputs.iter().any(|i| i.text == name) => Some("an input"),
-            _ if self.definitions.iter().any(|d| d.name.text == name) => Some("a definition"),
-            _ if is_in_list(&self.actions) => Some("a force element"),
+            _ if d.parameters.iter().any(|p| p.text == name) => Some("a parameter"),
+            _ if d.tables.iter().any(|table| table.name.text == name) => Some("a table"),
+            _ if d.frames.iter().any(|f| f.name.text == name) => Some("a frame"),
+            _ if name == GROUND || self.bodies.iter().any(|body| body == name) => Some("a body"),
+            _ if d.joints.iter().any(|j| j.name.text == name) => Some("a joint"),
+            _ if d.inputs.iter().any(|i| i.text == name) => Some("an input"),
+            _ if d.definitions.iter().any(|d| d.name.text == name) => Some("a definition"),
+            _ if d.actions.iter().any(|a| a.name.text == name) => Some("a force element"),
             _ => match Builtin::of_name(name)? {
                 Builtin::Axis(_) => Some("a direction"),
                 Builtin::Pi => Some("a number"),
@@ -47,13 +47,13 @@ impl<'g> Scope<'_, 'g> {
         }
         // A parameter with the name of an axis has been reported; its meaning is ambiguous.
         let axis = axis_of_name(name);
-        if axis.is_some() && self.parameters.iter().any(|p| p.text == name) {
+        if axis.is_some() && self.description.parameters.iter().any(|p| p.text == name) {
             return None;
         }
         if let Some(k) = axis {
             return Some(self.own_axes(Vec3::coordinate_axis(self.graph, k)));
         }
-        if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
+        if let Some(k) = self.description.parameters.iter().position(|p| p.text == name) {
             self.records.borrow_mut().used[k] = true;
             return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
         }
@@ -66,7 +66,7 @@ impl<'g> Scope<'_, 'g> {
         if self.bodies.iter().any(|b| b == name) || name == GROUND {
             cx.report_error(e.place.clone(), format!("`{name}` is a body, not a value"))
                 .add_help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
-        } else if let Some(table) = self.tables.iter().find(|table| table.name.text == name) {
+        } else if let Some(table) = self.description.tables.iter().find(|table| table.name.text == name) {
             let variables = ["a", "b", "c"].get(..table.variables).unwrap_or_default().join(", ");
             cx.report_error(e.place.clone(), format!("`{name}` is a table, which needs its variables"))
                 .add_help(format!("write `{name}({variables})`"));
@@ -86,13 +86,13 @@ impl<'g> Scope<'_, 'g> {
             }
         } else {
             let kinematics = &self.kinematics;
-            let mut known: Vec<&str> = self.parameters.iter().map(|p| p.text.as_str()).collect();
+            let mut known: Vec<&str> = self.description.parameters.iter().map(|p| p.text.as_str()).collect();
             if self.allowed_quantities() >= Allowed::Placement {
                 known.extend(kinematics.coordinates.iter().map(|(name, ..)| name.as_str()));
-                known.extend(self.definitions.iter().map(|d| d.name.text.as_str()));
+                known.extend(self.description.definitions.iter().map(|d| d.name.text.as_str()));
             }
             if self.allowed_quantities() >= Allowed::Motion {
-                known.extend(self.inputs.iter().map(|i| i.text.as_str()));
+                known.extend(self.description.inputs.iter().map(|i| i.text.as_str()));
             }
             if !self.is_first_report(name, cx) {
                 return None;
@@ -216,11 +216,11 @@ impl<'g> Scope<'_, 'g> {
         if let Some(value) = self.resolve_coordinate(name, e, cx) {
             return Some(value);
         }
-        if let Some(k) = self.inputs.iter().position(|i| i.text == name) {
+        if let Some(k) = self.description.inputs.iter().position(|i| i.text == name) {
             let here = self.check_allowed(Allowed::Motion, &format!("the input `{name}`"), &e.place, cx);
             return Some(here.then(|| Value::Scalar(Quantity::Input(self.driven + k).expr(self.graph))));
         }
-        let definition = self.definitions.iter().find(|d| d.name.text == name)?;
+        let definition = self.description.definitions.iter().find(|d| d.name.text == name)?;
         Some(self.resolve_definition(definition, e, cx))
     }
 
@@ -293,7 +293,7 @@ impl<'g> Scope<'_, 'g> {
         if value.declared_rank() == d.rank {
             return Some(value);
         }
-        if self.speeds.iter().any(|speed| speed.text == *name) {
+        if self.description.speeds.iter().any(|speed| speed.text == *name) {
             cx.report_error(
                 d.value.place.clone(),
                 format!("a speed is a scalar, and this is {}", value.kind_with_article()),

@@ -1,46 +1,66 @@
 //! Numbering of coordinates and velocities, in the order of declaration.
 
-use super::builder::{Builder, JointCoordinates};
+use super::closed_form::ClosedFormLoop;
 use super::holders;
 use super::joint::{charts_of_joint, full_name, own_coordinate};
 use super::reaction::RELEASED;
-use super::{closed_form, tree};
-use crate::diag::Diagnostics;
-use crate::mechanism::{Chart, Coordinate};
+use super::scope::{JointCoordinates, PlainCoordinate};
+use crate::diag::{Diagnostics, Place};
+use crate::mechanism::{Chart, Coordinate, InQ, InV};
+use crate::syntax::Description;
 
-impl<'g> Builder<'_, 'g> {
+/// Entries of `q` and `v`, with the joints and coordinates to which they belong.
+#[derive(Default)]
+pub struct Numbering {
+    /// Names of the entries of `q`.
+    pub configuration: Vec<String>,
+    /// Names of the entries of `v`, with the declarations to which they belong.
+    pub velocities: Vec<(String, Place)>,
+    /// Charts of the configuration space.
+    pub charts: Vec<Chart>,
+    /// Plain coordinates of joints, and declared coordinates.
+    pub coordinates: Vec<PlainCoordinate>,
+    /// Coordinates of each joint.
+    pub joints: Vec<JointCoordinates>,
+}
+
+impl Numbering {
     /// Numbers the entries of `q` and `v` in the order of declaration. Joints that close loops have no
     /// coordinates. Joints that follow another joint (`mimic`) are numbered last, because their leaders may
     /// be declared later.
-    pub fn number_coordinates(&mut self, cx: &mut Diagnostics) {
-        let closing = tree::loop_closing_joints(self.description);
-        self.solved_loops = closed_form::find_solved_loops(self.description, &closing, cx);
-        for (j, joint) in self.description.joints.iter().enumerate() {
-            self.number_free_coordinates(j);
-            let (q, v) = self.model.next_coordinate();
+    pub fn of_description(
+        description: &Description,
+        (closing, solved_loops): (&[bool], &[ClosedFormLoop]),
+        cx: &mut Diagnostics,
+    ) -> Numbering {
+        let mut all = Numbering::default();
+        let is_solved = |j: usize| solved_loops.iter().any(|solved| solved.sides.contains(&j));
+        for (j, joint) in description.joints.iter().enumerate() {
+            all.number_free_coordinates(description, j);
+            let (q, v) = all.next_coordinate();
             let mut plain = Vec::new();
-            if joint.mimic.is_none() && !closing[j] && self.solving_loop(j).is_none() {
-                self.model.charts.extend(charts_of_joint(joint.kind, (q, v), joint.along.len()));
+            if joint.mimic.is_none() && !closing[j] && !is_solved(j) {
+                all.charts.extend(charts_of_joint(joint.kind, (q, v), joint.along.len()));
                 let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
                 for name in &names_q {
-                    self.model.configuration.push(full_name(&joint.name.text, name));
+                    all.configuration.push(full_name(&joint.name.text, name));
                 }
                 for (k, name) in names_v.iter().enumerate() {
                     let full = full_name(&joint.name.text, name);
                     if names_q == names_v {
                         plain.push((full.clone(), own_coordinate(q + k, v + k), joint.kind.is_angle(name)));
                     }
-                    self.model.velocities.push((full, joint.name.place.clone()));
+                    all.velocities.push((full, joint.name.place.clone()));
                 }
             }
-            self.scope.kinematics.coordinates.extend(plain.iter().cloned());
-            self.coordinates.push(JointCoordinates { q, v, plain });
+            all.coordinates.extend(plain.iter().cloned());
+            all.joints.push(JointCoordinates { q, v, plain });
         }
-        self.number_free_coordinates(self.description.joints.len());
-        for (k, joint) in self.description.joints.iter().enumerate() {
+        all.number_free_coordinates(description, description.joints.len());
+        for (k, joint) in description.joints.iter().enumerate() {
             let Some(mimic) = &joint.mimic else { continue };
-            let master = self.description.joints.iter().position(|j| j.name.text == mimic.joint.text);
-            match master.map(|m| self.coordinates[m].plain.as_slice()) {
+            let master = description.joints.iter().position(|j| j.name.text == mimic.joint.text);
+            match master.map(|m| all.joints[m].plain.as_slice()) {
                 Some([(_, c, _)]) => {
                     let coordinate = Coordinate {
                         ratio: mimic.multiplier * c.ratio,
@@ -48,8 +68,8 @@ impl<'g> Builder<'_, 'g> {
                         ..*c
                     };
                     let angle = joint.kind.is_angle("");
-                    self.scope.kinematics.coordinates.push((joint.name.text.clone(), coordinate, angle));
-                    self.coordinates[k].plain.push((joint.name.text.clone(), coordinate, angle));
+                    all.coordinates.push((joint.name.text.clone(), coordinate, angle));
+                    all.joints[k].plain.push((joint.name.text.clone(), coordinate, angle));
                 }
                 _ => {
                     cx.report_error(
@@ -60,29 +80,34 @@ impl<'g> Builder<'_, 'g> {
                 }
             }
         }
+        all
+    }
+
+    /// Returns the indices in `q` and `v` of the next coordinate that is added.
+    pub fn next_coordinate(&self) -> (InQ, InV) {
+        (InQ(self.configuration.len()), InV(self.velocities.len()))
     }
 
     /// Numbers the free coordinates that are declared after the given number of joints.
-    fn number_free_coordinates(&mut self, joints: usize) {
-        for free in self.description.coordinates.iter().filter(|c| c.joints_before == joints) {
-            let (q, v) = self.model.next_coordinate();
-            self.model.configuration.push(free.name.text.clone());
-            self.model.velocities.push((free.name.text.clone(), free.name.place.clone()));
-            self.model.charts.push(Chart::Plain(q, v));
-            let kinematics = &mut self.scope.kinematics;
-            kinematics.coordinates.push((free.name.text.clone(), own_coordinate(q, v), false));
+    fn number_free_coordinates(&mut self, description: &Description, joints: usize) {
+        for free in description.coordinates.iter().filter(|c| c.joints_before == joints) {
+            let (q, v) = self.next_coordinate();
+            self.configuration.push(free.name.text.clone());
+            self.velocities.push((free.name.text.clone(), free.name.place.clone()));
+            self.charts.push(Chart::Plain(q, v));
+            self.coordinates.push((free.name.text.clone(), own_coordinate(q, v), false));
         }
     }
 
-    /// Adds the coordinates of joints that are released for reactions, after all others.
-    pub fn number_released_coordinates(&mut self, joints: &[usize]) {
+    /// Adds the coordinates of released joints after all others.
+    pub fn add_released(&mut self, description: &Description, joints: &[usize]) {
         for j in joints {
-            let Some(name) = holders::name_of(self.description, *j) else { continue };
+            let Some(name) = holders::name_of(description, *j) else { continue };
             for k in 0..RELEASED {
-                let (q, v) = self.model.next_coordinate();
-                self.model.charts.push(Chart::Plain(q, v));
-                self.model.configuration.push(format!("{}.open{k}", name.text));
-                self.model.velocities.push((format!("{}.open{k}", name.text), name.place.clone()));
+                let (q, v) = self.next_coordinate();
+                self.charts.push(Chart::Plain(q, v));
+                self.configuration.push(format!("{}.open{k}", name.text));
+                self.velocities.push((format!("{}.open{k}", name.text), name.place.clone()));
             }
         }
     }

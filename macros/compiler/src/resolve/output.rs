@@ -1,96 +1,85 @@
 //! Outputs: expressions that become functions, resolved in their declared axes.
 
-use super::builder::Builder;
 use super::contact;
-use super::scope::{Allowed, Context, Value};
+use super::scope::{Allowed, Context, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, OutputValue, Pose};
 use crate::syntax::{Definition, ExprKind, Rank};
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds all declared outputs to the model.
-    pub fn add_outputs(&mut self, cx: &mut Diagnostics) {
-        for output in &self.description.outputs {
-            if output.rank == Rank::FreeBody {
-                let found = self.free_body(output, cx);
-                self.model.outputs.extend(found);
-                continue;
-            }
-            if let Some(values) = self.resolve_output(output, cx) {
-                if !contact::has_consistent_forces(&values) {
-                    cx.report_error(
-                        output.value.place.clone(),
-                        "a contact force together with a reaction or an acceleration",
-                    )
-                    .add_help(
-                        "reactions and accelerations are computed without contacts: declare a separate \
-                         output",
-                    );
-                    continue;
-                }
-                self.model.outputs.push(OutputValue {
-                    name: output.name.text.clone(),
-                    values,
-                    diagram: None,
-                });
-            }
-        }
+/// Resolves an output that is an expression; `None` after an error.
+pub fn resolve_output<'g>(
+    scope: &Scope<'_, 'g>,
+    output: &Definition,
+    cx: &mut Diagnostics,
+) -> Option<OutputValue<'g>> {
+    let values = output_values(scope, output, cx)?;
+    if !contact::has_consistent_forces(&values) {
+        cx.report_error(
+            output.value.place.clone(),
+            "a contact force together with a reaction or an acceleration",
+        )
+        .add_help("reactions and accelerations are computed without contacts: declare a separate output");
+        return None;
     }
+    Some(OutputValue { name: output.name.text.clone(), values, diagram: None })
+}
 
-    fn resolve_output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
-        let frame = Some((None, Pose::identity(self.scope.graph)));
-        let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
-        let context = Context::new(allowed, frame);
-        if output.rank == Rank::Scalar {
-            return match self.scope.in_context(context, |scope| scope.resolve_value(&output.value, cx))? {
-                Value::Scalar(s) => Some(vec![s]),
-                other => {
-                    let what = other.kind_with_article();
-                    cx.report_error(output.value.place.clone(), format!("expected a scalar, found {what}"))
-                        .add_help(match other {
-                            Value::Matrix(_) => "declare it as a `Matrix`, or take an entry, `dot(x, M * y)`",
-                            _ => "declare it as a `Vector`, or take a component, `dot(v, x)`",
-                        });
-                    None
-                }
-            };
-        }
-        if output.rank == Rank::Matrix {
-            let found = self.scope.in_context(context, |scope| scope.physical_matrix(&output.value, cx));
-            let (link, pose) = self.output_axes(output, cx)?;
-            return Some(self.scope.kinematics.matrix_entries(found?, link, &pose.rotation));
-        }
-        let terms = self.scope.in_context(context, |scope| scope.resolve_terms(&output.value, cx));
-        let (link, pose) = self.output_axes(output, cx)?;
-        let v = self.scope.kinematics.resolve(&terms?, link, Vec3::zero(self.scope.graph));
-        Some(pose.rotation.to_child(v).0.to_vec())
-    }
-
-    /// Returns the link and the pose of the axes in which the components of an output are resolved.
-    pub fn output_axes(
-        &self,
-        output: &Definition,
-        cx: &mut Diagnostics,
-    ) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let ground = Some((None, Pose::identity(self.scope.graph)));
-        let Some(e) = &output.resolved_in else { return ground };
-        match &e.kind {
-            ExprKind::Name(name) if name == super::tree::GROUND => ground,
-            ExprKind::Name(name) => {
-                let kinematics = &self.scope.kinematics;
-                let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
-                if found.is_none() {
-                    let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
-                    cx.report_error(e.place.clone(), format!("unknown frame `{name}`"))
-                        .suggest_name(name, known);
-                }
-                found
-            }
-            _ => {
-                cx.report_error(e.place.clone(), "expected a body or a frame");
+fn output_values<'g>(
+    scope: &Scope<'_, 'g>,
+    output: &Definition,
+    cx: &mut Diagnostics,
+) -> Option<Vec<Expr<'g>>> {
+    let frame = Some((None, Pose::identity(scope.graph)));
+    let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
+    let context = Context::new(allowed, frame);
+    if output.rank == Rank::Scalar {
+        return match scope.in_context(context, |scope| scope.resolve_value(&output.value, cx))? {
+            Value::Scalar(s) => Some(vec![s]),
+            other => {
+                let what = other.kind_with_article();
+                cx.report_error(output.value.place.clone(), format!("expected a scalar, found {what}"))
+                    .add_help(match other {
+                        Value::Matrix(_) => "declare it as a `Matrix`, or take an entry, `dot(x, M * y)`",
+                        _ => "declare it as a `Vector`, or take a component, `dot(v, x)`",
+                    });
                 None
             }
+        };
+    }
+    if output.rank == Rank::Matrix {
+        let found = scope.in_context(context, |scope| scope.physical_matrix(&output.value, cx));
+        let (link, pose) = output_axes(scope, output, cx)?;
+        return Some(scope.kinematics.matrix_entries(found?, link, &pose.rotation));
+    }
+    let terms = scope.in_context(context, |scope| scope.resolve_terms(&output.value, cx));
+    let (link, pose) = output_axes(scope, output, cx)?;
+    let v = scope.kinematics.resolve(&terms?, link, Vec3::zero(scope.graph));
+    Some(pose.rotation.to_child(v).0.to_vec())
+}
+
+/// Returns the link and the pose of the axes in which the components of an output are resolved.
+pub fn output_axes<'g>(
+    scope: &Scope<'_, 'g>,
+    output: &Definition,
+    cx: &mut Diagnostics,
+) -> Option<(Option<LinkId>, Pose<'g>)> {
+    let ground = Some((None, Pose::identity(scope.graph)));
+    let Some(e) = &output.resolved_in else { return ground };
+    match &e.kind {
+        ExprKind::Name(name) if name == super::tree::GROUND => ground,
+        ExprKind::Name(name) => {
+            let kinematics = &scope.kinematics;
+            let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
+            if found.is_none() {
+                let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
+                cx.report_error(e.place.clone(), format!("unknown frame `{name}`")).suggest_name(name, known);
+            }
+            found
+        }
+        _ => {
+            cx.report_error(e.place.clone(), "expected a body or a frame");
+            None
         }
     }
 }

@@ -4,19 +4,20 @@
 
 use super::builder::Builder;
 use super::carriers::uses_axes;
+use super::chain::check_joint;
 use super::holders;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
-use super::tree::Order;
+use super::tree::PlacementOrder;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Rotation, Vec3};
 use crate::language::{Callable, Method};
-use crate::mechanism::{LinkId, NamedFrame, Pose};
+use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
 /// Element that is to be placed, by its index in its list.
 #[derive(Clone, Copy)]
-enum Item {
-    /// Placement of a joint's child, by the joint's index in the [`Order`].
+enum UnplacedElement {
+    /// Joint, by its index in the [`PlacementOrder`].
     Joint(usize),
     Frame(usize),
     Point(usize),
@@ -25,28 +26,10 @@ enum Item {
 }
 
 impl<'a, 'g> Builder<'a, 'g> {
-    /// Adds the named frames of all placed elements.
-    pub fn add_frames(&mut self) {
-        let d = self.description;
-        let massive = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
-        let massive = massive.map(|name| (name, true));
-        if d.ground_frame {
-            let (name, pose) = (GROUND.to_string(), Pose::identity(self.scope.graph));
-            self.model.frames.push(NamedFrame { name, massive: false, link: None, pose });
-        }
-        let kinematics = &self.scope.kinematics;
-        for (name, massive) in massive.chain(d.points.iter().map(|p| (&p.name, false))) {
-            if let Some(p) = kinematics.places.get(&name.text) {
-                let (name, link, pose) = (name.text.clone(), p.link, p.pose.clone());
-                self.model.frames.push(NamedFrame { name, massive, link, pose });
-            }
-        }
-    }
-
     /// Places all elements. An element waits until the elements on which it depends are placed; if no
     /// progress is possible, definitions are circular.
-    pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
-        let d = self.description;
+    pub fn place_all(&mut self, order: &PlacementOrder, cx: &mut Diagnostics) {
+        let d = self.scope.description;
         for (j, child) in &order.joints {
             if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
                 let (name, joint) = (&body.name, &d.joints[*j].name);
@@ -55,12 +38,14 @@ impl<'a, 'g> Builder<'a, 'g> {
                     .add_help("a body is placed by a joint, or by `at` and `frame`");
             }
         }
-        let mut waiting: Vec<Item> = (0..order.joints.len()).map(Item::Joint).collect();
-        waiting.extend((0..d.frames.len()).map(Item::Frame));
-        waiting.extend((0..d.points.len()).map(Item::Point));
+        let mut waiting: Vec<UnplacedElement> = (0..order.joints.len()).map(UnplacedElement::Joint).collect();
+        waiting.extend((0..d.frames.len()).map(UnplacedElement::Frame));
+        waiting.extend((0..d.points.len()).map(UnplacedElement::Point));
         let placed_body = |k: &usize| d.bodies[*k].at.is_some() || d.bodies[*k].frame.is_some();
-        waiting.extend((0..d.bodies.len()).filter(placed_body).map(Item::Body));
-        waiting.extend((0..d.particles.len()).filter(|k| d.particles[*k].at.is_some()).map(Item::Particle));
+        waiting.extend((0..d.bodies.len()).filter(placed_body).map(UnplacedElement::Body));
+        waiting.extend(
+            (0..d.particles.len()).filter(|k| d.particles[*k].at.is_some()).map(UnplacedElement::Particle),
+        );
         while !waiting.is_empty() {
             let before = waiting.len();
             let mut rest = Vec::new();
@@ -81,60 +66,60 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the names on which the placement of an element depends.
-    fn placement_dependencies(&self, item: Item, order: &Order) -> Vec<String> {
-        let d = self.description;
+    fn placement_dependencies(&self, item: UnplacedElement, order: &PlacementOrder) -> Vec<String> {
+        let d = self.scope.description;
         let mut names = Vec::new();
         let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
         match item {
-            Item::Joint(k) => {
+            UnplacedElement::Joint(k) => {
                 let j = order.joints[k].0;
                 // A joint that is solved for needs the other side of its loop as well.
                 let sides = self.solving_loop(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
                 names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
             }
-            Item::Frame(k) => {
+            UnplacedElement::Frame(k) => {
                 let f = &d.frames[k];
                 collect_names(&f.start, &mut names);
                 f.rotations.iter().for_each(|e| collect_names(e, &mut names));
             }
-            Item::Point(k) => {
+            UnplacedElement::Point(k) => {
                 expression(&d.points[k].on);
                 expression(&d.points[k].at);
             }
-            Item::Body(k) => {
+            UnplacedElement::Body(k) => {
                 expression(&d.bodies[k].at);
                 expression(&d.bodies[k].frame);
             }
-            Item::Particle(k) => expression(&d.particles[k].at),
+            UnplacedElement::Particle(k) => expression(&d.particles[k].at),
         }
         names
     }
 
-    fn is_ready(&self, item: Item, order: &Order) -> bool {
+    fn is_ready(&self, item: UnplacedElement, order: &PlacementOrder) -> bool {
         let kinematics = &self.scope.kinematics;
         self.placement_dependencies(item, order)
             .iter()
-            .all(|name| !self.placeable.contains(name) || kinematics.places.contains_key(name))
+            .all(|name| !self.scope.is_placeable(name) || kinematics.places.contains_key(name))
     }
 
-    fn item_name(&self, item: Item, order: &Order) -> &'a Name {
-        let d = self.description;
+    fn item_name(&self, item: UnplacedElement, order: &PlacementOrder) -> &'a Name {
+        let d = self.scope.description;
         match item {
-            Item::Joint(k) => &d.joints[order.joints[k].0].name,
-            Item::Frame(k) => &d.frames[k].name,
-            Item::Point(k) => &d.points[k].name,
-            Item::Body(k) => &d.bodies[k].name,
-            Item::Particle(k) => &d.particles[k].name,
+            UnplacedElement::Joint(k) => &d.joints[order.joints[k].0].name,
+            UnplacedElement::Frame(k) => &d.frames[k].name,
+            UnplacedElement::Point(k) => &d.points[k].name,
+            UnplacedElement::Body(k) => &d.bodies[k].name,
+            UnplacedElement::Particle(k) => &d.particles[k].name,
         }
     }
 
-    fn report_waiting(&self, waiting: &[Item], order: &Order, cx: &mut Diagnostics) {
+    fn report_waiting(&self, waiting: &[UnplacedElement], order: &PlacementOrder, cx: &mut Diagnostics) {
         // After another error, elements may wait for one that failed, which has been reported. Joints are
         // still resolved, to report their own errors at once.
         if !cx.is_empty() {
             for item in waiting {
-                if let Item::Joint(k) = item {
-                    self.check_joint(&self.description.joints[order.joints[*k].0], cx);
+                if let UnplacedElement::Joint(k) = item {
+                    check_joint(&self.scope, &self.scope.description.joints[order.joints[*k].0], cx);
                 }
             }
             return;
@@ -167,46 +152,44 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the name of the element that an item places.
-    fn placed_name(&self, item: Item, order: &Order) -> String {
+    fn placed_name(&self, item: UnplacedElement, order: &PlacementOrder) -> String {
         match item {
-            Item::Joint(k) => self.description.joints[order.joints[k].0].child.body.text.clone(),
+            UnplacedElement::Joint(k) => {
+                self.scope.description.joints[order.joints[k].0].child.body.text.clone()
+            }
             _ => self.item_name(item, order).text.clone(),
         }
     }
 
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
-    fn place_substitutes(&mut self, waiting: &[Item], order: &Order) {
+    fn place_substitutes(&mut self, waiting: &[UnplacedElement], order: &PlacementOrder) {
         for item in waiting {
             let name = self.placed_name(*item, order);
-            let (link, pose) = self.link_if_moving(None, self.substitute_pose(true));
-            let (kind, body) = match item {
-                Item::Joint(k) => (PlacedKind::Body, Some(order.joints[*k].1)),
-                Item::Body(k) => (PlacedKind::Body, Some(*k)),
-                Item::Frame(_) => (PlacedKind::Frame, None),
-                Item::Point(_) | Item::Particle(_) => (PlacedKind::Point, None),
+            let (link, pose) = self.link_if_moving(None, self.scope.substitute_pose(true));
+            let kind = match item {
+                UnplacedElement::Joint(_) | UnplacedElement::Body(_) => PlacedKind::Body,
+                UnplacedElement::Frame(_) => PlacedKind::Frame,
+                UnplacedElement::Point(_) | UnplacedElement::Particle(_) => PlacedKind::Point,
             };
-            if let Some(k) = body {
-                self.places[k] = Some((link, pose.clone()));
-            }
             self.register_placement(&name, link, pose, kind);
         }
     }
 
-    fn place_item(&mut self, item: Item, order: &Order, cx: &mut Diagnostics) {
-        let d = self.description;
+    fn place_item(&mut self, item: UnplacedElement, order: &PlacementOrder, cx: &mut Diagnostics) {
+        let d = self.scope.description;
         match item {
-            Item::Joint(k) => {
+            UnplacedElement::Joint(k) => {
                 let (j, child) = order.joints[k];
                 self.place_joint(j, child, cx);
             }
-            Item::Frame(k) => {
+            UnplacedElement::Frame(k) => {
                 let (link, pose) =
-                    self.frame_place(k, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
+                    self.frame_place(k, cx).unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
                 let (start, (link, pose)) = (link, self.link_if_moving(link, pose));
                 self.frame_links.extend(link.filter(|_| link != start));
                 self.register_placement(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
             }
-            Item::Point(k) => {
+            UnplacedElement::Point(k) => {
                 let p = &d.points[k];
                 let frame = match &p.on {
                     Some(on) => self.scope.resolve_placement(on, cx),
@@ -216,17 +199,17 @@ impl<'a, 'g> Builder<'a, 'g> {
                     Some(at) => self.placement_at_offset(frame, at, false, cx),
                     None => Some((frame.link, frame.pose)),
                 });
-                let (link, pose) = place.unwrap_or_else(|| (None, self.substitute_pose(true)));
+                let (link, pose) = place.unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
                 let (link, pose) = self.link_if_moving(link, pose);
                 self.register_placement(&p.name.text, link, pose, PlacedKind::Point);
             }
-            Item::Body(k) => self.place_body(k, cx),
-            Item::Particle(k) => {
+            UnplacedElement::Body(k) => self.place_body(k, cx),
+            UnplacedElement::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
                 let free = !uses_axes(d, &p.name.text);
                 let (link, pose) =
-                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
+                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
                 let (link, pose) = self.link_of_place(holders::particle_placement(d, k), link, pose);
                 self.register_placement(&p.name.text, link, pose, PlacedKind::Point);
             }
@@ -239,7 +222,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     /// Returns the axes of a frame, at the origin of its start frame.
     fn frame_place(&self, k: usize, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let frame = &self.description.frames[k];
+        let frame = &self.scope.description.frames[k];
         let start = self.axes_of(&frame.start, cx);
         // Axes defined by a vector or a curve precede further rotations.
         let natural = match frame.rotations.first().map(|first| &first.kind) {
@@ -305,7 +288,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     fn place_body(&mut self, k: usize, cx: &mut Diagnostics) {
-        let body = &self.description.bodies[k];
+        let body = &self.scope.description.bodies[k];
         let axes = match &body.frame {
             Some(frame) => self.axes_of(frame, cx),
             None => Some(self.ground_placement()),
@@ -320,10 +303,9 @@ impl<'a, 'g> Builder<'a, 'g> {
                 pose.rotation = self.rotation_between(link, axes.link).compose_with(&axes.pose.rotation);
                 (link, pose)
             }
-            _ => (None, self.substitute_pose(true)),
+            _ => (None, self.scope.substitute_pose(true)),
         };
-        let (link, pose) = self.link_of_place(holders::body_placement(self.description, k), link, pose);
-        self.places[k] = Some((link, pose.clone()));
+        let (link, pose) = self.link_of_place(holders::body_placement(self.scope.description, k), link, pose);
         self.register_placement(&body.name.text, link, pose, PlacedKind::Body);
     }
 
@@ -347,7 +329,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
     /// `offset` for `free`.
     fn place_at(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let is_placeable = |name: &String| name == GROUND || self.placeable.contains(name);
+        let is_placeable = |name: &String| name == GROUND || self.scope.is_placeable(name);
         match &e.kind {
             ExprKind::Name(name) if is_placeable(name) => {
                 let place = self.scope.resolve_placement(e, cx)?;

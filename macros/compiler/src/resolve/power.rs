@@ -1,6 +1,5 @@
 //! Power of single force elements, for outputs with `power(spring)`.
 
-use super::builder::Builder;
 use super::call::Call;
 use super::element_forces::Forces;
 use super::scope::{Allowed, ElementPower, Scope, Value};
@@ -8,7 +7,7 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::{coordinate_velocity, position_in, symbols_in, time_derivative, velocity_gradient};
 use crate::language::{Callable, FunctionId};
-use crate::mechanism::{Direction, Input, LinkId, Quantity};
+use crate::mechanism::{Constraint, Direction, Input, LinkId, Model, Quantity};
 use crate::syntax::{self, Description, Name};
 
 /// Whether an output or a definition contains the power of an element.
@@ -26,101 +25,100 @@ pub fn is_power_used(d: &Description, element: &Name) -> bool {
         || d.definitions.iter().any(|d| mentions_power_of_element(&d.value))
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Returns the power of the forces of an element: products of forces and rates, and the rate of decrease
-    /// of energies along the motion.
-    pub fn power_of(&self, forces: &Forces<'g>, element: &str) -> ElementPower<'g> {
-        let m = &self.model;
-        if !forces.inertances.is_empty() || !forces.acceleration_forces.is_empty() {
-            return Err("its force depends on accelerations");
-        }
-        let mut power = m.graph.zero();
-        for spring in &forces.springs {
-            power += -(spring.stiffness
-                * (position_in(m.graph, &spring.on) - spring.free)
-                * coordinate_velocity(m, &spring.on));
-        }
-        for dashpot in &forces.dashpots {
-            power += -(dashpot.damping * coordinate_velocity(m, &dashpot.on).square());
-        }
-        for dry in &forces.frictions {
-            let speed = coordinate_velocity(m, &dry.on);
-            power += -(dry.friction * (speed / m.friction_speed).apply_function(Function::Tanh) * speed);
-        }
-        for load in &forces.loads {
-            power += load.force * load.rate;
-        }
-        let energies = &forces.potentials;
-        if symbols_in(energies).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time) {
-            return Err("its energy depends on time");
-        }
-        for energy in energies {
-            power += -time_derivative(m.configuration_space(), *energy);
-        }
-        for function in &forces.dissipations {
-            for (k, d) in velocity_gradient(*function) {
-                power += -(d * Quantity::Velocity(k).expr(m.graph));
-            }
-        }
-        Ok(power + self.power_of_input(element))
-    }
+/// Returns the power of slipping contacts, by their names: that of their friction, which follows from the
+/// normal force.
+pub fn slipping_powers<'g>(model: &Model<'g>) -> Vec<(String, ElementPower<'g>)> {
+    let g = model.graph;
+    let slipping =
+        model.constraints.iter().enumerate().filter(|(_, constraint)| !constraint.friction.is_empty());
+    let power_of_contact = |(k, constraint): (usize, &Constraint<'g>)| {
+        let by_force = constraint.friction.iter().fold(g.zero(), |sum, term| sum + term.share * term.rate);
+        let normal = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g).apply_function(Function::Abs);
+        let contact = constraint.name.split('.').next().unwrap_or(&constraint.name);
+        (contact.to_string(), Ok(normal * by_force))
+    };
+    slipping.map(power_of_contact).collect()
+}
 
-    /// Records the power of slipping contacts for outputs: that of their friction, which follows from the
-    /// normal force.
-    pub fn record_slipping_power(&mut self) {
-        let g = self.model.graph;
-        for (k, constraint) in self.model.constraints.iter().enumerate() {
-            if constraint.friction.is_empty() {
-                continue;
-            }
-            let by_force =
-                constraint.friction.iter().fold(g.zero(), |sum, term| sum + term.share * term.rate);
-            let normal = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g).apply_function(Function::Abs);
-            let kinematics = &mut self.scope.kinematics;
-            let contact = constraint.name.split('.').next().unwrap_or(&constraint.name);
-            kinematics.powers.insert(contact.to_string(), Ok(normal * by_force));
+/// Returns the power of the forces of an element: products of forces and rates, and the rate of decrease
+/// of energies along the motion.
+pub fn power_of<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    forces: &Forces<'g>,
+    element: &str,
+) -> ElementPower<'g> {
+    let m = model;
+    if !forces.inertances.is_empty() || !forces.acceleration_forces.is_empty() {
+        return Err("its force depends on accelerations");
+    }
+    let mut power = m.graph.zero();
+    for spring in &forces.springs {
+        power += -(spring.stiffness
+            * (position_in(m.graph, &spring.on) - spring.free)
+            * coordinate_velocity(m, &spring.on));
+    }
+    for dashpot in &forces.dashpots {
+        power += -(dashpot.damping * coordinate_velocity(m, &dashpot.on).square());
+    }
+    for dry in &forces.frictions {
+        let speed = coordinate_velocity(m, &dry.on);
+        power += -(dry.friction * (speed / m.friction_speed).apply_function(Function::Tanh) * speed);
+    }
+    for load in &forces.loads {
+        power += load.force * load.rate;
+    }
+    let energies = &forces.potentials;
+    if symbols_in(energies).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time) {
+        return Err("its energy depends on time");
+    }
+    for energy in energies {
+        power += -time_derivative(m.configuration_space(), *energy);
+    }
+    for function in &forces.dissipations {
+        for (k, d) in velocity_gradient(*function) {
+            power += -(d * Quantity::Velocity(k).expr(m.graph));
         }
     }
+    Ok(power + power_of_input(scope, model, element))
+}
 
-    /// Returns the power of an input that acts on a coordinate or a body; zero for other names.
-    pub fn power_of_input(&self, element: &str) -> Expr<'g> {
-        let m = &self.model;
-        let Some(k) = m.inputs.iter().position(|(name, _)| name == element) else { return m.graph.zero() };
-        let u = Quantity::Input(k).expr(m.graph);
-        match &m.inputs[k].1 {
-            Input::Named => m.graph.zero(),
-            Input::Coordinate(c) => u * coordinate_velocity(m, c),
-            Input::Sum(all, _) => {
-                all.iter().fold(m.graph.zero(), |sum, c| sum + u * coordinate_velocity(m, c))
-            }
-            Input::Force { link, point, along } => {
-                let (linear, angular) = self.twist_of_link(*link);
-                u * (linear + angular.cross(*point)).dot(self.in_axes_of(*link, along))
-            }
-            Input::Torque { link, about } => {
-                u * self.twist_of_link(*link).1.dot(self.in_axes_of(*link, about))
-            }
+/// Returns the power of an input that acts on a coordinate or a body; zero for other names.
+pub fn power_of_input<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, element: &str) -> Expr<'g> {
+    let m = model;
+    let Some(k) = m.inputs.iter().position(|(name, _)| name == element) else { return m.graph.zero() };
+    let u = Quantity::Input(k).expr(m.graph);
+    match &m.inputs[k].1 {
+        Input::Named => m.graph.zero(),
+        Input::Coordinate(c) => u * coordinate_velocity(m, c),
+        Input::Sum(all, _) => all.iter().fold(m.graph.zero(), |sum, c| sum + u * coordinate_velocity(m, c)),
+        Input::Force { link, point, along } => {
+            let (linear, angular) = twist_of_link(scope, *link);
+            u * (linear + angular.cross(*point)).dot(in_axes_of(scope, *link, along))
+        }
+        Input::Torque { link, about } => {
+            u * twist_of_link(scope, *link).1.dot(in_axes_of(scope, *link, about))
         }
     }
+}
 
-    /// Returns the velocity of a link's origin and its angular velocity, in the axes of the link.
-    fn twist_of_link(&self, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
-        let kinematics = &self.scope.kinematics;
-        let twist = &kinematics.twists[link.0];
-        (twist.linear, twist.angular)
-    }
+/// Returns the velocity of a link's origin and its angular velocity, in the axes of the link.
+fn twist_of_link<'g>(scope: &Scope<'_, 'g>, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
+    let kinematics = &scope.kinematics;
+    let twist = &kinematics.twists[link.0];
+    (twist.linear, twist.angular)
+}
 
-    fn in_axes_of(&self, link: LinkId, direction: &Direction<'g>) -> Vec3<'g> {
-        let zero = Vec3::zero(self.model.graph);
-        self.scope.kinematics.resolve(direction, Some(link), zero)
-    }
+fn in_axes_of<'g>(scope: &Scope<'_, 'g>, link: LinkId, direction: &Direction<'g>) -> Vec3<'g> {
+    let zero = Vec3::zero(scope.graph);
+    scope.kinematics.resolve(direction, Some(link), zero)
 }
 
 impl<'g> Scope<'_, 'g> {
     /// Resolves `power(element)`: the power, in W, that a force element, an input or a contact supplies to
     /// the bodies. Negative power is dissipated or stored.
     pub fn resolve_power(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let element_names = || self.actions.iter().map(String::as_str);
+        let element_names = || self.description.actions.iter().map(|action| action.name.text.as_str());
         let [e] = call.take_arguments(cx)?;
         let Some(name) = e.as_name() else {
             cx.report_error(e.place.clone(), "expected a force element").suggest_name("", element_names());
@@ -138,7 +136,7 @@ impl<'g> Scope<'_, 'g> {
             }
             None => {
                 // An element with an error has no power; the error has been reported.
-                if !self.actions.iter().any(|action| action == name) && self.is_first_report(name, cx) {
+                if !element_names().any(|action| action == name) && self.is_first_report(name, cx) {
                     let error = cx.report_error(e.place.clone(), format!("unknown force element `{name}`"));
                     error.suggest_name(name, element_names());
                     if error.is_bare() {

@@ -4,15 +4,14 @@
 //! Mechanics*, 1970, § III.7). The reaction of a loop-closing joint follows from the multipliers of its
 //! constraints.
 
-use super::builder::Builder;
 use super::call::Call;
-use super::joint::own_coordinate;
-use super::scope::{Allowed, Axes, Scope, Value};
+use super::scope::{Allowed, Axes, Placed, Scope, Terms, Value};
 use crate::diag::Diagnostics;
-use crate::expr::{Rotation, Vec3};
+use crate::expr::{Expr, Vec3};
 use crate::kinematics::symbols_in;
-use crate::mechanism::{InQ, InV, Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
+use crate::mechanism::{Constraint, Model, Quantity};
 use crate::syntax::ExprKind;
+use std::collections::BTreeMap;
 
 /// Number of coordinates of a released joint: three translations and three rotations.
 pub const RELEASED: usize = 6;
@@ -38,36 +37,32 @@ pub fn joints_to_release(model: &Model<'_>) -> Vec<usize> {
     joints
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Records a joint whose reactions can be outputs. They are resolved in the axes of a frame on a link.
-    pub fn record_transmission(&mut self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
-        let name = self.description.joints[j].name.text.clone();
-        self.scope.kinematics.transmissions.insert(name, (j, link, rotation.clone()));
+/// Joints that are released to six degrees of freedom each, with the data for free-body diagrams.
+pub struct Release<'a, 'g> {
+    /// Indices of the released joints and placements.
+    pub joints: &'a [usize],
+    /// Constraints that the mechanism with released joints keeps.
+    pub retained: &'a [Constraint<'g>],
+    /// Frame of each released joint on its parent before the release, by index of the joint. Bodies placed by
+    /// `at` and `frame` have their own frame in this map.
+    pub frames: BTreeMap<usize, Placed<'g>>,
+    /// Name and generalized forces on the coordinates of released joints, for each force element, energy and
+    /// dissipation.
+    pub forces: Vec<(String, Vec<Expr<'g>>)>,
+    /// Contact point of each constraint of touching surfaces, by name, from the ground's origin.
+    pub contact_points: BTreeMap<String, Terms<'g>>,
+}
+
+impl<'a, 'g> Release<'a, 'g> {
+    /// Returns the release of joints, before any element is resolved.
+    pub fn of_joints(joints: &'a [usize], retained: &'a [Constraint<'g>]) -> Release<'a, 'g> {
+        let (frames, contact_points) = (BTreeMap::new(), BTreeMap::new());
+        Release { joints, retained, frames, forces: Vec::new(), contact_points }
     }
 
-    /// Returns the joint's frame on the parent, moved by the coordinates of the released joint number `index`
-    /// of `count`.
-    pub fn released_joint_frame(
-        &mut self,
-        index: usize,
-        count: usize,
-        mut link: Option<LinkId>,
-        mut pose: Pose<'g>,
-    ) -> (Option<LinkId>, Pose<'g>) {
-        let g = self.scope.graph;
-        let following = RELEASED * (count - index);
-        let (q, v) = (InQ(self.model.nq() - following), InV(self.model.nv() - following));
-        for k in 0..RELEASED {
-            let (axis, coordinate) = (Vec3::coordinate_axis(g, k % 3), own_coordinate(q + k, v + k));
-            let motion = match k {
-                0..3 => Motion::Slide { axis, coordinate },
-                _ => Motion::Turn { axis, coordinate },
-            };
-            let inertia = Inertia::zero(g);
-            link = Some(self.add_link(Link { parent: link, placement: pose, motion, inertia }));
-            pose = Pose::identity(g);
-        }
-        (link, pose)
+    /// Returns the index of a joint among the released joints.
+    pub fn index_of(&self, joint: usize) -> Option<usize> {
+        self.joints.iter().position(|released| *released == joint)
     }
 }
 

@@ -1,11 +1,10 @@
 //! Conditions on values computed from parameters. A violation by a constant is a compile-time error; a
 //! violation by a parameter is reported at run time.
 
-use super::builder::Builder;
 use super::scope::Scope;
 use crate::expr::Expr;
 use crate::kinematics::symbols_in;
-use crate::mechanism::{Quantity, Requirement, Rule};
+use crate::mechanism::{Model, Quantity, Requirement, Rule};
 
 impl<'g> Scope<'_, 'g> {
     /// Records a condition on values, if the values depend on parameters and on nothing else.
@@ -25,36 +24,30 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-impl Builder<'_, '_> {
-    /// Adds all conditions to the model: those recorded, those of bounds, and finiteness of parameters
-    /// without other conditions. Parameters with a leading underscore are exempt.
-    pub fn gather_requirements(&mut self) {
-        for limit in &self.model.limits {
-            let name = self.model.velocities.get(limit.v.0).map_or("", |(name, _)| name.as_str());
-            if let (Some(lower), Some(upper)) = (limit.lower, limit.upper) {
-                self.scope.record_requirement(
-                    Rule::Order,
-                    || format!("the range of `{name}`"),
-                    &[lower, upper],
-                );
-            }
-            for (bound, what) in [(limit.speed, "speed"), (limit.effort, "effort")] {
-                let describe_largest_value = || format!("the largest {what} of `{name}`");
-                bound.iter().for_each(|bound| {
-                    self.scope.record_requirement(Rule::NotNegative, describe_largest_value, &[*bound])
-                });
-            }
+/// Returns all conditions: those recorded, those of bounds, and finiteness of parameters without other
+/// conditions. Parameters with a leading underscore are exempt.
+pub fn gather_requirements<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> Vec<Requirement<'g>> {
+    for limit in &model.limits {
+        let name = model.velocities.get(limit.v.0).map_or("", |(name, _)| name.as_str());
+        if let (Some(lower), Some(upper)) = (limit.lower, limit.upper) {
+            scope.record_requirement(Rule::Order, || format!("the range of `{name}`"), &[lower, upper]);
         }
-        for (k, parameter) in self.description.parameters.iter().enumerate() {
-            let value = Quantity::Parameter(k).expr(self.scope.graph);
-            if !parameter.text.starts_with('_') {
-                self.scope.record_requirement(
-                    Rule::Finite,
-                    || format!("the parameter `{}`", parameter.text),
-                    &[value],
-                );
-            }
+        for (bound, what) in [(limit.speed, "speed"), (limit.effort, "effort")] {
+            let describe_largest_value = || format!("the largest {what} of `{name}`");
+            bound.iter().for_each(|bound| {
+                scope.record_requirement(Rule::NotNegative, describe_largest_value, &[*bound])
+            });
         }
-        self.model.requirements = std::mem::take(&mut self.scope.records.borrow_mut().requirements);
     }
+    for (k, parameter) in scope.description.parameters.iter().enumerate() {
+        let value = Quantity::Parameter(k).expr(scope.graph);
+        if !parameter.text.starts_with('_') {
+            scope.record_requirement(
+                Rule::Finite,
+                || format!("the parameter `{}`", parameter.text),
+                &[value],
+            );
+        }
+    }
+    std::mem::take(&mut scope.records.borrow_mut().requirements)
 }

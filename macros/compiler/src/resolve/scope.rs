@@ -4,8 +4,8 @@
 use super::resolved::ResolvedMatrix;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, change_axes};
-use crate::mechanism::{Chart, Coordinate, LinkId, Pose, Requirement};
-use crate::syntax::{self, Name, Rank};
+use crate::mechanism::{Chart, Coordinate, InQ, InV, LinkId, Pose, Requirement};
+use crate::syntax::{self, Description, Rank};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,34 +13,16 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Scope<'a, 'g> {
     /// Graph that owns the expressions of the model.
     pub graph: &'g Graph,
-    /// Names of the struct's parameters.
-    pub parameters: &'a [Name],
-    /// Interpolation tables, which are parameters that are functions.
-    pub tables: &'a [syntax::Table],
-    /// Names of the mechanism's bodies and particles.
+    /// Description written by the user.
+    pub description: &'a Description,
+    /// Names of bodies, particles and frames.
     pub bodies: Vec<String>,
-    /// Names of the mechanism's frames.
-    pub frames: Vec<String>,
-    /// Names of the mechanism's joints.
-    pub joints: Vec<String>,
-    /// Names of the mechanism's force elements.
-    pub actions: Vec<String>,
-    /// Names of declared inputs, in order. In `u` they follow those of driven joints and drives.
-    pub inputs: &'a [Name],
-    /// Number of joints and drives with inputs of their own.
+    /// Number of joints and drives with inputs of their own. In `u` they precede the declared inputs.
     pub driven: usize,
-    /// States of first order, each with its index among the parameters.
-    pub states: &'a [(Name, usize)],
-    /// Named expressions that the user defines.
-    pub definitions: &'a [syntax::Definition],
-    /// Definitions that are generalized speeds.
-    pub speeds: &'a [Name],
     /// Quantities on which expressions may depend, and the meaning of the unqualified axes `x`, `y` and `z`.
     pub context: RefCell<Context<'g>>,
     /// Elements placed so far, with their motion.
     pub kinematics: Kinematics<'g>,
-    /// Whether the scalar type of the mechanism is `f32`.
-    pub is_f32: bool,
     /// Facts that have been found while expressions were resolved.
     pub records: RefCell<Records<'g>>,
 }
@@ -180,6 +162,20 @@ pub struct Placed<'g> {
     pub kind: PlacedKind,
 }
 
+/// Coordinate on which force elements can act: full name, coordinate, and whether it is an angle.
+pub type PlainCoordinate = (String, Coordinate, bool);
+
+/// Coordinates of a joint, after numbering.
+#[derive(Debug)]
+pub struct JointCoordinates {
+    /// Index of the joint's first coordinate in `q`.
+    pub q: InQ,
+    /// Index of the joint's first velocity in `v`.
+    pub v: InV,
+    /// Coordinates on which force elements can act.
+    pub plain: Vec<PlainCoordinate>,
+}
+
 /// Mass, centre of mass in body axes, and central inertia.
 pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 
@@ -188,8 +184,12 @@ pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 pub struct Kinematics<'g> {
     /// Placements of the elements, by name of the element.
     pub places: BTreeMap<String, Placed<'g>>,
-    /// Plain coordinates by their full names; the flag is true for an angle.
-    pub coordinates: Vec<(String, Coordinate, bool)>,
+    /// Plain coordinates by full name; true for an angle.
+    pub coordinates: Vec<PlainCoordinate>,
+    /// Coordinates of each joint.
+    pub joint_coordinates: Vec<JointCoordinates>,
+    /// First coordinate and velocity of released joints; `None` if no joint is released.
+    pub first_released: Option<(InQ, InV)>,
     /// Kinematics of the links that joints move.
     pub joints: Vec<Joint<'g>>,
     /// Charts of the configuration space; set after all links are placed.

@@ -1,16 +1,14 @@
 //! Lengths and angles on which force elements act, and energies and dissipation functions given as
 //! expressions.
 
-use super::builder::Builder;
-use super::constraint::Constrained;
 use super::element_forces::Forces;
-use super::scope::{Allowed, Context};
+use super::scope::{Allowed, Context, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
-use crate::mechanism::{Coordinate, Pose, Quantity};
+use crate::mechanism::{Coordinate, Model, Pose, Quantity};
 use crate::syntax::{self, ExprKind};
 
 /// Length or angle on which a force element acts, with its rate.
@@ -35,134 +33,140 @@ pub struct ActedOn<'g> {
     pub coordinate: Option<Coordinate>,
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Returns the stretch that is a coordinate, with its velocity as rate.
-    pub fn coordinate_stretch(&self, c: &Coordinate) -> Stretch<'g> {
-        let g = self.scope.graph;
-        let value = position_in(g, c);
-        Stretch { value, square: value.square(), rate: c.v.expr(g) * g.num(c.ratio), signed: false }
+impl<'g> ActedOn<'g> {
+    /// Returns the value and the rate of the length or the angle.
+    pub fn stretch(self, scope: &Scope<'_, 'g>) -> Option<Stretch<'g>> {
+        self.stretch.or_else(|| self.coordinate.map(|c| coordinate_stretch(scope, &c)))
     }
+}
 
-    /// Returns a length or an angle given by an expression of the coordinates, such as the length of a cable.
-    pub fn expression_stretch(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
-        let stretch = self.stretch_of(e, cx)?;
-        if velocity_gradient(stretch.rate).is_empty() {
-            let message = "this contains no coordinate: a force on it has no effect";
-            cx.report_error(e.place.clone(), message).add_help(
-                "an element acts on a length or an angle that changes with the motion, such as `norm(r(a / \
-                 b))`",
-            );
-            return None;
-        }
-        Some(stretch)
-    }
+/// Resolves a potential energy given as an expression.
+pub fn resolve_energy<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Forces<'g> {
+    let context = Context::new(Allowed::Placement, Some((None, Pose::identity(scope.graph))));
+    Forces::of_potentials(scope.in_context(context, |scope| scope.resolve_scalar(e, cx)))
+}
 
-    /// Returns the value and the rate of an expression of positions, which may be constant.
-    pub fn stretch_of(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
-        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(self.scope.graph))));
-        let value = self.scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?;
-        let rate = time_derivative(self.model.configuration_space(), value);
-        Some(Stretch { value, rate, square: value.square(), signed: false })
+/// Resolves a dissipation function given as an expression.
+pub fn resolve_dissipation<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Forces<'g> {
+    let context = Context::new(Allowed::Motion, Some((None, Pose::identity(scope.graph))));
+    let function = scope.in_context(context, |scope| scope.resolve_scalar(e, cx));
+    // Zero is not an error: the bodies may be welded together.
+    if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
+        cx.report_error(e.place.clone(), "this contains no velocity, and has no effect").add_help(
+            "dissipation is a function of rates, half the dissipated power: `c / 2 * rate(hinge) * \
+             rate(hinge)`",
+        );
     }
+    Forces { dissipations: function.into_iter().collect(), ..Forces::default() }
+}
 
-    /// Returns the distance between two points. If they move along one line, the distance is the signed
-    /// coordinate along it, which is smooth where they coincide. Otherwise the direction of a zero distance
-    /// is the zero vector.
-    pub fn distance_between_points(
-        &self,
-        a: &syntax::Expr,
-        b: &syntax::Expr,
-        cx: &mut Diagnostics,
-    ) -> Option<Stretch<'g>> {
-        let (first, second) = (self.scope.resolve_placement(a, cx), self.scope.resolve_placement(b, cx));
-        let (first, second) = (first?, second?);
-        if first.link == second.link {
-            cx.report_error(b.place.clone(), "these two points do not move relative to each other")
-                .add_help("let the element act between points of different bodies");
-            return None;
-        }
-        let kinematics = &self.scope.kinematics;
-        let zero = Vec3::zero(self.scope.graph);
-        let terms = kinematics.position_between(&second, &first);
-        let axes = terms.first().and_then(|(link, _)| *link);
-        let r = kinematics.resolve(&terms, axes, zero);
-        // The test for a common line ignores released joints.
-        let with_closed_joints = Vec3(self.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
-        if always_zero(with_closed_joints) {
-            cx.report_error(b.place.clone(), "these two points always coincide")
-                .add_help("let the element act between points that move relative to each other");
-            return None;
-        }
-        let mut v = kinematics.velocity_of_point(&second);
-        v.extend(kinematics.velocity_of_point(&first).into_iter().map(|(link, v)| (link, -v)));
-        if let Some(line) = constant_direction(with_closed_joints) {
-            let e = Vec3::from_numbers(self.scope.graph, line);
-            let rate = e.dot(kinematics.resolve(&v, axes, zero));
-            let value = r.dot(e);
-            return Some(Stretch { value, square: value.square(), rate, signed: true });
-        }
-        let length = r.length();
-        let n = r.map(|c| c / length);
-        let rate = n.dot(kinematics.resolve(&v, axes, zero));
-        Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
+/// Reports errors of definitions, also of those without uses.
+pub fn check_definitions(scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
+    for definition in &scope.description.definitions {
+        let context = Context::new(Allowed::Reaction, Some((None, Pose::identity(scope.graph))));
+        let name = ExprKind::Name(definition.name.text.clone());
+        let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
+        let _ = scope.in_context(context, |scope| scope.resolve_value(&e, cx));
     }
+}
 
-    /// Adds potential energies and dissipation functions given as expressions, followed by the outputs.
-    pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
-        let d = self.description;
-        let ground_frame = || Some((None, Pose::identity(self.scope.graph)));
-        for (name, e) in &d.energies {
-            let context = Context::new(Allowed::Placement, ground_frame());
-            let energy = self.scope.in_context(context, |scope| scope.resolve_scalar(e, cx));
-            self.add_forces(&name.text, Forces::of_potentials(energy));
-        }
-        for (name, e) in &d.dissipations {
-            let context = Context::new(Allowed::Motion, ground_frame());
-            let function = self.scope.in_context(context, |scope| scope.resolve_scalar(e, cx));
-            // Zero is not an error: the bodies may be welded together.
-            if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
-                cx.report_error(e.place.clone(), "this contains no velocity, and has no effect").add_help(
-                    "dissipation is a function of rates, half the dissipated power: `c / 2 * rate(hinge) * \
-                     rate(hinge)`",
-                );
-            }
-            let dissipations = function.into_iter().collect();
-            self.add_forces(&name.text, Forces { dissipations, ..Forces::default() });
-        }
-        self.add_outputs(cx);
-        // Unused definitions are checked as well.
-        for definition in &d.definitions {
-            let context = Context::new(Allowed::Reaction, ground_frame());
-            let name = ExprKind::Name(definition.name.text.clone());
-            let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
-            let _ = self.scope.in_context(context, |scope| scope.resolve_value(&e, cx));
-        }
+/// Sets the quantities on which the signatures of the generated functions depend.
+pub fn find_dependencies(m: &mut Model<'_>) {
+    let mut all: Vec<Expr<'_>> = m.potentials.iter().chain(&m.dissipations).copied().collect();
+    all.extend(m.loads.iter().flat_map(|l| [l.rate, l.force]));
+    all.extend(m.inertances.iter().flat_map(|i| [i.rate, i.inertance]));
+    for force in &m.acceleration_forces {
+        all.push(force.rate);
+        all.extend(force.factors.iter().map(|(_, factor)| *factor));
     }
+    all.extend(m.constraints.iter().flat_map(|c| c.residual.into_iter().chain([c.rate])));
+    all.extend(m.constraints.iter().flat_map(|c| c.friction.iter().map(|d| d.share)));
+    all.extend(m.outputs.iter().flat_map(|o| o.values.iter().copied()));
+    all.extend(m.links.iter().flat_map(|link| link.placement.all_expressions()));
+    let time = symbols_in(&all).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time);
+    let by_velocity = m.loads.iter().any(|load| {
+        let symbols: Vec<Quantity> =
+            symbols_in(&[load.force]).into_iter().map(Quantity::from_symbol).collect();
+        symbols.iter().any(|q| matches!(q, Quantity::Input(_)))
+            && symbols.iter().any(|q| matches!(q, Quantity::Velocity(_)))
+    });
+    m.time = time;
+    m.velocity_inputs = by_velocity;
+}
 
-    /// Sets the quantities on which the signatures of the generated functions depend.
-    pub fn find_dependencies(&mut self, _: Constrained) {
-        let m = &self.model;
-        let mut all: Vec<Expr<'g>> = m.potentials.iter().chain(&m.dissipations).copied().collect();
-        all.extend(m.loads.iter().flat_map(|l| [l.rate, l.force]));
-        all.extend(m.inertances.iter().flat_map(|i| [i.rate, i.inertance]));
-        for force in &m.acceleration_forces {
-            all.push(force.rate);
-            all.extend(force.factors.iter().map(|(_, factor)| *factor));
-        }
-        all.extend(m.constraints.iter().flat_map(|c| c.residual.into_iter().chain([c.rate])));
-        all.extend(m.constraints.iter().flat_map(|c| c.friction.iter().map(|d| d.share)));
-        all.extend(m.outputs.iter().flat_map(|o| o.values.iter().copied()));
-        all.extend(m.links.iter().flat_map(|link| link.placement.all_expressions()));
-        let time = symbols_in(&all).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time);
-        let by_velocity = m.loads.iter().any(|load| {
-            let symbols: Vec<Quantity> =
-                symbols_in(&[load.force]).into_iter().map(Quantity::from_symbol).collect();
-            symbols.iter().any(|q| matches!(q, Quantity::Input(_)))
-                && symbols.iter().any(|q| matches!(q, Quantity::Velocity(_)))
-        });
-        self.model.time = time;
-        self.model.velocity_inputs = by_velocity;
+/// Returns the stretch of a coordinate.
+pub fn coordinate_stretch<'g>(scope: &Scope<'_, 'g>, c: &Coordinate) -> Stretch<'g> {
+    let g = scope.graph;
+    let value = position_in(g, c);
+    Stretch { value, square: value.square(), rate: c.v.expr(g) * g.num(c.ratio), signed: false }
+}
+
+/// Returns a length or an angle given by an expression of the coordinates, such as the length of a cable.
+pub fn expression_stretch<'g>(
+    scope: &Scope<'_, 'g>,
+    e: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Stretch<'g>> {
+    let stretch = stretch_of(scope, e, cx)?;
+    if velocity_gradient(stretch.rate).is_empty() {
+        let message = "this contains no coordinate: a force on it has no effect";
+        cx.report_error(e.place.clone(), message).add_help(
+            "an element acts on a length or an angle that changes with the motion, such as `norm(r(a / \
+             b))`",
+        );
+        return None;
     }
+    Some(stretch)
+}
+
+/// Returns the value and the rate of an expression of positions, which may be constant.
+pub fn stretch_of<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
+    let context = Context::new(Allowed::Placement, Some((None, Pose::identity(scope.graph))));
+    let value = scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?;
+    let rate = time_derivative(scope.configuration_space(), value);
+    Some(Stretch { value, rate, square: value.square(), signed: false })
+}
+
+/// Returns the distance between two points. If they move along one line, the distance is the signed
+/// coordinate along it, which is smooth where they coincide. Otherwise the direction of a zero distance
+/// is the zero vector.
+pub fn distance_between_points<'g>(
+    scope: &Scope<'_, 'g>,
+    a: &syntax::Expr,
+    b: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Stretch<'g>> {
+    let (first, second) = (scope.resolve_placement(a, cx), scope.resolve_placement(b, cx));
+    let (first, second) = (first?, second?);
+    if first.link == second.link {
+        cx.report_error(b.place.clone(), "these two points do not move relative to each other")
+            .add_help("let the element act between points of different bodies");
+        return None;
+    }
+    let kinematics = &scope.kinematics;
+    let zero = Vec3::zero(scope.graph);
+    let terms = kinematics.position_between(&second, &first);
+    let axes = terms.first().and_then(|(link, _)| *link);
+    let r = kinematics.resolve(&terms, axes, zero);
+    // The test for a common line ignores released joints.
+    let with_closed_joints = Vec3(scope.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
+    if always_zero(with_closed_joints) {
+        cx.report_error(b.place.clone(), "these two points always coincide")
+            .add_help("let the element act between points that move relative to each other");
+        return None;
+    }
+    let mut v = kinematics.velocity_of_point(&second);
+    v.extend(kinematics.velocity_of_point(&first).into_iter().map(|(link, v)| (link, -v)));
+    if let Some(line) = constant_direction(with_closed_joints) {
+        let e = Vec3::from_numbers(scope.graph, line);
+        let rate = e.dot(kinematics.resolve(&v, axes, zero));
+        let value = r.dot(e);
+        return Some(Stretch { value, square: value.square(), rate, signed: true });
+    }
+    let length = r.length();
+    let n = r.map(|c| c / length);
+    let rate = n.dot(kinematics.resolve(&v, axes, zero));
+    Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
 }
 
 /// Whether a vector is zero for all coordinates and parameters.

@@ -1,16 +1,18 @@
 //! Topology: the joint of each body in the spanning tree, the joints that close loops, and the order in which
 //! links are built.
 
-use super::builder::BodyIndex;
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 pub use crate::syntax::GROUND;
 use crate::syntax::{Description, Expr, ExprKind, Name, words};
 use std::collections::BTreeMap;
 
+/// Index into the list of bodies and jointed particles.
+pub type BodyIndex = usize;
+
 /// Tree joints in an order in which every parent is placed before its children, with the bodies that they
 /// place, and the joints that close loops.
-pub struct Order {
+pub struct PlacementOrder {
     /// Index of the joint and of its child body, for each tree joint.
     pub joints: Vec<(usize, BodyIndex)>,
     /// Indices of the joints that close loops, since their child is already placed.
@@ -71,7 +73,7 @@ pub fn find_tree(
     jointed: &[&Name],
     scope: &Scope<'_, '_>,
     cx: &mut Diagnostics,
-) -> Option<Order> {
+) -> Option<PlacementOrder> {
     let index_of_body = |name: &Name, cx: &mut Diagnostics| -> Result<Option<BodyIndex>, ()> {
         let is_point = description.points.iter().any(|p| p.name.text == name.text)
             || description.particles.iter().any(|p| p.at.is_some() && p.name.text == name.text);
@@ -129,7 +131,7 @@ pub fn find_tree(
     }
     let roots: Vec<BodyIndex> = (0..jointed.len()).filter(|k| is_placed(*k)).collect();
     let order = sort_joints_depth_first(&ends, jointed.len(), &roots);
-    is_valid.then_some(Order { joints: order, closing: loops })
+    is_valid.then_some(PlacementOrder { joints: order, closing: loops })
 }
 
 /// Reports a body that is not the child of a tree joint: the joint may have the wrong direction, or the body
@@ -183,7 +185,7 @@ fn unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut 
             .add_help("a joint connects bodies: `parent -> child`, with `ground` for the fixed reference");
         return;
     }
-    if scope.frames.contains(&name.text) {
+    if scope.description.frames.iter().any(|frame| frame.name.text == name.text) {
         cx.report_error(place, format!("`{}` is a frame, which has axes but no position", name.text))
             .add_help("join a body: `#[body(frame = …)]` makes one with the axes of a frame");
         return;

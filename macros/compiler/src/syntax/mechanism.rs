@@ -48,12 +48,7 @@ pub struct Shell {
 }
 
 impl Shell {
-    /// Returns whether the generated code is not generic.
-    pub fn is_concrete(&self) -> bool {
-        self.generics.params.is_empty()
-    }
-
-    /// Returns the lines of the struct's documentation comments.
+    /// Returns the lines of the documentation comments.
     pub fn documentation_lines(&self) -> String {
         let lines: Vec<String> = doc_lines(&self.attributes).map(|line| line.trim().to_string()).collect();
         lines.join("\n").trim().to_string()

@@ -30,17 +30,17 @@ pub enum ArgumentQuantity {
     Inertance,
     /// The argument is a force, or a torque on an angle.
     Force,
-    /// The argument is an energy of the coordinate or distance on which the element acts.
+    /// Energy of the element.
     Energy,
-    /// Rate of the coordinate or distance on which the element acts.
+    /// Coordinate or distance on which the element acts.
     Coordinate,
-    /// Quantity of this dimension, with the text of its unit (empty for the default).
+    /// Rate of the coordinate or distance on which the element acts.
     Speed,
-    /// This dimension, with the text of its unit (empty for the default).
+    /// Quantity of this dimension, with the text of its unit (empty for the default).
     Fixed(Dimension, &'static str),
-    /// Value of a force or a torque; without it the element is an input.
+    /// Direction of a force or a torque on a body.
     Direction,
-    /// The argument is the value of a force or a torque; without it the element is an input.
+    /// Value of a force or a torque; without it the element is an input.
     Load,
 }
 

@@ -14,11 +14,10 @@
 //! duplicate is the size of the boxes.
 
 use super::cylinders::{Drum, pipe_on_box};
-use super::geometry::{clamp, is_positive, nearest, rim};
+use super::geometry::{PointContact, clamp, is_positive, nearest, rim};
+use super::pair::{SurfacePair, sphere_contact};
 use super::surface::SurfaceForm;
-use super::{PointContact, SurfacePair, sphere_contact};
 use crate::expr::{Expr, Extreme, Function, Vec3};
-use crate::resolve::builder::Builder;
 
 /// Amount by which the separation along a later direction must exceed that of an earlier one to replace it,
 /// relative to the size of the boxes.
@@ -99,23 +98,17 @@ fn scaled<'g>(which: [Expr<'g>; 3], factor: Expr<'g>) -> [Expr<'g>; 3] {
     which.map(|x| x * factor)
 }
 
-impl<'g> Builder<'_, 'g> {
+impl<'g> SurfacePair<'_, 'g> {
     /// Returns the contacts of a sphere, a capsule, a cylinder or a box with a box. `c` leads from the centre
     /// of the latter to that of the former.
-    pub(super) fn box_contacts(
-        &self,
-        pair: &SurfacePair<'g>,
-        lengths: &[Expr<'g>; 3],
-        c: Vec3<'g>,
-    ) -> Vec<PointContact<'g>> {
-        let g = self.scope.graph;
+    pub(super) fn box_contacts(&self, lengths: &[Expr<'g>; 3], c: Vec3<'g>) -> Vec<PointContact<'g>> {
+        let g = self.graph();
         let block = |lengths: &[Expr<'g>; 3], center, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| OrientedBox {
             axes: std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k))),
             half: lengths.map(|length| length * 0.5),
             center,
         };
-        let (rotate_a, rotate_b) =
-            (|v| self.first_direction(pair, v).value, |v| self.second_direction(pair, v).value);
+        let (rotate_a, rotate_b) = (|v| self.first_direction(v).value, |v| self.second_direction(v).value);
         let target = block(lengths, Vec3::zero(g), &rotate_b);
         let sphere_on_box = |radius: Expr<'g>, place: Vec3<'g>| {
             let inner = (0..3).fold(Vec3::zero(g), |sum, k| {
@@ -123,7 +116,7 @@ impl<'g> Builder<'_, 'g> {
             });
             sphere_contact(radius, &SurfaceForm::Sphere(g.zero()), place - inner, &rotate_b)
         };
-        match &pair.a.form {
+        match &self.a.form {
             SurfaceForm::Sphere(radius) => sphere_on_box(*radius, c).into_iter().collect(),
             SurfaceForm::Capsule(radius, length, axis) => {
                 let (own, reach) = (rotate_a(*axis), *length * 0.5);

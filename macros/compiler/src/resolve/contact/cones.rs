@@ -7,75 +7,74 @@
 //! vector `± (b cos α − a cos β) / sin δ` is normal to both surfaces there. A plane is a funnel with the half
 //! angle `π/2`.
 
-use super::SurfacePair;
+use super::pair::SurfacePair;
 use super::surface::SurfaceForm;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::kinematics::perpendicular_directions;
 use crate::mechanism::{Constraint, Measure, Rule};
-use crate::resolve::builder::Builder;
-use crate::resolve::rows::ConstraintRows;
+use crate::resolve::rows::{ConstraintRows, constraint_row};
+use crate::resolve::scope::Scope;
 use crate::syntax;
 
-impl<'g> Builder<'_, 'g> {
-    /// Returns the rows of a pair whose first surface is a cone; `None` after an error.
-    pub(super) fn rolling_cone_rows(
-        &self,
-        constraint: &syntax::Constraint,
-        pair: &SurfacePair<'g>,
-        cx: &mut Diagnostics,
-    ) -> Option<ConstraintRows<'g>> {
-        let g = self.scope.graph;
-        let SurfaceForm::Cone(half, axis) = pair.a.form else { return None };
-        let (sine_b, cosine_b, axis_b, inside) = match pair.b.form {
-            SurfaceForm::Plane(n) => (g.one(), g.zero(), n, true),
-            SurfaceForm::Cone(half, n) => (half.sin(), half.cos(), n, false),
-            SurfaceForm::Funnel(half, n) => (half.sin(), half.cos(), n, true),
-            _ => return None,
-        };
-        let (sine_a, cosine_a) = (half.sin(), half.cos());
-        let side = g.num(if inside { 1.0 } else { -1.0 });
-        let sine = sine_b * cosine_a - side * cosine_b * sine_a;
-        if sine.constant_value().is_some_and(|n| n <= 0.0) {
-            cx.report_error(constraint.value.place.clone(), "this cone does not fit into the funnel")
-                .add_help("give the funnel a larger half angle than the cone");
-            return None;
-        }
-        let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
-        self.scope.record_requirement(Rule::Positive, room, &[sine]);
-        let (a, b) = (self.first_direction(pair, axis), self.second_direction(pair, axis_b));
-        // Rows of the apex: three positions, or one position and two velocities.
-        let apex = match pair.b.form {
-            SurfaceForm::Plane(n) => {
-                let [first, second] = perpendicular_directions(n);
-                [("normal", n, true), (first.0, first.1, false), (second.0, second.1, false)]
-            }
-            _ => [0, 1, 2].map(|k| (["x", "y", "z"][k], Vec3::coordinate_axis(g, k), true)),
-        };
-        let (away, slip) = (pair.center.value - pair.base.value, self.slip(pair, Vec3::zero(g)));
-        let (name, place) = (&constraint.name.text, &constraint.name.place);
-        let mut rows = Vec::new();
-        for (word, e, is_place) in apex {
-            let e = self.second_direction(pair, e).value;
-            let gap = is_place.then(|| e.dot(away));
-            rows.push(self.constraint_row(
-                (format!("{name}.{word}"), place),
-                Measure::Length,
-                gap,
-                e.dot(slip),
-            ));
-        }
-        // The angle by which the wide end is lifted, to first order.
-        let cosine = cosine_b * cosine_a + side * sine_b * sine_a;
-        let lifted = side / sine;
-        let tilt = (a.value.dot(b.value) - cosine) * lifted;
-        let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
-        let tilt = self.constraint_row((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
-        let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
-        let [w_a, w_b] = self.angular_velocities(pair);
-        let spin = normal.dot(w_a - w_b);
-        let spin = self.constraint_row((format!("{name}.spin"), place), Measure::Angle, None, spin);
-        rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
-        Some(ConstraintRows { rows, ..ConstraintRows::default() })
+/// Returns the rows of a pair whose first surface is a cone; `None` after an error.
+pub(super) fn rolling_cone_rows<'g>(
+    scope: &Scope<'_, 'g>,
+    constraint: &syntax::Constraint,
+    pair: &SurfacePair<'_, 'g>,
+    cx: &mut Diagnostics,
+) -> Option<ConstraintRows<'g>> {
+    let g = scope.graph;
+    let SurfaceForm::Cone(half, axis) = pair.a.form else { return None };
+    let (sine_b, cosine_b, axis_b, inside) = match pair.b.form {
+        SurfaceForm::Plane(n) => (g.one(), g.zero(), n, true),
+        SurfaceForm::Cone(half, n) => (half.sin(), half.cos(), n, false),
+        SurfaceForm::Funnel(half, n) => (half.sin(), half.cos(), n, true),
+        _ => return None,
+    };
+    let (sine_a, cosine_a) = (half.sin(), half.cos());
+    let side = g.num(if inside { 1.0 } else { -1.0 });
+    let sine = sine_b * cosine_a - side * cosine_b * sine_a;
+    if sine.constant_value().is_some_and(|n| n <= 0.0) {
+        cx.report_error(constraint.value.place.clone(), "this cone does not fit into the funnel")
+            .add_help("give the funnel a larger half angle than the cone");
+        return None;
     }
+    let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
+    scope.record_requirement(Rule::Positive, room, &[sine]);
+    let (a, b) = (pair.first_direction(axis), pair.second_direction(axis_b));
+    // Rows of the apex: three positions, or one position and two velocities.
+    let apex = match pair.b.form {
+        SurfaceForm::Plane(n) => {
+            let [first, second] = perpendicular_directions(n);
+            [("normal", n, true), (first.0, first.1, false), (second.0, second.1, false)]
+        }
+        _ => [0, 1, 2].map(|k| (["x", "y", "z"][k], Vec3::coordinate_axis(g, k), true)),
+    };
+    let (away, slip) = (pair.center.value - pair.base.value, pair.slip(Vec3::zero(g)));
+    let (name, place) = (&constraint.name.text, &constraint.name.place);
+    let mut rows = Vec::new();
+    for (word, e, is_place) in apex {
+        let e = pair.second_direction(e).value;
+        let gap = is_place.then(|| e.dot(away));
+        rows.push(constraint_row(
+            scope,
+            (format!("{name}.{word}"), place),
+            Measure::Length,
+            gap,
+            e.dot(slip),
+        ));
+    }
+    // The angle by which the wide end is lifted, to first order.
+    let cosine = cosine_b * cosine_a + side * sine_b * sine_a;
+    let lifted = side / sine;
+    let tilt = (a.value.dot(b.value) - cosine) * lifted;
+    let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
+    let tilt = constraint_row(scope, (format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
+    let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
+    let [w_a, w_b] = pair.angular_velocities();
+    let spin = normal.dot(w_a - w_b);
+    let spin = constraint_row(scope, (format!("{name}.spin"), place), Measure::Angle, None, spin);
+    rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
+    Some(ConstraintRows { rows, surfaces: pair.written_surfaces(), ..ConstraintRows::default() })
 }

@@ -3,95 +3,29 @@
 //! Constraints determine them such that the body's farthest point against the normal coincides with the point
 //! of the surface.
 
+use super::geometry::PointContact;
+use super::pair::{SurfacePair, support_point};
 use super::surface::Sheet;
-use super::{PointContact, SurfacePair, support_point};
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::expr::diff::Derivative;
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Coordinate, Quantity};
-use crate::resolve::builder::Builder;
-use crate::resolve::scope::{Allowed, Context, Placed};
+use crate::resolve::scope::{Allowed, Context, Placed, Scope};
 use crate::syntax;
 
-impl<'g> Builder<'_, 'g> {
-    /// Parses the points of a surface, in the axes of its body, with the two coordinates on which they
-    /// depend.
-    pub(super) fn sheet(
-        &self,
-        frame: &Placed<'g>,
-        [u, w, point]: [&syntax::Expr; 3],
-        cx: &mut Diagnostics,
-    ) -> Option<Sheet<'g>> {
-        let (first, second) = (self.parameter(u, cx), self.parameter(w, cx));
-        let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
-        let terms = self.scope.in_context(context, |scope| scope.resolve_terms(point, cx));
-        let (first, second, terms) = (first?, second?, terms?);
-        let zero = Vec3::zero(self.scope.graph);
-        let in_link = self.scope.kinematics.resolve(&terms, frame.link, zero);
-        let position = frame.pose.rotation.to_child(in_link);
-        let is_allowed = |q: Quantity| match q {
-            Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
-            q => matches!(q, Quantity::Parameter(_)),
-        };
-        if !symbols_in(&position.0).into_iter().all(|s| is_allowed(Quantity::from_symbol(s))) {
-            cx.report_error(
-                point.place.clone(),
-                "the points of a surface depend only on its two coordinates",
-            )
-            .add_help("parameters and the axes of the body of the surface are allowed as well");
-            return None;
-        }
-        let derivatives = |c: &Coordinate| {
-            let mut d =
-                Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), self.scope.graph);
-            position.map(|e| d.differentiate(e))
-        };
-        let tangents = [derivatives(&first), derivatives(&second)];
-        if tangents[0].cross(tangents[1]).is_zero() {
-            cx.report_error(
-                point.place.clone(),
-                "these points do not form a surface: they do not depend on both coordinates",
-            )
-            .add_help(
-                "write the points as a function of two coordinates, as in `surface(u, w, u * x + w * y + u * \
-                 w / size * z)`",
-            );
-            return None;
-        }
-        Some(Sheet { point: position, tangents })
-    }
-
-    /// Returns the coordinate with this name, which must be declared as a field of its own.
-    fn parameter(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
-        let kinematics = &self.scope.kinematics;
-        let coordinate_names = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
-        let name = e.as_name().unwrap_or("");
-        let found =
-            kinematics.coordinates.iter().find(|(n, ..)| n == name && coordinate_names().any(|k| k == name));
-        if found.is_none() && (name.is_empty() || self.scope.is_first_report(name, cx)) {
-            cx.report_error(e.place.clone(), "expected a coordinate of the surface")
-                .suggest_name(name, coordinate_names())
-                .add_help("declare it as a field of its own: `u: Coordinate`");
-        }
-        found.map(|(_, c, _)| *c)
-    }
-
+impl<'g> SurfacePair<'_, 'g> {
     /// Returns the contact of a convex body, with the distances that determine the coordinates of the
     /// surface.
-    pub(super) fn contact_point(
-        &self,
-        pair: &SurfacePair<'g>,
-        sheet: &Sheet<'g>,
-    ) -> Option<PointContact<'g>> {
-        let rotate_surface = |v| self.second_direction(pair, v).value;
+    pub(super) fn contact_point(&self, sheet: &Sheet<'g>) -> Option<PointContact<'g>> {
+        let rotate_surface = |v| self.second_direction(v).value;
         let [u, w] = sheet.tangents.map(rotate_surface);
         let first = u.map(|x| x / u.norm());
         let across = u.cross(w);
         let normal = across.map(|x| x / across.norm());
         let second = normal.cross(first);
-        let point = -support_point(&pair.a.form, normal, 0.0, &|v| self.first_direction(pair, v).value)?;
-        let offset = pair.center.value - pair.base.value + point - rotate_surface(sheet.point);
+        let point = -support_point(&self.a.form, normal, 0.0, &|v| self.first_direction(v).value)?;
+        let offset = self.center.value - self.base.value + point - rotate_surface(sheet.point);
         Some(PointContact {
             gap: normal.dot(offset),
             point,
@@ -99,4 +33,66 @@ impl<'g> Builder<'_, 'g> {
             conditions: vec![("foot_first", first.dot(offset)), ("foot_second", second.dot(offset))],
         })
     }
+}
+
+/// Parses the points of a surface, in the axes of its body, with the two coordinates on which they
+/// depend.
+pub(super) fn read_sheet<'g>(
+    scope: &Scope<'_, 'g>,
+    frame: &Placed<'g>,
+    [u, w, point]: [&syntax::Expr; 3],
+    cx: &mut Diagnostics,
+) -> Option<Sheet<'g>> {
+    let (first, second) = (surface_coordinate(scope, u, cx), surface_coordinate(scope, w, cx));
+    let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
+    let terms = scope.in_context(context, |scope| scope.resolve_terms(point, cx));
+    let (first, second, terms) = (first?, second?, terms?);
+    let zero = Vec3::zero(scope.graph);
+    let in_link = scope.kinematics.resolve(&terms, frame.link, zero);
+    let position = frame.pose.rotation.to_child(in_link);
+    let is_allowed = |q: Quantity| match q {
+        Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
+        q => matches!(q, Quantity::Parameter(_)),
+    };
+    if !symbols_in(&position.0).into_iter().all(|s| is_allowed(Quantity::from_symbol(s))) {
+        cx.report_error(point.place.clone(), "the points of a surface depend only on its two coordinates")
+            .add_help("parameters and the axes of the body of the surface are allowed as well");
+        return None;
+    }
+    let derivatives = |c: &Coordinate| {
+        let mut d = Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), scope.graph);
+        position.map(|e| d.differentiate(e))
+    };
+    let tangents = [derivatives(&first), derivatives(&second)];
+    if tangents[0].cross(tangents[1]).is_zero() {
+        cx.report_error(
+            point.place.clone(),
+            "these points do not form a surface: they do not depend on both coordinates",
+        )
+        .add_help(
+            "write the points as a function of two coordinates, as in `surface(u, w, u * x + w * y + u * \
+             w / size * z)`",
+        );
+        return None;
+    }
+    Some(Sheet { point: position, tangents })
+}
+
+/// Returns the coordinate with this name, which must be declared as a field of its own.
+fn surface_coordinate<'g>(
+    scope: &Scope<'_, 'g>,
+    e: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Coordinate> {
+    let kinematics = &scope.kinematics;
+    let coordinate_names = || scope.description.coordinates.iter().map(|c| c.name.text.as_str());
+    let name = e.as_name().unwrap_or("");
+    let found =
+        kinematics.coordinates.iter().find(|(n, ..)| n == name && coordinate_names().any(|k| k == name));
+    if found.is_none() && (name.is_empty() || scope.is_first_report(name, cx)) {
+        cx.report_error(e.place.clone(), "expected a coordinate of the surface")
+            .suggest_name(name, coordinate_names())
+            .add_help("declare it as a field of its own: `u: Coordinate`");
+    }
+    found.map(|(_, c, _)| *c)
 }

@@ -12,9 +12,9 @@
 //! capsule longer than the box.
 
 use super::boxes::{Face, MIN_SLOPE, OrientedBox, capsule_axis_contacts};
-use super::geometry::{clamp, is_positive};
+use super::geometry::{PointContact, clamp, is_positive, tangents_of};
+use super::pair::sphere_contact;
 use super::surface::SurfaceForm;
-use super::{PointContact, sphere_contact, tangents_of};
 use crate::expr::{Expr, Extreme, Function, Vec3};
 
 /// Distance below which a point is treated as part of the surface, relative to the radius.

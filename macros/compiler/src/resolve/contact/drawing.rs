@@ -1,111 +1,90 @@
 //! Drawing of surfaces in contact.
 
 use super::surface::{Surface, SurfaceForm};
-use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::mechanism::drawing::{entries_by_row, entries_of_vectors};
-use crate::mechanism::{Piece, PieceKind, Role};
-use crate::resolve::builder::Builder;
-use crate::syntax::ExprKind;
+use crate::mechanism::drawing::{anchor_of_pose, entries_by_row, entries_of_vectors};
+use crate::mechanism::{NamedFrame, Piece, PieceKind, Role};
 
-impl<'g> Builder<'_, 'g> {
-    /// Adds the surfaces of contacts and of pairs that roll or slip, each once. Returns the heights of
-    /// terrains.
-    pub fn draw_surfaces(&self, pieces: &mut Vec<Piece<'g>>) -> Vec<Expr<'g>> {
-        let mut heights = Vec::new();
-        let mut silent = Diagnostics::discarded_diagnostics();
-        let before = pieces.len();
-        let contacts = self.description.contacts.iter();
-        let mut found: Vec<(&str, Surface<'g>)> = Vec::new();
-        for contact in contacts {
-            for side in [&contact.first, &contact.second] {
-                let surfaces = self.contact_surfaces(side, &mut silent).unwrap_or_default();
-                found.extend(surfaces.into_iter().map(|surface| (contact.name.text.as_str(), surface)));
+/// Returns the pieces for surfaces with the names of their contacts, each once, and the heights of terrains.
+pub fn surface_pieces<'g>(
+    surfaces: &[(String, Surface<'g>)],
+    frames: &[NamedFrame<'g>],
+) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
+    let (mut pieces, mut heights) = (Vec::<Piece<'g>>::new(), Vec::new());
+    for (name, surface) in surfaces {
+        let edges = hull_pieces(frames, name, surface);
+        for piece in edges.into_iter().chain(surface_piece(frames, name, surface, &mut heights)) {
+            let is_same = |known: &Piece<'g>| {
+                known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
+            };
+            if !pieces.iter().any(is_same) {
+                pieces.push(piece);
             }
-        }
-        for constraint in &self.description.constraints {
-            if let ExprKind::Call(word, pair) = &constraint.value.kind
-                && word.id.is_some()
-                && word.id == constraint.kind.surface_pair_function()
-            {
-                let surfaces = pair.iter().filter_map(|side| self.surface(side, "", &mut silent));
-                found.extend(surfaces.map(|surface| (constraint.name.text.as_str(), surface)));
-            }
-        }
-        for (name, surface) in found {
-            let edges = self.hull_pieces(name, &surface);
-            for piece in edges.into_iter().chain(self.surface_piece(name, &surface, &mut heights)) {
-                let is_same = |known: &Piece<'g>| {
-                    known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
-                };
-                if !pieces[before..].iter().any(is_same) {
-                    pieces.push(piece);
-                }
-            }
-        }
-        heights
-    }
-
-    /// Returns the edges of a hull as bars; its points if they depend on parameters.
-    fn hull_pieces(&self, name: &str, Surface { frame, form }: &Surface<'g>) -> Vec<Piece<'g>> {
-        let SurfaceForm::Hull(hull) = form else { return Vec::new() };
-        let Some((index, pose)) = self.anchor_of_pose(frame.link, &frame.pose) else { return Vec::new() };
-        let position = |p: Vec3<'g>| pose.translation + pose.rotation.to_parent(p);
-        let piece = |kind, frames, ends: &[Vec3<'g>]| {
-            let numbers = entries_of_vectors(&ends.iter().map(|p| position(*p)).collect::<Vec<_>>());
-            Piece { name: name.to_string(), role: Role::Surface, kind, frames, numbers }
-        };
-        match &hull.shape {
-            Some(shape) => {
-                let ends = shape.edges.iter().map(|edge| edge.map(|k| hull.vertices[k]));
-                ends.map(|ends| piece(PieceKind::Bar, [index, index], &ends)).collect()
-            }
-            None => hull.vertices.iter().map(|p| piece(PieceKind::Point, [index, None], &[*p])).collect(),
         }
     }
+    (pieces, heights)
+}
 
-    fn surface_piece(
-        &self,
-        name: &str,
-        Surface { frame, form }: &Surface<'g>,
-        heights: &mut Vec<Expr<'g>>,
-    ) -> Option<Piece<'g>> {
-        let (index, pose) = self.anchor_of_pose(frame.link, &frame.pose)?;
-        let at = entries_of_vectors(&[pose.translation]);
-        let round = |axis, numbers: &[Expr<'g>]| {
-            [entries_of_vectors(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()]
-                .concat()
-        };
-        let along_axes = |lengths: &[Expr<'g>; 3]| {
-            [at.clone(), entries_by_row(&pose.rotation.rotation_matrix()), lengths.to_vec()].concat()
-        };
-        let (kind, numbers) = match form {
-            SurfaceForm::Circle(r, n) => (PieceKind::Ring, round(*n, &[*r])),
-            SurfaceForm::Torus(r, tube, n) => (PieceKind::Torus, round(*n, &[*r, *tube])),
-            SurfaceForm::Sphere(r) => (PieceKind::Sphere, [at.clone(), vec![*r]].concat()),
-            SurfaceForm::Bowl(r) => (PieceKind::Bowl, [at.clone(), vec![*r]].concat()),
-            SurfaceForm::Ellipsoid(lengths) => (PieceKind::Ellipsoid, along_axes(lengths)),
-            SurfaceForm::Cuboid(lengths) => (PieceKind::Cuboid, along_axes(lengths)),
-            SurfaceForm::Plane(n) => (PieceKind::Plane, round(*n, &[])),
-            SurfaceForm::Cylinder(r, n) | SurfaceForm::Tube(r, n) => (PieceKind::Pipe, round(*n, &[*r])),
-            SurfaceForm::Drum(r, length, n) => (PieceKind::Cylinder, round(*n, &[*r, *length])),
-            SurfaceForm::Capsule(r, length, n) => (PieceKind::Capsule, round(*n, &[*r, *length])),
-            SurfaceForm::Cone(half, n) | SurfaceForm::Funnel(half, n) => {
-                (PieceKind::Funnel, round(*n, &[*half]))
-            }
-            SurfaceForm::Point => (PieceKind::Point, at.clone()),
-            SurfaceForm::Terrain(terrain) => {
-                let known = heights.iter().position(|height| *height == terrain.height);
-                let number = known.unwrap_or(heights.len());
-                heights.extend(known.is_none().then_some(terrain.height));
-                (
-                    PieceKind::Terrain(number),
-                    [at.clone(), entries_by_row(&pose.rotation.rotation_matrix())].concat(),
-                )
-            }
-            // A sheet is unbounded and has no axis of symmetry; a hull is drawn by its edges.
-            SurfaceForm::Sheet(_) | SurfaceForm::Hull(_) => return None,
-        };
-        Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
+/// Returns the edges of a hull as bars; its points if they depend on parameters.
+fn hull_pieces<'g>(
+    frames: &[NamedFrame<'g>],
+    name: &str,
+    Surface { frame, form }: &Surface<'g>,
+) -> Vec<Piece<'g>> {
+    let SurfaceForm::Hull(hull) = form else { return Vec::new() };
+    let Some((index, pose)) = anchor_of_pose(frames, frame.link, &frame.pose) else { return Vec::new() };
+    let position = |p: Vec3<'g>| pose.translation + pose.rotation.to_parent(p);
+    let piece = |kind, frames, ends: &[Vec3<'g>]| {
+        let numbers = entries_of_vectors(&ends.iter().map(|p| position(*p)).collect::<Vec<_>>());
+        Piece { name: name.to_string(), role: Role::Surface, kind, frames, numbers }
+    };
+    match &hull.shape {
+        Some(shape) => {
+            let ends = shape.edges.iter().map(|edge| edge.map(|k| hull.vertices[k]));
+            ends.map(|ends| piece(PieceKind::Bar, [index, index], &ends)).collect()
+        }
+        None => hull.vertices.iter().map(|p| piece(PieceKind::Point, [index, None], &[*p])).collect(),
     }
+}
+
+fn surface_piece<'g>(
+    frames: &[NamedFrame<'g>],
+    name: &str,
+    Surface { frame, form }: &Surface<'g>,
+    heights: &mut Vec<Expr<'g>>,
+) -> Option<Piece<'g>> {
+    let (index, pose) = anchor_of_pose(frames, frame.link, &frame.pose)?;
+    let at = entries_of_vectors(&[pose.translation]);
+    let round = |axis, numbers: &[Expr<'g>]| {
+        [entries_of_vectors(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()].concat()
+    };
+    let along_axes = |lengths: &[Expr<'g>; 3]| {
+        [at.clone(), entries_by_row(&pose.rotation.rotation_matrix()), lengths.to_vec()].concat()
+    };
+    let (kind, numbers) = match form {
+        SurfaceForm::Circle(r, n) => (PieceKind::Ring, round(*n, &[*r])),
+        SurfaceForm::Torus(r, tube, n) => (PieceKind::Torus, round(*n, &[*r, *tube])),
+        SurfaceForm::Sphere(r) => (PieceKind::Sphere, [at.clone(), vec![*r]].concat()),
+        SurfaceForm::Bowl(r) => (PieceKind::Bowl, [at.clone(), vec![*r]].concat()),
+        SurfaceForm::Ellipsoid(lengths) => (PieceKind::Ellipsoid, along_axes(lengths)),
+        SurfaceForm::Cuboid(lengths) => (PieceKind::Cuboid, along_axes(lengths)),
+        SurfaceForm::Plane(n) => (PieceKind::Plane, round(*n, &[])),
+        SurfaceForm::Cylinder(r, n) | SurfaceForm::Tube(r, n) => (PieceKind::Pipe, round(*n, &[*r])),
+        SurfaceForm::Drum(r, length, n) => (PieceKind::Cylinder, round(*n, &[*r, *length])),
+        SurfaceForm::Capsule(r, length, n) => (PieceKind::Capsule, round(*n, &[*r, *length])),
+        SurfaceForm::Cone(half, n) | SurfaceForm::Funnel(half, n) => (PieceKind::Funnel, round(*n, &[*half])),
+        SurfaceForm::Point => (PieceKind::Point, at.clone()),
+        SurfaceForm::Terrain(terrain) => {
+            let known = heights.iter().position(|height| *height == terrain.height);
+            let number = known.unwrap_or(heights.len());
+            heights.extend(known.is_none().then_some(terrain.height));
+            (
+                PieceKind::Terrain(number),
+                [at.clone(), entries_by_row(&pose.rotation.rotation_matrix())].concat(),
+            )
+        }
+        // A sheet is unbounded and has no axis of symmetry; a hull is drawn by its edges.
+        SurfaceForm::Sheet(_) | SurfaceForm::Hull(_) => return None,
+    };
+    Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
 }

@@ -1,6 +1,6 @@
 //! Contact forces and friction moments as functions in output expressions.
 
-use super::unilateral::CandidatePoint;
+use super::geometry::CandidatePoint;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{symbols_in, velocity_gradient};
@@ -87,7 +87,7 @@ fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
 /// Reports coefficients of torsional or rolling friction at contacts without the corresponding rotation.
 pub(super) fn check_relative_rotation(
     contact: &syntax::Contact,
-    points: &[&CandidatePoint<'_>],
+    points: &[CandidatePoint<'_>],
     cx: &mut Diagnostics,
 ) {
     let has_no_rotation =

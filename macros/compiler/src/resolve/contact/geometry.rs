@@ -1,7 +1,36 @@
-//! Functions of expressions that several kinds of contact use.
+//! Contact points, and functions of expressions that contacts of several surfaces use.
 
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::kinematics::perpendicular_directions;
+use crate::mechanism::LinkId;
+use crate::resolve::scope::Terms;
+
+/// A contact at a point, in the axes of the link that carries both bodies.
+pub(super) struct PointContact<'g> {
+    /// Signed distance of the surfaces, m.
+    pub(super) gap: Expr<'g>,
+    /// Contact point, relative to the centre of the first surface.
+    pub(super) point: Vec3<'g>,
+    /// Normal and two tangents, with their names.
+    pub(super) axes: [(&'static str, Vec3<'g>); 3],
+    /// Distances that vanish when the coordinates of a surface given by its points are those of the contact,
+    /// with their names.
+    pub(super) conditions: Vec<(&'static str, Expr<'g>)>,
+}
+
+/// A point where two surfaces may touch.
+pub(super) struct CandidatePoint<'g> {
+    /// Signed distance, m.
+    pub(super) gap: Expr<'g>,
+    /// Normal and two tangents, towards the first surface, each with the velocity along it.
+    pub(super) rates: [(Vec3<'g>, Expr<'g>); 3],
+    /// Relative angular velocity about the normal and each tangent.
+    pub(super) angular_rates: [Expr<'g>; 3],
+    /// Link in whose axes the directions are expressed.
+    pub(super) ancestor: Option<LinkId>,
+    /// Position of the point.
+    pub(super) place: Terms<'g>,
+}
 
 /// Squared sine of the angle below which lines are treated as parallel.
 const PARALLEL: f64 = 1e-12;
@@ -52,4 +81,15 @@ pub(super) fn nearest<'g>(
     let guess = clamp((cosine * second - first) / across, own_reach);
     let far = clamp(second + cosine * guess, reach);
     (clamp(cosine * far - first, own_reach), far)
+}
+
+/// Returns two unit tangents for a unit normal of any direction (Duff et al., *Building an orthonormal basis,
+/// revisited*, 2017).
+pub(super) fn tangents_of(n: Vec3<'_>) -> (Vec3<'_>, Vec3<'_>) {
+    let [x, y, z] = n.0;
+    let sign = z.apply_function(Function::Signum);
+    let a = -((sign + z).num(1.0) / (sign + z));
+    let b = x * y * a;
+    let one = z.num(1.0);
+    (Vec3([one + sign * x * x * a, sign * b, -(sign * x)]), Vec3([b, sign + y * y * a, -y]))
 }

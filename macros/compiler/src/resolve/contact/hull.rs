@@ -5,15 +5,13 @@
 //! perpendicular foot on this plane belongs to the hull, it is the nearest point; this includes centres
 //! inside of the hull. Otherwise the nearest point of all edges is.
 
-use super::geometry::is_positive;
+use super::geometry::{PointContact, is_positive, tangents_of};
 use super::surface::{ConvexHull, Surface, SurfaceForm};
-use super::{PointContact, tangents_of};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::hull::{Hull, HullError, MAX_VERTICES};
 use crate::mechanism::Rule;
-use crate::resolve::builder::Builder;
-use crate::resolve::scope::{Allowed, Context, Placed};
+use crate::resolve::scope::{Allowed, Context, Placed, Scope};
 use crate::syntax::{self, ExprKind};
 
 /// Distance from a face below which a point is treated as part of it, relative to the size of the hull.
@@ -23,74 +21,67 @@ const ON_FACE: f64 = 1e-9;
 const EXAMPLE: &str = "write at least four points that are not in one plane, as in `hull([0 * x, 0.1 * x, \
                        0.1 * y, 0.1 * z])`, or the path of a mesh, as in `hull(\"foot.stl\")`";
 
-impl<'g> Builder<'_, 'g> {
-    /// Parses the hull of a list of points; `None` after an error.
-    pub(super) fn hull(
-        &self,
-        frame: Option<Placed<'g>>,
-        points: &syntax::Expr,
-        cx: &mut Diagnostics,
-    ) -> Option<Surface<'g>> {
-        let place = &points.place;
-        let items = match &points.kind {
-            ExprKind::Array(items) | ExprKind::Tuple(items) => items,
-            // The mesh could not be read; the error is reported.
-            ExprKind::Text(_) => return None,
-            _ => {
-                cx.report_error(place.clone(), "expected the points of a hull").add_help(EXAMPLE);
+/// Parses the hull of a list of points; `None` after an error.
+pub(super) fn read_hull<'g>(
+    scope: &Scope<'_, 'g>,
+    frame: Option<Placed<'g>>,
+    points: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Surface<'g>> {
+    let place = &points.place;
+    let items = match &points.kind {
+        ExprKind::Array(items) | ExprKind::Tuple(items) => items,
+        // The mesh could not be read; the error is reported.
+        ExprKind::Text(_) => return None,
+        _ => {
+            cx.report_error(place.clone(), "expected the points of a hull").add_help(EXAMPLE);
+            return None;
+        }
+    };
+    let context = || Context::new(Allowed::Constant, None);
+    let points: Vec<Option<Vec3<'g>>> =
+        items.iter().map(|e| scope.in_context(context(), |s| s.own_vector(e, cx))).collect();
+    let points: Vec<Vec3<'g>> = points.into_iter().collect::<Option<_>>()?;
+    points.iter().flat_map(|p| p.0).for_each(|x| {
+        scope.record_requirement(Rule::Length, || "a point of a hull".to_string(), &[x]);
+    });
+    let too_many = |count: usize, cx: &mut Diagnostics| {
+        let message = format!("a hull of {count} vertices, more than {MAX_VERTICES}");
+        cx.report_error(place.clone(), message).add_help("each vertex is a point of contact: write fewer");
+    };
+    let numbers: Option<Vec<[f64; 3]>> = points.iter().map(|p| p.constant_components()).collect();
+    let hull = match numbers {
+        // The coordinates depend on parameters, and so does which points are vertices.
+        None if (4..=MAX_VERTICES).contains(&points.len()) => ConvexHull { vertices: points, shape: None },
+        None if points.len() > MAX_VERTICES => {
+            too_many(points.len(), cx);
+            return None;
+        }
+        None => {
+            cx.report_error(place.clone(), format!("a hull of {} points", points.len())).add_help(EXAMPLE);
+            return None;
+        }
+        Some(numbers) => match Hull::new(&numbers, MAX_VERTICES) {
+            Ok(shape) if shape.error > 0.0 => {
+                too_many(numbers.len(), cx);
                 return None;
             }
-        };
-        let context = || Context::new(Allowed::Constant, None);
-        let points: Vec<Option<Vec3<'g>>> =
-            items.iter().map(|e| self.scope.in_context(context(), |s| s.own_vector(e, cx))).collect();
-        let points: Vec<Vec3<'g>> = points.into_iter().collect::<Option<_>>()?;
-        points.iter().flat_map(|p| p.0).for_each(|x| {
-            self.scope.record_requirement(Rule::Length, || "a point of a hull".to_string(), &[x]);
-        });
-        let too_many = |count: usize, cx: &mut Diagnostics| {
-            let message = format!("a hull of {count} vertices, more than {MAX_VERTICES}");
-            cx.report_error(place.clone(), message)
-                .add_help("each vertex is a point of contact: write fewer");
-        };
-        let numbers: Option<Vec<[f64; 3]>> = points.iter().map(|p| p.constant_components()).collect();
-        let hull = match numbers {
-            // The coordinates depend on parameters, and so does which points are vertices.
-            None if (4..=MAX_VERTICES).contains(&points.len()) => {
-                ConvexHull { vertices: points, shape: None }
+            Ok(shape) => {
+                let vertices = shape.vertices.iter().map(|p| Vec3::from_numbers(scope.graph, *p)).collect();
+                ConvexHull { vertices, shape: Some(shape) }
             }
-            None if points.len() > MAX_VERTICES => {
-                too_many(points.len(), cx);
+            Err(error) => {
+                let message = match error {
+                    HullError::NotFinite => "a point of this hull is not finite".to_string(),
+                    HullError::TooFew(count) => format!("a hull of {count} different points"),
+                    HullError::Coplanar => "the points of this hull are in one plane".to_string(),
+                };
+                cx.report_error(place.clone(), message).add_help(EXAMPLE);
                 return None;
             }
-            None => {
-                cx.report_error(place.clone(), format!("a hull of {} points", points.len()))
-                    .add_help(EXAMPLE);
-                return None;
-            }
-            Some(numbers) => match Hull::new(&numbers, MAX_VERTICES) {
-                Ok(shape) if shape.error > 0.0 => {
-                    too_many(numbers.len(), cx);
-                    return None;
-                }
-                Ok(shape) => {
-                    let vertices =
-                        shape.vertices.iter().map(|p| Vec3::from_numbers(self.scope.graph, *p)).collect();
-                    ConvexHull { vertices, shape: Some(shape) }
-                }
-                Err(error) => {
-                    let message = match error {
-                        HullError::NotFinite => "a point of this hull is not finite".to_string(),
-                        HullError::TooFew(count) => format!("a hull of {count} different points"),
-                        HullError::Coplanar => "the points of this hull are in one plane".to_string(),
-                    };
-                    cx.report_error(place.clone(), message).add_help(EXAMPLE);
-                    return None;
-                }
-            },
-        };
-        Some(Surface { frame: frame?, form: SurfaceForm::Hull(hull) })
-    }
+        },
+    };
+    Some(Surface { frame: frame?, form: SurfaceForm::Hull(hull) })
 }
 
 /// Returns the contact of a sphere with a hull. `c` is the centre of the sphere relative to the frame of the

@@ -2,83 +2,77 @@
 //! The normal force `λ` keeps the surfaces in contact. The force in the tangent plane is
 //! `−μ |λ| s / √(|s|² + v₀²)` for the slip velocity `s`: Coulomb's law, regularised around zero slip.
 
+use super::{contact_rows, read_pair};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::language::Key;
-use crate::mechanism::{Constraint, FrictionTerm, Pose, Rule};
-use crate::resolve::builder::Builder;
+use crate::mechanism::{Constraint, FrictionTerm, Model, Pose, Rule};
 use crate::resolve::rows::ConstraintRows;
-use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::scope::{Allowed, Context, Scope};
 use crate::syntax;
 
-impl<'g> Builder<'_, 'g> {
-    /// Returns the row of a slipping pair; `None` after an error.
-    pub fn slipping_rows(
-        &self,
-        constraint: &syntax::Constraint,
-        cx: &mut Diagnostics,
-    ) -> Option<ConstraintRows<'g>> {
-        let found = (self.pair(constraint, cx), self.friction(constraint, cx));
-        let (Some(pair), Some((coefficient, speed))) = found else { return None };
-        let Some(contact) = self.contact(&pair) else {
-            cx.report_error(constraint.value.place.clone(), "these surfaces touch along a line").add_help(
-                "the point on it where friction acts is not determined: use a surface that touches at a \
-                 point",
-            );
-            return None;
-        };
-        let slip = self.slip(&pair, contact.point);
-        let [_, tangents @ ..] = contact.axes;
-        let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
-        let size = rates.iter().fold(speed.square(), |sum, rate| sum + rate.square()).sqrt();
-        let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
-        let friction =
-            moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
-        let rows = self.contact_rows(constraint, &contact, slip, friction);
-        let contact_point = Some(self.contact_position(&pair, contact.point));
-        Some(ConstraintRows { rows, contact_point, ..ConstraintRows::default() })
-    }
-
-    /// Returns the coefficient of friction and the speed of the regularisation.
-    fn friction(
-        &self,
-        constraint: &syntax::Constraint,
-        cx: &mut Diagnostics,
-    ) -> Option<(Expr<'g>, Expr<'g>)> {
-        let written = constraint.arguments.get(Key::Friction)?;
-        let ground = Some((None, Pose::identity(self.scope.graph)));
-        let coefficient = self
-            .scope
-            .in_context(Context::new(Allowed::Placement, ground), |s| s.resolve_scalar(written, cx))?;
-        if let Some(n) = coefficient.constant_value().filter(|n| *n < 0.0) {
-            cx.report_error(
-                written.place.clone(),
-                format!("a coefficient of friction cannot be negative, but it is {n}"),
-            )
-            .add_help("friction opposes the motion by definition: give its magnitude");
-        }
-        let name = &constraint.name.text;
-        self.scope.record_requirement(
-            Rule::NotNegative,
-            || format!("the friction of `{name}`"),
-            &[coefficient],
+/// Returns the row of a slipping pair; `None` after an error.
+pub fn slipping_rows<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    constraint: &syntax::Constraint,
+    cx: &mut Diagnostics,
+) -> Option<ConstraintRows<'g>> {
+    let found = (read_pair(scope, model, constraint, cx), read_friction(scope, model, constraint, cx));
+    let (Some(pair), Some((coefficient, speed))) = found else { return None };
+    let Some(contact) = pair.contact() else {
+        cx.report_error(constraint.value.place.clone(), "these surfaces touch along a line").add_help(
+            "the point on it where friction acts is not determined: use a surface that touches at a \
+             point",
         );
-        let Some(written) = constraint.arguments.get(Key::Speed) else {
-            return Some((coefficient, self.model.friction_speed));
-        };
-        let speed = self
-            .scope
-            .in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(written, cx))?;
-        if let Some(n) = speed.constant_value().filter(|n| *n <= 0.0) {
-            let message = format!("this speed must be positive, but it is {n}");
-            cx.report_error(written.place.clone(), message).add_help(
-                "Coulomb's law is smoothed below this speed; a smaller value makes the equations stiffer at \
-                 rest",
-            );
-        }
-        self.scope.record_requirement(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
-        Some((coefficient, speed))
+        return None;
+    };
+    let slip = pair.slip(contact.point);
+    let [_, tangents @ ..] = contact.axes;
+    let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();
+    let size = rates.iter().fold(speed.square(), |sum, rate| sum + rate.square()).sqrt();
+    let moving = rates.iter().filter(|rate| !rate.is_zero() && !coefficient.is_zero());
+    let friction =
+        moving.map(|rate| FrictionTerm { rate: *rate, share: -(coefficient * *rate / size) }).collect();
+    let rows = contact_rows(scope, constraint, &contact, slip, friction);
+    let contact_point = Some(pair.contact_position(contact.point));
+    let surfaces = pair.written_surfaces();
+    Some(ConstraintRows { rows, contact_point, surfaces, redundant: Vec::new() })
+}
+
+/// Returns the coefficient of friction and the speed of the regularisation.
+fn read_friction<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+    constraint: &syntax::Constraint,
+    cx: &mut Diagnostics,
+) -> Option<(Expr<'g>, Expr<'g>)> {
+    let written = constraint.arguments.get(Key::Friction)?;
+    let ground = Some((None, Pose::identity(scope.graph)));
+    let coefficient =
+        scope.in_context(Context::new(Allowed::Placement, ground), |s| s.resolve_scalar(written, cx))?;
+    if let Some(n) = coefficient.constant_value().filter(|n| *n < 0.0) {
+        cx.report_error(
+            written.place.clone(),
+            format!("a coefficient of friction cannot be negative, but it is {n}"),
+        )
+        .add_help("friction opposes the motion by definition: give its magnitude");
     }
+    let name = &constraint.name.text;
+    scope.record_requirement(Rule::NotNegative, || format!("the friction of `{name}`"), &[coefficient]);
+    let Some(written) = constraint.arguments.get(Key::Speed) else {
+        return Some((coefficient, model.friction_speed));
+    };
+    let speed = scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(written, cx))?;
+    if let Some(n) = speed.constant_value().filter(|n| *n <= 0.0) {
+        let message = format!("this speed must be positive, but it is {n}");
+        cx.report_error(written.place.clone(), message).add_help(
+            "Coulomb's law is smoothed below this speed; a smaller value makes the equations stiffer at \
+             rest",
+        );
+    }
+    scope.record_requirement(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
+    Some((coefficient, speed))
 }
 
 /// Reports slipping contacts whose row is redundant: the normal force, and therefore the friction, is

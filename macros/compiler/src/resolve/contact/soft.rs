@@ -2,15 +2,15 @@
 //! restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth
 //! in the slip velocity.
 
-use super::unilateral::{CandidatePoint, ContactCoefficients};
+use super::coefficients::ContactCoefficients;
+use super::geometry::CandidatePoint;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;
 use crate::language::Key;
 use crate::mechanism::{Load, Rule};
-use crate::resolve::builder::Builder;
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, ContactLoads, Context};
+use crate::resolve::scope::{Allowed, ContactLoads, Context, Scope};
 use crate::syntax::{self, WrittenArguments};
 
 /// Default slip speed below which friction of compliant contacts is regularised, m/s.
@@ -27,76 +27,38 @@ pub(super) struct CompliantContact<'g> {
     speed: Expr<'g>,
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Reads stiffness and dissipation of a compliant contact; `None` after an error.
-    pub(super) fn read_compliance(
-        &self,
-        given: &WrittenArguments,
-        cx: &mut Diagnostics,
-    ) -> Option<CompliantContact<'g>> {
-        let g = self.scope.graph;
-        let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
-            let value =
-                self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(e, cx))?;
-            let positive = rule == Rule::Positive;
-            if let Some(n) = value.constant_value().filter(|n| *n < 0.0 || positive && *n == 0.0) {
-                let must = if positive { "must be positive" } else { "cannot be negative" };
-                cx.report_error(e.place.clone(), format!("the {what} of a contact {must}, but it is {n}"));
-                return None;
-            }
-            self.scope.record_requirement(rule, || format!("the {what} of a contact"), &[value]);
-            Some(value)
-        };
-        let (linear, hertz) = (given.get(Key::Stiffness), given.get(Key::Hertz));
-        let stiffness = linear.or(hertz).and_then(|e| read(e, "stiffness", Rule::Positive));
-        let dissipation = match given.get(Key::Dissipation) {
-            Some(e) => read(e, "dissipation", Rule::NotNegative),
-            None => Some(g.zero()),
-        };
-        let speed = match given.get(Key::Speed) {
-            Some(e) => read(e, "speed", Rule::Positive),
-            None => Some(g.num(DEFAULT_SLIP_SPEED)),
-        };
-        Some(CompliantContact {
-            stiffness: stiffness?,
-            hertz: linear.is_none(),
-            dissipation: dissipation?,
-            speed: speed?,
-        })
-    }
-
+impl<'g> CompliantContact<'g> {
     /// Returns the effects of a contact point: potential energy of the penetration, dissipation and friction.
-    pub(super) fn soft_point(
+    pub(super) fn forces_at(
         &self,
         point: &CandidatePoint<'g>,
         coefficients: ContactCoefficients<'g>,
-        soft: &CompliantContact<'g>,
         exerted: &mut ContactLoads<'g>,
     ) -> Forces<'g> {
-        let g = self.scope.graph;
+        let g = point.gap.graph();
         let overlap = (-point.gap).minimum_or_maximum(Extreme::Max, g.zero());
-        let root = if soft.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
-        let elastic = soft.stiffness * overlap * root;
-        let energy = elastic * overlap * g.num(if soft.hertz { 0.4 } else { 0.5 });
+        let root = if self.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
+        let elastic = self.stiffness * overlap * root;
+        let energy = elastic * overlap * g.num(if self.hertz { 0.4 } else { 0.5 });
         let mut forces = Forces::of_potentials([energy]);
         let [(normal, rate), tangents @ ..] = point.rates;
         // Surfaces do not pull at each other.
-        let damping = (-(elastic * soft.dissipation * rate)).minimum_or_maximum(Extreme::Max, -elastic);
+        let damping = (-(elastic * self.dissipation * rate)).minimum_or_maximum(Extreme::Max, -elastic);
         let pressure = elastic + damping;
-        if !soft.dissipation.is_zero() {
+        if !self.dissipation.is_zero() {
             forces.loads.push(Load { rate, force: damping, dissipative: true });
         }
         exerted.forces.push((point.ancestor, normal * pressure));
         for (about, most) in [(0..1, coefficients.torsional), (1..3, coefficients.rolling)] {
             let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.angular_rates[k])).collect();
-            let moments = add_moment(&turns, most, pressure, soft.speed, &mut forces);
+            let moments = add_moment(&turns, most, pressure, self.speed, &mut forces);
             exerted.moments.extend(moments.into_iter().map(|moment| (point.ancestor, moment)));
         }
         let friction = coefficients.friction;
         if friction.is_zero() {
             return forces;
         }
-        let slip = tangents.iter().fold(soft.speed.square(), |sum, (_, rate)| sum + rate.square()).sqrt();
+        let slip = tangents.iter().fold(self.speed.square(), |sum, (_, rate)| sum + rate.square()).sqrt();
         for (direction, rate) in tangents {
             if velocity_gradient(rate).is_empty() {
                 continue;
@@ -107,6 +69,42 @@ impl<'g> Builder<'_, 'g> {
         }
         forces
     }
+}
+
+/// Reads stiffness and dissipation; `None` after an error.
+pub(super) fn read_compliance<'g>(
+    scope: &Scope<'_, 'g>,
+    given: &WrittenArguments,
+    cx: &mut Diagnostics,
+) -> Option<CompliantContact<'g>> {
+    let g = scope.graph;
+    let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
+        let value = scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(e, cx))?;
+        let positive = rule == Rule::Positive;
+        if let Some(n) = value.constant_value().filter(|n| *n < 0.0 || positive && *n == 0.0) {
+            let must = if positive { "must be positive" } else { "cannot be negative" };
+            cx.report_error(e.place.clone(), format!("the {what} of a contact {must}, but it is {n}"));
+            return None;
+        }
+        scope.record_requirement(rule, || format!("the {what} of a contact"), &[value]);
+        Some(value)
+    };
+    let (linear, hertz) = (given.get(Key::Stiffness), given.get(Key::Hertz));
+    let stiffness = linear.or(hertz).and_then(|e| read(e, "stiffness", Rule::Positive));
+    let dissipation = match given.get(Key::Dissipation) {
+        Some(e) => read(e, "dissipation", Rule::NotNegative),
+        None => Some(g.zero()),
+    };
+    let speed = match given.get(Key::Speed) {
+        Some(e) => read(e, "speed", Rule::Positive),
+        None => Some(g.num(DEFAULT_SLIP_SPEED)),
+    };
+    Some(CompliantContact {
+        stiffness: stiffness?,
+        hertz: linear.is_none(),
+        dissipation: dissipation?,
+        speed: speed?,
+    })
 }
 
 /// Adds and returns friction moments about directions, each with its angular velocity. The maximum moment

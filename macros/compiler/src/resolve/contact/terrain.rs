@@ -1,15 +1,14 @@
 //! Ground whose height is an expression of the position: `terrain(height)`, where `u` and `w` are the
 //! coordinates along x and y.
 
-use super::{PointContact, tangents_of};
+use super::geometry::{PointContact, tangents_of};
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Quantity, Supplied};
-use crate::resolve::builder::Builder;
-use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::scope::{Allowed, Context, Scope};
 use crate::syntax;
 
 /// Names of the coordinates in the expression of the height.
@@ -37,27 +36,29 @@ struct TerrainPoint<'g> {
     curvatures: [Expr<'g>; 3],
 }
 
-impl<'g> Builder<'_, 'g> {
-    /// Parses a terrain with this expression of the height.
-    pub(super) fn terrain(&self, height: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terrain<'g>> {
-        let g = self.scope.graph;
-        let symbols = [0, 1].map(|k| Quantity::Given(Supplied::Position, k).symbol());
-        let [u, w] = TERRAIN_COORDINATES;
-        let locals = vec![(u, g.symbol(symbols[0])), (w, g.symbol(symbols[1]))];
-        let context = Context::new(Allowed::Constant, None).with_locals(locals);
-        let height_of = self.scope.in_context(context, |s| s.resolve_scalar(height, cx))?;
-        if !symbols_in(&[height_of]).into_iter().any(|s| symbols.contains(&s)) {
-            cx.report_error(height.place.clone(), "this height is constant").add_help(
-                "write it as a function of `u` and `w`, the positions along the body's x and y axes, as in \
-                 `0.1 * sin(3 * u)`; level ground is a `plane`",
-            );
-            return None;
-        }
-        let derivative = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).differentiate(e);
-        let slopes = [derivative(height_of, 0), derivative(height_of, 1)];
-        let curvatures = [derivative(slopes[0], 0), derivative(slopes[0], 1), derivative(slopes[1], 1)];
-        Some(Terrain { height: height_of, slopes, curvatures })
+/// Parses a terrain with this height.
+pub(super) fn read_terrain<'g>(
+    scope: &Scope<'_, 'g>,
+    height: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Terrain<'g>> {
+    let g = scope.graph;
+    let symbols = [0, 1].map(|k| Quantity::Given(Supplied::Position, k).symbol());
+    let [u, w] = TERRAIN_COORDINATES;
+    let locals = vec![(u, g.symbol(symbols[0])), (w, g.symbol(symbols[1]))];
+    let context = Context::new(Allowed::Constant, None).with_locals(locals);
+    let height_of = scope.in_context(context, |s| s.resolve_scalar(height, cx))?;
+    if !symbols_in(&[height_of]).into_iter().any(|s| symbols.contains(&s)) {
+        cx.report_error(height.place.clone(), "this height is constant").add_help(
+            "write it as a function of `u` and `w`, the positions along the body's x and y axes, as in \
+             `0.1 * sin(3 * u)`; level ground is a `plane`",
+        );
+        return None;
     }
+    let derivative = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).differentiate(e);
+    let slopes = [derivative(height_of, 0), derivative(height_of, 1)];
+    let curvatures = [derivative(slopes[0], 0), derivative(slopes[0], 1), derivative(slopes[1], 1)];
+    Some(Terrain { height: height_of, slopes, curvatures })
 }
 
 impl<'g> Terrain<'g> {

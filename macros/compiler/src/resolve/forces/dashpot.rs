@@ -2,41 +2,40 @@
 
 use crate::diag::Diagnostics;
 use crate::mechanism::{Dashpot, Pose, Rule};
-use crate::resolve::builder::Builder;
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::scope::{Allowed, Context, Scope};
 use crate::resolve::terms::ActedOn;
 use crate::syntax::{Action, Key};
 
 /// Returns the force of a dashpot. A linear dashpot on a coordinate is stored separately in the model.
 pub fn dashpot_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let damping = action.get(Key::Damping);
     if let (Some(written), Some(on)) = (damping, on.coordinate) {
-        let damping = b.scope.resolve_scalar(written, cx)?;
+        let damping = scope.resolve_scalar(written, cx)?;
         if let Some(d) = damping.constant_value().filter(|d| *d < 0.0) {
             cx.report_error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
                 .add_help("a dashpot dissipates energy; an element that supplies energy is a `Force` or `Torque` with `value = …`");
         }
-        b.scope.record_requirement(
+        scope.record_requirement(
             Rule::NotNegative,
             || format!("the damping of `{}`", action.name.text),
             &[damping],
         );
         return Some(Forces { dashpots: vec![Dashpot { on, damping }], ..Forces::default() });
     }
-    let rate = b.stretch_on(on)?.rate;
+    let rate = on.stretch(scope)?.rate;
     let force = match damping {
-        Some(damping) => b.scope.resolve_scalar(damping, cx)? * rate,
+        Some(damping) => scope.resolve_scalar(damping, cx)? * rate,
         None => {
-            let ground = Some((None, Pose::identity(b.scope.graph)));
+            let ground = Some((None, Pose::identity(scope.graph)));
             let context = Context::new(Allowed::Motion, ground).with_locals(vec![("speed", rate)]);
             let written = action.get(Key::Force)?;
-            b.scope.in_context(context, |scope| scope.resolve_scalar(written, cx))?
+            scope.in_context(context, |scope| scope.resolve_scalar(written, cx))?
         }
     };
     Some(Forces::resisting_force(rate, force))

@@ -3,8 +3,8 @@
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Function};
 use crate::mechanism::Rule;
-use crate::resolve::builder::Builder;
 use crate::resolve::element_forces::Forces;
+use crate::resolve::scope::Scope;
 use crate::resolve::terms::ActedOn;
 use crate::syntax::{self, Action, Key};
 
@@ -13,27 +13,33 @@ const FRICTION_SPEED: f64 = 0.01;
 
 /// Returns the force of a dry or viscous friction element.
 pub fn friction_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
-    dry_friction(b, b.stretch_on(on)?.rate, all.map(|key| action.get(key)), action.on.source_position(), cx)
+    dry_friction(
+        scope,
+        on.stretch(scope)?.rate,
+        all.map(|key| action.get(key)),
+        action.on.source_position(),
+        cx,
+    )
 }
 
 /// Returns dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous
 /// friction: `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
 pub fn dry_friction<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     v: Expr<'g>,
     [coulomb, stiction, stribeck, viscous, speed]: [Option<&syntax::Expr>; 5],
     place: &Place,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let g = b.scope.graph;
+    let g = scope.graph;
     let mut value = |e: Option<&syntax::Expr>, default: f64| match e {
-        Some(e) => b.scope.resolve_scalar(e, cx),
+        Some(e) => scope.resolve_scalar(e, cx),
         None => Some(g.num(default)),
     };
     let (fc, c, v0) = (value(coulomb, 0.0), value(viscous, 0.0), value(speed, FRICTION_SPEED));
@@ -41,7 +47,7 @@ pub fn dry_friction<'g>(
     let mut check = |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
         if let Some(found) = found {
             let rule = if positive { Rule::Positive } else { Rule::NotNegative };
-            b.scope.record_requirement(rule, || format!("a {what} of dry friction"), &[found]);
+            scope.record_requirement(rule, || format!("a {what} of dry friction"), &[found]);
         }
         let (Some(written), Some(n)) = (written, found.and_then(|e| e.constant_value())) else { return };
         if n < 0.0 || positive && n == 0.0 {

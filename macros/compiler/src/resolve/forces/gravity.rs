@@ -2,27 +2,27 @@
 
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::resolve::builder::Builder;
 use crate::resolve::element_forces::Forces;
-use crate::resolve::terms::{ActedOn, Stretch};
+use crate::resolve::scope::Scope;
+use crate::resolve::terms::{ActedOn, Stretch, distance_between_points};
 use crate::syntax::{self, Action, ExprKind, Key, Target};
 
 /// Returns the inverse-square force of an attraction between two points.
 pub fn attraction_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let stretch = b.stretch_on(on)?;
-    let strength = b.scope.resolve_scalar(action.get(Key::Strength)?, cx)?;
+    let stretch = on.stretch(scope)?;
+    let strength = scope.resolve_scalar(action.get(Key::Strength)?, cx)?;
     Some(Forces::of_potentials([attraction_energy(&stretch, strength)]))
 }
 
 /// Returns central gravity: between two bodies with a gravitational constant, or towards a point with a
 /// gravitational parameter. Gravity also exerts a torque on a body with inertia.
 pub fn central_gravity_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
@@ -36,25 +36,25 @@ pub fn central_gravity_force<'g>(
         );
         return None;
     };
-    let stretch = b.distance_between_points(first, second, cx);
+    let stretch = distance_between_points(scope, first, second, cx);
     // An unresolved position has already been reported.
     let is_placed = stretch.is_some();
-    let mut mass = |e: &syntax::Expr| if is_placed { mass_of(b, e, cx) } else { None };
+    let mut mass = |e: &syntax::Expr| if is_placed { mass_of(scope, e, cx) } else { None };
     match (action.get(Key::Constant), action.get(Key::Mu)) {
         (Some(constant), None) => {
             let masses = [mass(first), mass(second)];
-            let g = b.scope.resolve_scalar(constant, cx)?;
+            let g = scope.resolve_scalar(constant, cx)?;
             let ([Some(m1), Some(m2)], Some(stretch)) = (masses, stretch) else { return None };
             let own = attraction_energy(&stretch, g * m1 * m2);
             let torques = [(first, second, g * m1), (second, first, g * m2)];
-            let torques = torques.map(|(center, body, mu)| torque_energy(b, center, body, mu, cx));
+            let torques = torques.map(|(center, body, mu)| torque_energy(scope, center, body, mu, cx));
             Some(Forces::of_potentials([own].into_iter().chain(torques.into_iter().flatten())))
         }
         (None, Some(mu)) => {
             let m = mass(second);
-            let mu = b.scope.resolve_scalar(mu, cx)?;
+            let mu = scope.resolve_scalar(mu, cx)?;
             let own = attraction_energy(&stretch?, mu * m?);
-            let torque = torque_energy(b, first, second, mu, cx);
+            let torque = torque_energy(scope, first, second, mu, cx);
             Some(Forces::of_potentials([own].into_iter().chain(torque)))
         }
         _ => {
@@ -67,13 +67,13 @@ pub fn central_gravity_force<'g>(
 }
 
 /// Returns the mass of a body or particle. Its origin must be its centre of mass.
-fn mass_of<'g>(b: &Builder<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+fn mass_of<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
     if let ExprKind::Name(name) = &e.kind {
-        if let Some(p) = b.description.particles.iter().find(|p| p.name.text == *name) {
-            return b.scope.resolve_scalar(&p.mass, cx);
+        if let Some(p) = scope.description.particles.iter().find(|p| p.name.text == *name) {
+            return scope.resolve_scalar(&p.mass, cx);
         }
-        if let Some(k) = b.description.bodies.iter().position(|body| body.name.text == *name) {
-            let (mass, com, _) = b.masses.get(k).copied().flatten()?;
+        if scope.description.bodies.iter().any(|body| body.name.text == *name) {
+            let (mass, com, _) = *scope.kinematics.masses.get(name)?;
             if !com.is_zero() {
                 cx.report_error(
                     e.place.clone(),
@@ -100,20 +100,21 @@ fn attraction_energy<'g>(stretch: &Stretch<'g>, strength: Expr<'g>) -> Expr<'g> 
 /// Returns the energy of the torque of central gravity on a body with inertia, to second order in size over
 /// distance (MacCullagh): `U = −μ m / r − μ (tr I − 3 n · I n) / (2 r³)`.
 fn torque_energy<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     center: &syntax::Expr,
     body: &syntax::Expr,
     mu: Expr<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
-    let index = b.jointed_index(body.as_name()?).filter(|k| *k < b.description.bodies.len())?;
-    let (center, body) = (b.scope.resolve_placement(center, cx), b.scope.resolve_placement(body, cx));
+    let name = body.as_name()?;
+    scope.description.bodies.iter().find(|body| body.name.text == name)?;
+    let (center, body) = (scope.resolve_placement(center, cx), scope.resolve_placement(body, cx));
     let (center, body) = (center?, body?);
-    let (_, _, central) = b.masses.get(index).cloned().flatten()?;
+    let (_, _, central) = *scope.kinematics.masses.get(name)?;
     let tensor = body.pose.rotation.sym_to_parent(central);
-    let kinematics = &b.scope.kinematics;
+    let kinematics = &scope.kinematics;
     let terms = kinematics.position_between(&body, &center);
-    let r = kinematics.resolve(&terms, body.link, Vec3::zero(b.scope.graph));
+    let r = kinematics.resolve(&terms, body.link, Vec3::zero(scope.graph));
     let length = r.norm();
     let n = r.map(|c| c / length);
     let trace = tensor.diagonal[0] + tensor.diagonal[1] + tensor.diagonal[2];

@@ -3,33 +3,33 @@
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::mechanism::{Inertance, Rule};
-use crate::resolve::builder::Builder;
 use crate::resolve::element_forces::Forces;
+use crate::resolve::scope::Scope;
 use crate::resolve::terms::ActedOn;
 use crate::syntax::{self, Action, Key};
 
 /// Returns the force of an inerter as `Forces`.
 pub fn inerter_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    inertance_force(b, b.stretch_on(on)?.rate, action.get(Key::Inertance)?, cx)
+    inertance_force(scope, on.stretch(scope)?.rate, action.get(Key::Inertance)?, cx)
 }
 
 /// Returns the force of an inertance on the rate of a length.
 pub fn inertance_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     rate: Expr<'g>,
     written: &syntax::Expr,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let inertance = b.scope.resolve_scalar(written, cx)?;
+    let inertance = scope.resolve_scalar(written, cx)?;
     if let Some(n) = inertance.constant_value().filter(|n| *n < 0.0) {
         cx.report_error(written.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
             .add_help("it resists accelerations as a mass does: give its magnitude");
     }
-    b.scope.record_requirement(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
+    scope.record_requirement(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
     Some(Forces { inertances: vec![Inertance { rate, inertance }], ..Forces::default() })
 }

@@ -6,31 +6,31 @@ use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr as Value, Function, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{AccelerationForce, Direction, Input, Load, Pose, Quantity};
-use crate::resolve::builder::Builder;
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, Context, Placed, PlacedKind};
-use crate::resolve::target::Target;
-use crate::syntax::{Action, Expr, ExprKind, Key, Target as On};
+use crate::resolve::scope::{Allowed, Context, Placed, PlacedKind, Scope};
+use crate::resolve::target::{ResolvedTarget, resolve_target};
+use crate::resolve::terms::{coordinate_stretch, distance_between_points};
+use crate::syntax::{Action, Expr, ExprKind, Key, Target};
 
 /// Returns a force or a torque, with a value or as an input.
-pub fn load<'g>(b: &Builder<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
+pub fn load<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
     let torque = action.kind.row().torque;
     let direction = action.get(if torque { Key::About } else { Key::Along });
     match (&action.on, action.get(Key::Value)) {
-        (On::On(on), None) => {
-            let target = b.resolve_target(on, cx)?;
-            input_force(b, action, on, target, direction, torque, cx)
+        (Target::On(on), None) => {
+            let target = resolve_target(scope, on, cx)?;
+            input_force(scope, action, on, target, direction, torque, cx)
         }
-        (On::On(on), Some(value)) => value_on(b, on, direction, value, torque, cx),
-        (On::Between(first, second), value) => {
-            force_between(b, action, [first, second], direction, value, cx)
+        (Target::On(on), Some(value)) => value_on(scope, on, direction, value, torque, cx),
+        (Target::Between(first, second), value) => {
+            force_between(scope, action, [first, second], direction, value, cx)
         }
     }
 }
 
 /// Returns a force or torque element whose value is an expression.
 fn value_on<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     on: &Expr,
     direction: Option<&Expr>,
     value: &Expr,
@@ -42,14 +42,16 @@ fn value_on<'g>(
             .add_help("write the direction into the value: `value = magnitude * x`");
         return None;
     }
-    let place = match b.resolve_target(on, cx)? {
-        Target::Point(place) => place,
-        Target::Coordinate(_, Some(angle)) if angle != torque => {
+    let place = match resolve_target(scope, on, cx)? {
+        ResolvedTarget::Point(place) => place,
+        ResolvedTarget::Coordinate(_, Some(angle)) if angle != torque => {
             report_wrong_kind(on, angle, cx);
             return None;
         }
-        Target::Coordinate(c, _) => return scalar_load(b, b.coordinate_stretch(&c).rate, value, cx),
-        Target::Expression(stretch) => return scalar_load(b, stretch.rate, value, cx),
+        ResolvedTarget::Coordinate(c, _) => {
+            return scalar_load(scope, coordinate_stretch(scope, &c).rate, value, cx);
+        }
+        ResolvedTarget::Expression(stretch) => return scalar_load(scope, stretch.rate, value, cx),
     };
     if torque && !check_torque_target(on, &place, cx) {
         return None;
@@ -59,9 +61,9 @@ fn value_on<'g>(
         return None;
     };
     let context = Context::new(Allowed::Acceleration, Some((place.link, place.pose.clone())));
-    let terms = b.scope.in_context(context, |scope| scope.resolve_terms(value, cx))?;
-    let kinematics = &b.scope.kinematics;
-    let force = kinematics.resolve(&terms, place.link, Vec3::zero(b.scope.graph));
+    let terms = scope.in_context(context, |scope| scope.resolve_terms(value, cx))?;
+    let kinematics = &scope.kinematics;
+    let force = kinematics.resolve(&terms, place.link, Vec3::zero(scope.graph));
     let twist = kinematics.twists[link.0];
     let rate = match torque {
         true => twist.angular,
@@ -69,7 +71,7 @@ fn value_on<'g>(
     };
     let mut all = Forces::default();
     for k in (0..3).filter(|k| !force[*k].is_zero()) {
-        let component = value_load(b, rate[k], force[k], &value.place, cx)?;
+        let component = value_load(rate[k], force[k], &value.place, cx)?;
         all.loads.extend(component.loads);
         all.acceleration_forces.extend(component.acceleration_forces);
     }
@@ -79,20 +81,20 @@ fn value_on<'g>(
 /// Returns the load whose power is `value × rate`. Vectors in the scalar expression `value` are in ground
 /// axes.
 fn scalar_load<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     rate: Value<'g>,
     value: &Expr,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(b.scope.graph))));
-    let force = b.scope.in_context(context, |scope| scope.resolve_scalar(value, cx))?;
-    value_load(b, rate, force, &value.place, cx)
+    let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(scope.graph))));
+    let force = scope.in_context(context, |scope| scope.resolve_scalar(value, cx))?;
+    value_load(rate, force, &value.place, cx)
 }
 
 /// Returns a force along the line between two points, with a value or as an input. A positive force
 /// separates the points.
 fn force_between<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     [first, second]: [&Expr; 2],
     along: Option<&Expr>,
@@ -103,23 +105,23 @@ fn force_between<'g>(
         cx.report_error(along.place.clone(), "a force between two points acts along their line")
             .add_help("remove this argument, or let a force act on each of two bodies");
     }
-    let stretch = b.distance_between_points(first, second, cx)?;
+    let stretch = distance_between_points(scope, first, second, cx)?;
     let rate = match stretch.signed {
         true => stretch.value.apply_function(Function::Signum) * stretch.rate,
         false => stretch.rate,
     };
     match value {
-        Some(value) => scalar_load(b, rate, value, cx),
-        None => input_load(b, &action.name.text, rate),
+        Some(value) => scalar_load(scope, rate, value, cx),
+        None => Some(input_load(scope.input_index(&action.name.text)?, rate)),
     }
 }
 
 /// Returns an input on a coordinate, an expression, or a point of a body.
 fn input_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     on: &Expr,
-    target: Target<'g>,
+    target: ResolvedTarget<'g>,
     direction: Option<&Expr>,
     torque: bool,
     cx: &mut Diagnostics,
@@ -131,50 +133,50 @@ fn input_force<'g>(
         }
     };
     let input = match target {
-        Target::Coordinate(_, Some(angle)) if angle != torque => {
+        ResolvedTarget::Coordinate(_, Some(angle)) if angle != torque => {
             report_wrong_kind(on, angle, cx);
             return None;
         }
-        Target::Coordinate(c, _) => {
+        ResolvedTarget::Coordinate(c, _) => {
             refuse_direction("joint");
             Input::Coordinate(c)
         }
-        Target::Expression(stretch) => {
+        ResolvedTarget::Expression(stretch) => {
             refuse_direction("expression");
-            return input_load(b, &action.name.text, stretch.rate);
+            return Some(input_load(scope.input_index(&action.name.text)?, stretch.rate));
         }
-        Target::Point(place) => match point_input(b, action, on, &place, direction, torque, cx)? {
-            // The point moves on its body.
-            Input::Force { link, point, along } if is_moving(point) => {
-                let kinematics = &b.scope.kinematics;
-                let twist = &kinematics.twists[link.0];
-                let along = kinematics.resolve(&along, Some(link), Vec3::zero(b.scope.graph));
-                let rate = (twist.linear + twist.angular.cross(point)).dot(along);
-                return input_load(b, &action.name.text, rate);
+        ResolvedTarget::Point(place) => {
+            match point_input(scope, action, on, &place, direction, torque, cx)? {
+                // The point moves on its body.
+                Input::Force { link, point, along } if is_moving(point) => {
+                    let kinematics = &scope.kinematics;
+                    let twist = &kinematics.twists[link.0];
+                    let along = kinematics.resolve(&along, Some(link), Vec3::zero(scope.graph));
+                    let rate = (twist.linear + twist.angular.cross(point)).dot(along);
+                    return Some(input_load(scope.input_index(&action.name.text)?, rate));
+                }
+                Input::Torque { .. } if is_moving(place.pose.translation) => return None,
+                input => input,
             }
-            Input::Torque { .. } if is_moving(place.pose.translation) => return None,
-            input => input,
-        },
+        }
     };
     Some(Forces { input: Some(input), ..Forces::default() })
 }
 
-/// Returns an input as a force along a rate.
-pub fn input_load<'g>(b: &Builder<'_, 'g>, name: &str, rate: Value<'g>) -> Option<Forces<'g>> {
-    let k = b.model.inputs.iter().position(|(known, _)| known == name)?;
-    let force = Quantity::Input(k).expr(b.scope.graph);
-    Some(Forces { loads: vec![Load { rate, force, dissipative: false }], ..Forces::default() })
+/// Returns the input with this index in `u`, as a force on a rate.
+pub fn input_load<'g>(index: usize, rate: Value<'g>) -> Forces<'g> {
+    let force = Quantity::Input(index).expr(rate.graph());
+    Forces { loads: vec![Load { rate, force, dissipative: false }], ..Forces::default() }
 }
 
 /// Returns a force on a rate. Terms that are linear in the accelerations are separated from the others.
 pub fn value_load<'g>(
-    b: &Builder<'_, 'g>,
     rate: Value<'g>,
     force: Value<'g>,
     place: &Place,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let graph = b.scope.graph;
+    let graph = force.graph();
     let mut forces = Forces::default();
     let acceleration_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some((s, k)),
@@ -213,7 +215,7 @@ pub fn value_load<'g>(
 
 /// Returns an input at a point of a body; `None` after an error.
 fn point_input<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     on: &Expr,
     place: &Placed<'g>,
@@ -231,7 +233,7 @@ fn point_input<'g>(
         return None;
     }
     let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
-    let terms = b.scope.in_context(context, |scope| scope.resolve_terms(direction, cx))?;
+    let terms = scope.in_context(context, |scope| scope.resolve_terms(direction, cx))?;
     let Some(link) = place.link else {
         cx.report_error(on.place.clone(), "this body is fixed to the ground: a force on it has no effect")
             .add_help("name a body that moves");

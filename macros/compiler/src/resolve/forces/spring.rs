@@ -7,9 +7,8 @@ use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::kinematics::symbols_in;
 use crate::language::Callable;
 use crate::mechanism::{Pose, Quantity, Spring};
-use crate::resolve::builder::Builder;
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::scope::{Allowed, Context, Scope};
 use crate::resolve::terms::{ActedOn, Stretch};
 use crate::syntax::{self, Action, ExprKind, Key};
 use std::collections::BTreeSet;
@@ -17,9 +16,9 @@ use std::collections::BTreeSet;
 /// Maximum power of the stretch in a spring's force for which the energy is found by integration.
 const HIGHEST_POWER: usize = 9;
 
-/// Force law of a spring, as the user wrote it.
-pub enum Law<'e> {
-    /// Spring force proportional to the stretch, with this stiffness.
+/// Force law of a spring, as written.
+pub enum SpringLaw<'e> {
+    /// Force proportional to the stretch, with this stiffness.
     Linear(&'e syntax::Expr),
     /// Spring force as an expression of `stretch`.
     Force(&'e syntax::Expr),
@@ -29,37 +28,37 @@ pub enum Law<'e> {
 
 /// Returns the force of a spring. A linear spring on a coordinate is stored separately in the model.
 pub fn spring_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let law = match action.written_law()? {
-        (Key::Force, e) => Law::Force(e),
-        (Key::Energy, e) => Law::Energy(e),
-        (_, e) => Law::Linear(e),
+        (Key::Force, e) => SpringLaw::Force(e),
+        (Key::Energy, e) => SpringLaw::Energy(e),
+        (_, e) => SpringLaw::Linear(e),
     };
-    if let (Law::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
-        let stiffness = b.scope.resolve_scalar(stiffness, cx);
-        let free = free_length(b, action, angle, cx);
+    if let (SpringLaw::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
+        let stiffness = scope.resolve_scalar(stiffness, cx);
+        let free = free_length(scope, action, angle, cx);
         let spring = Spring { on, stiffness: stiffness?, free: free? };
         return Some(Forces { springs: vec![spring], ..Forces::default() });
     }
     let angle = on.angle;
-    let stretch = b.stretch_on(on)?;
-    let free = free_length(b, action, angle, cx)?;
-    spring_law(b, stretch, &law, free, cx)
+    let stretch = on.stretch(scope)?;
+    let free = free_length(scope, action, angle, cx)?;
+    spring_law(scope, stretch, &law, free, cx)
 }
 
 /// Returns the force of a spring with any force law.
 pub fn spring_law<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     stretch: Stretch<'g>,
-    law: &Law<'_>,
+    law: &SpringLaw<'_>,
     free: Expr<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let g = b.scope.graph;
+    let g = scope.graph;
     let length = if stretch.signed && !free.is_zero() {
         stretch.value.apply_function(Function::Abs)
     } else {
@@ -71,10 +70,10 @@ pub fn spring_law<'g>(
     let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
     let energy = match law {
         // Smooth even where the points coincide.
-        Law::Linear(k) if free.is_zero() => b.scope.resolve_scalar(k, cx)? * 0.5 * stretch.square,
-        Law::Linear(k) => b.scope.resolve_scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
-        Law::Energy(e) => b.scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?,
-        Law::Force(e) => energy_of(b, e, &context, cx)?,
+        SpringLaw::Linear(k) if free.is_zero() => scope.resolve_scalar(k, cx)? * 0.5 * stretch.square,
+        SpringLaw::Linear(k) => scope.resolve_scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
+        SpringLaw::Energy(e) => scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?,
+        SpringLaw::Force(e) => energy_of(scope, e, &context, cx)?,
     };
     Some(Forces::of_potentials([substitute_symbols(energy, &|s| (s == symbol).then_some(value))]))
 }
@@ -82,13 +81,13 @@ pub fn spring_law<'g>(
 /// Returns the energy of a force. A piecewise force with a condition on the stretch or the length has the
 /// sum of the energies of its pieces.
 fn energy_of<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     context: &Context<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
     let read_scalar = |e: &syntax::Expr, cx: &mut Diagnostics| {
-        b.scope.in_context(context.clone(), |scope| scope.resolve_scalar(e, cx))
+        scope.in_context(context.clone(), |scope| scope.resolve_scalar(e, cx))
     };
     let force = read_scalar(e, cx)?;
     if symbols_in(&[force]).iter().any(|s| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_))) {
@@ -115,9 +114,9 @@ fn energy_of<'g>(
         };
         if let Some((own, border, pieces)) = found {
             let symbol = Quantity::Stretch.symbol();
-            let x = b.scope.graph.symbol(symbol);
+            let x = scope.graph.symbol(symbol);
             let border = read_scalar(border, cx)? - (own - x);
-            let [below, above] = pieces.map(|piece| energy_of(b, piece, context, cx));
+            let [below, above] = pieces.map(|piece| energy_of(scope, piece, context, cx));
             let substitute_stretch =
                 |energy: Expr<'g>, x| substitute_symbols(energy, &|s| (s == symbol).then_some(x));
             let (below, above) = (below?, above?);
@@ -129,18 +128,18 @@ fn energy_of<'g>(
             );
         }
     }
-    energy_of_force(b, force, e, cx)
+    energy_of_force(scope, force, e, cx)
 }
 
 /// Returns the energy of a force that is a polynomial in the stretch, by integration of its Taylor
 /// series.
 fn energy_of_force<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     force: Expr<'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
-    let g = b.scope.graph;
+    let g = scope.graph;
     let symbol = Quantity::Stretch.symbol();
     let x = g.symbol(symbol);
     let mut d = Derivative::with_respect_to(symbol, g);
@@ -169,7 +168,7 @@ fn energy_of_force<'g>(
 
 /// Returns the length or the angle at which the force of a spring is zero.
 fn free_length<'g>(
-    b: &Builder<'_, 'g>,
+    scope: &Scope<'_, 'g>,
     action: &Action,
     angle: Option<bool>,
     cx: &mut Diagnostics,
@@ -177,7 +176,7 @@ fn free_length<'g>(
     let free_angle = action.get(Key::FreeAngle);
     let is_angle = free_angle.is_some();
     let Some(free) = action.get(Key::FreeLength).or(free_angle) else {
-        return Some(b.scope.graph.zero());
+        return Some(scope.graph.zero());
     };
     if let Some(angle) = angle.filter(|angle| *angle != is_angle) {
         let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
@@ -185,7 +184,7 @@ fn free_length<'g>(
             .add_help(format!("write `{key} = …`"));
         return None;
     }
-    if is_angle { b.scope.plane_angle(free, cx) } else { b.scope.resolve_scalar(free, cx) }
+    if is_angle { scope.plane_angle(free, cx) } else { scope.resolve_scalar(free, cx) }
 }
 
 /// Whether an expression contains a sign, a magnitude or an extreme of a subexpression that depends on the

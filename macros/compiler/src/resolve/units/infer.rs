@@ -8,7 +8,7 @@
 //! the unit that it needs.
 
 use super::unify::{Outcome, System};
-use super::value::{Anchor, Value};
+use super::value::{Anchor, UnitValue};
 use crate::language::dimension::{Dimension, PLAIN, Variable};
 use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
@@ -35,8 +35,8 @@ pub enum Reason<'a> {
 
 /// Origin of an equation between dimensions.
 #[derive(Clone, Copy, Debug)]
-pub struct Origin<'a> {
-    /// Reason for the equation between dimensions.
+pub struct EquationOrigin<'a> {
+    /// Reason for the equation.
     pub reason: Reason<'a>,
     /// Expression at which an error is reported: the whole operation, an argument, or a component.
     pub expression: &'a Expr,
@@ -47,9 +47,9 @@ pub struct Origin<'a> {
 /// Equation between dimensions that contradicts earlier ones.
 #[derive(Clone, Debug)]
 pub struct Mismatch<'a> {
-    /// Origin of the contradictory equation.
-    pub origin: Origin<'a>,
-    /// Found dimension: that of `origin.expression`, or of the second operand.
+    /// Origin of the equation.
+    pub origin: EquationOrigin<'a>,
+    /// Dimension of `origin.expression`, or of the second operand.
     pub found: Dimension,
     /// Expected dimension: that of the context, or of the first operand.
     pub expected: Dimension,
@@ -78,8 +78,8 @@ pub struct Inference<'a> {
     pub tables: BTreeMap<String, Vec<Variable>>,
     /// Local names of the current expression, such as `stretch`.
     pub locals: Vec<(&'static str, Dimension)>,
-    /// Origin of the equation that determined each unknown dimension.
-    pub origins: BTreeMap<Variable, Origin<'a>>,
+    /// Origin of the equation that determined each unknown.
+    pub origins: BTreeMap<Variable, EquationOrigin<'a>>,
     /// Notation of each unknown's unit where its name is the whole expression.
     pub hints: BTreeMap<Variable, String>,
     /// Magnitudes of the numbers in the mechanism's gravity, such as 9.81. A factor of this magnitude may
@@ -132,7 +132,12 @@ impl<'a> Inference<'a> {
     }
 
     /// Equates two dimensions; returns false if they contradict each other.
-    pub fn equate_dimensions(&mut self, found: &Dimension, expected: &Dimension, origin: Origin<'a>) -> bool {
+    pub fn equate_dimensions(
+        &mut self,
+        found: &Dimension,
+        expected: &Dimension,
+        origin: EquationOrigin<'a>,
+    ) -> bool {
         if self.limit_exceeded {
             return true;
         }
@@ -189,23 +194,27 @@ impl<'a> Inference<'a> {
         dimension: &Dimension,
         unit: &str,
         reason: Reason<'a>,
-    ) -> Value {
+    ) -> UnitValue {
         let value = match &e.kind {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => self.value_of_sum(e, Some(dimension)),
             _ => self.value_of_expression(e),
         };
-        let Value::Quantity { dimension: found, anchor } = value else { return value };
+        let UnitValue::Quantity { dimension: found, anchor } = value else { return value };
         // An expression of coordinates may have an implicit factor of one, with any unit.
         if anchor == Anchor::Motion && self.are_different(&found, dimension) {
-            return Value::Unknown;
+            return UnitValue::Unknown;
         }
-        if !self.equate_dimensions(&found, dimension, Origin { reason, expression: e, compared_with: None }) {
-            return Value::Unknown;
+        if !self.equate_dimensions(
+            &found,
+            dimension,
+            EquationOrigin { reason, expression: e, compared_with: None },
+        ) {
+            return UnitValue::Unknown;
         }
         if let (Some(v), false) = (self.single_name(e), unit.is_empty()) {
             self.hints.entry(v).or_insert_with(|| unit.to_string());
         }
-        Value::Quantity { dimension: found, anchor }
+        UnitValue::Quantity { dimension: found, anchor }
     }
 
     /// Returns the unknown of an expression that is a single name.

@@ -16,10 +16,10 @@ use crate::language::dimension::{self, Dimension, Variable};
 use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Units};
 use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
-use infer::{Inference, Meaning, Origin, Reason};
+use infer::{EquationOrigin, Inference, Meaning, Reason};
 use places::{DimensionedExpressions, Task};
 use std::collections::{BTreeMap, BTreeSet};
-use value::{Anchor, Value};
+use value::{Anchor, UnitValue};
 
 /// Coordinates that expressions can name; the flag is true for an angle.
 pub type Coordinates = [(String, Coordinate, bool)];
@@ -35,7 +35,7 @@ pub fn infer_units(
     let mut pinned = vec![None; d.parameters.len()];
     for (k, e) in &d.units {
         let Some((dimension, text)) = si::parse_unit(e, cx) else { continue };
-        let origin = Origin { reason: Reason::Unit, expression: e, compared_with: None };
+        let origin = EquationOrigin { reason: Reason::Unit, expression: e, compared_with: None };
         inference.equate_dimensions(&Dimension::unknown_dimension(*k), &dimension, origin);
         if let Some(slot) = pinned.get_mut(*k) {
             *slot = Some(text);
@@ -203,7 +203,7 @@ fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
     let value = inference.expect_dimension(task.e, &task.dimension, task.unit, Reason::Place);
     // A definition that is a number is plain, unless its uses require a unit.
-    if !matches!(value, Value::Quantity { .. }) {
+    if !matches!(value, UnitValue::Quantity { .. }) {
         inference.default_to_plain(task.dimension);
     }
     inference.locals.clear();

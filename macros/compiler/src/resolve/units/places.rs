@@ -1,7 +1,7 @@
 //! Expressions of a description, each with the expected dimension of its argument or field.
 
-use super::infer::{Inference, Meaning, Origin, Reason};
-use super::value::Value;
+use super::infer::{EquationOrigin, Inference, Meaning, Reason};
+use super::value::UnitValue;
 use crate::language::dimension::{
     ACCELERATION, Dimension, ENERGY, INERTIA, LENGTH, MASS, PLAIN, POWER, TIME,
 };
@@ -372,7 +372,7 @@ fn set_input_unit<'a>(
     let Some(Meaning::Moving(input, _)) = inference.names.get(&action.name.text).cloned() else { return };
     let (Target::On(on) | Target::Between(on, _)) = &action.on;
     let (at, product) = match direction.map(|e| (e, inference.value_of_expression(e))) {
-        Some((at, Value::Quantity { dimension, .. })) => {
+        Some((at, UnitValue::Quantity { dimension, .. })) => {
             inference.default_to_plain(dimension.clone());
             (at, input.dimension_of_product(&dimension))
         }
@@ -382,7 +382,7 @@ fn set_input_unit<'a>(
         inference.equate_dimensions(
             &product,
             force,
-            Origin { reason: Reason::Place, expression: at, compared_with: None },
+            EquationOrigin { reason: Reason::Place, expression: at, compared_with: None },
         );
     }
 }

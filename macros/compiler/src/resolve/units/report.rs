@@ -1,6 +1,6 @@
 //! Errors for contradictory units: one error per cause, with the other uses in notes.
 
-use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
+use super::infer::{EquationOrigin, Inference, Meaning, Mismatch, Reason};
 use super::owner::{location_of, solid_of};
 use super::si::describe_dimension;
 use crate::diag::{Diagnostic, Diagnostics};
@@ -95,7 +95,11 @@ fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
 }
 
 /// Collects the names in the expressions of an equation; the compared expressions are first.
-fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
+fn names_of<'a>(
+    origin: &EquationOrigin<'a>,
+    inference: &Inference<'_>,
+    found: &mut Vec<(Variable, &'a Expr)>,
+) {
     origin.compared_with.iter().for_each(|e| names_in(e, inference, found));
     if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.expression.kind, origin.reason) {
         let before = match &left.kind {
@@ -207,7 +211,7 @@ fn note_origin(
     here: &Expr,
     v: Variable,
     is: &str,
-    origin: Origin<'_>,
+    origin: EquationOrigin<'_>,
     inference: &Inference<'_>,
     diagnostic: &mut Diagnostic,
 ) {

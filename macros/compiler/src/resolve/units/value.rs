@@ -19,8 +19,8 @@ pub enum Anchor {
 
 /// Information about the unit of an expression.
 #[derive(Clone, Debug)]
-pub enum Value {
-    /// A number, which can have any unit.
+pub enum UnitValue {
+    /// Number, with any unit.
     Number(f64),
     /// Direction, with any unit by itself and none as a factor.
     Direction,
@@ -35,51 +35,51 @@ pub enum Value {
     Unknown,
 }
 
-impl Value {
+impl UnitValue {
     /// Returns a quantity whose unit follows from the motion.
-    pub fn quantity_of_dimension(dimension: Dimension) -> Value {
-        Value::Quantity { dimension, anchor: Anchor::Motion }
+    pub fn quantity_of_dimension(dimension: Dimension) -> UnitValue {
+        UnitValue::Quantity { dimension, anchor: Anchor::Motion }
     }
 
-    /// Returns the unit information of the negated expression.
-    pub fn negated_value(self) -> Value {
+    /// Returns the value of the negated expression.
+    pub fn negated_value(self) -> UnitValue {
         match self {
-            Value::Number(value) => Value::Number(-value),
+            UnitValue::Number(value) => UnitValue::Number(-value),
             other => other,
         }
     }
 
     /// Returns a power of the value; unknown if the exponent is unknown.
-    pub fn power_of_value(self, exponent: Option<Ratio>) -> Value {
+    pub fn power_of_value(self, exponent: Option<Ratio>) -> UnitValue {
         match self {
-            Value::Quantity { dimension, .. } if dimension.is_plain() => {
-                Value::quantity_of_dimension(dimension)
+            UnitValue::Quantity { dimension, .. } if dimension.is_plain() => {
+                UnitValue::quantity_of_dimension(dimension)
             }
-            Value::Quantity { dimension, anchor } => {
+            UnitValue::Quantity { dimension, anchor } => {
                 match exponent.and_then(|e| dimension.dimension_of_power(e)) {
-                    Some(dimension) => Value::Quantity { dimension, anchor },
-                    None => Value::Unknown,
+                    Some(dimension) => UnitValue::Quantity { dimension, anchor },
+                    None => UnitValue::Unknown,
                 }
             }
-            _ => Value::Unknown,
+            _ => UnitValue::Unknown,
         }
     }
 
     /// Returns the source of the unit; `Motion` for a value that is not a quantity.
     pub fn source_of_unit(&self) -> Anchor {
         match self {
-            Value::Quantity { anchor, .. } => *anchor,
+            UnitValue::Quantity { anchor, .. } => *anchor,
             _ => Anchor::Motion,
         }
     }
 
     /// Returns the more specific of two values with equal dimensions.
-    pub fn more_specific(self, other: Value) -> Value {
+    pub fn more_specific(self, other: UnitValue) -> UnitValue {
         match (&self, &other) {
-            (Value::Quantity { .. }, _) => self,
-            (_, Value::Quantity { .. }) => other,
-            (Value::Unknown, _) | (_, Value::Unknown) => Value::Unknown,
-            (Value::Number(_), _) => self,
+            (UnitValue::Quantity { .. }, _) => self,
+            (_, UnitValue::Quantity { .. }) => other,
+            (UnitValue::Unknown, _) | (_, UnitValue::Unknown) => UnitValue::Unknown,
+            (UnitValue::Number(_), _) => self,
             _ => other,
         }
     }
@@ -87,45 +87,47 @@ impl Value {
 
 /// Returns the product of factors, and whether a number among them may have a unit. Marked factors are
 /// divisors.
-pub fn product_of_values(factors: &[(bool, Value)]) -> (Value, bool) {
-    let has_factor_of_kind = |what: fn(&Value) -> bool| factors.iter().any(|(_, f)| what(f));
+pub fn product_of_values(factors: &[(bool, UnitValue)]) -> (UnitValue, bool) {
+    let has_factor_of_kind = |what: fn(&UnitValue) -> bool| factors.iter().any(|(_, f)| what(f));
     // Zero has any unit.
-    if factors.iter().any(|(below, f)| !below && matches!(f, Value::Number(0.0))) {
-        return (Value::Number(0.0), false);
+    if factors.iter().any(|(below, f)| !below && matches!(f, UnitValue::Number(0.0))) {
+        return (UnitValue::Number(0.0), false);
     }
-    if has_factor_of_kind(|f| matches!(f, Value::Unknown)) {
-        return (Value::Unknown, false);
+    if has_factor_of_kind(|f| matches!(f, UnitValue::Unknown)) {
+        return (UnitValue::Unknown, false);
     }
     let (is_number, is_direction) = (
-        has_factor_of_kind(|f| matches!(f, Value::Number(_))),
-        has_factor_of_kind(|f| matches!(f, Value::Direction)),
+        has_factor_of_kind(|f| matches!(f, UnitValue::Number(_))),
+        has_factor_of_kind(|f| matches!(f, UnitValue::Direction)),
     );
     let quantities: Vec<_> = factors
         .iter()
         .filter_map(|(below, f)| match f {
-            Value::Quantity { dimension, anchor } => Some((*below, dimension, *anchor)),
+            UnitValue::Quantity { dimension, anchor } => Some((*below, dimension, *anchor)),
             _ => None,
         })
         .collect();
     let Some(anchor) = quantities.iter().map(|(.., anchor)| *anchor).max() else {
         return match (is_number, is_direction) {
-            (true, false) => (Value::Number(product_of_numbers(factors)), false),
-            (true, true) => (Value::Number(f64::NAN), false),
-            _ => (Value::Direction, false),
+            (true, false) => (UnitValue::Number(product_of_numbers(factors)), false),
+            (true, true) => (UnitValue::Number(f64::NAN), false),
+            _ => (UnitValue::Direction, false),
         };
     };
     let product = quantities.iter().try_fold(PLAIN, |product, (below, dimension, _)| {
         product.times_power(dimension, Ratio::from_integer(if *below { -1 } else { 1 }))
     });
     match product {
-        Some(dimension) => (Value::Quantity { dimension, anchor }, is_number && anchor != Anchor::Parameter),
-        None => (Value::Unknown, false),
+        Some(dimension) => {
+            (UnitValue::Quantity { dimension, anchor }, is_number && anchor != Anchor::Parameter)
+        }
+        None => (UnitValue::Unknown, false),
     }
 }
 
 /// Returns the product of numbers; NaN if another factor is present.
-fn product_of_numbers(factors: &[(bool, Value)]) -> f64 {
-    let number_of_factor = |f: &Value| if let Value::Number(value) = f { *value } else { f64::NAN };
+fn product_of_numbers(factors: &[(bool, UnitValue)]) -> f64 {
+    let number_of_factor = |f: &UnitValue| if let UnitValue::Number(value) = f { *value } else { f64::NAN };
     factors
         .iter()
         .fold(1.0, |p, (below, f)| if *below { p / number_of_factor(f) } else { p * number_of_factor(f) })

@@ -1,8 +1,8 @@
 //! Traversal of expressions for the inference of units: values of subexpressions, and equations between their
 //! dimensions.
 
-use super::infer::{Inference, Meaning, Origin, Reason};
-use super::value::{Anchor, Value, product_of_values};
+use super::infer::{EquationOrigin, Inference, Meaning, Reason};
+use super::value::{Anchor, UnitValue, product_of_values};
 use crate::expr::Function;
 use crate::language::dimension::{Dimension, INERTIA, LENGTH, PLAIN, RATE, TIME, Variable};
 use crate::language::ratio::Ratio;
@@ -11,9 +11,9 @@ use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
     /// Returns the value of an expression for the inference of units.
-    pub fn value_of_expression(&mut self, e: &'a Expr) -> Value {
+    pub fn value_of_expression(&mut self, e: &'a Expr) -> UnitValue {
         match &e.kind {
-            ExprKind::Number(n) => Value::Number(*n),
+            ExprKind::Number(n) => UnitValue::Number(*n),
             ExprKind::Name(name) => self.value_of_name(name),
             ExprKind::Field(inner, member) => self.value_of_member(inner, member),
             ExprKind::Neg(inner) => self.value_of_expression(inner).negated_value(),
@@ -21,70 +21,75 @@ impl<'a> Inference<'a> {
             ExprKind::Binary(..) => self.value_of_sum(e, None),
             ExprKind::Call(function, arguments) => self.value_of_call(function, arguments),
             ExprKind::Array(items) => self.common_value(items, Reason::Components),
-            ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => Value::Unknown,
+            ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => UnitValue::Unknown,
         }
     }
 
-    fn value_of_name(&self, name: &str) -> Value {
+    fn value_of_name(&self, name: &str) -> UnitValue {
         if let Some((_, dimension)) = self.locals.iter().find(|(local, _)| *local == name) {
-            return Value::quantity_of_dimension(dimension.clone());
+            return UnitValue::quantity_of_dimension(dimension.clone());
         }
         match (Builtin::of_name(name), self.names.get(name)) {
             (_, Some(Meaning::Named(v, anchor))) => {
-                Value::Quantity { dimension: Dimension::unknown_dimension(*v), anchor: *anchor }
+                UnitValue::Quantity { dimension: Dimension::unknown_dimension(*v), anchor: *anchor }
             }
-            (Some(Builtin::Axis(_)), _) => Value::Direction,
-            (Some(Builtin::Pi), _) => Value::Number(std::f64::consts::PI),
-            (Some(Builtin::Time), _) => Value::quantity_of_dimension(TIME),
+            (Some(Builtin::Axis(_)), _) => UnitValue::Direction,
+            (Some(Builtin::Pi), _) => UnitValue::Number(std::f64::consts::PI),
+            (Some(Builtin::Time), _) => UnitValue::quantity_of_dimension(TIME),
             (_, Some(Meaning::Moving(dimension, anchor))) => {
-                Value::Quantity { dimension: dimension.clone(), anchor: *anchor }
+                UnitValue::Quantity { dimension: dimension.clone(), anchor: *anchor }
             }
-            _ => Value::Unknown,
+            _ => UnitValue::Unknown,
         }
     }
 
     /// Returns the value of a coordinate of a joint, or of an axis of a frame.
-    fn value_of_member(&self, inner: &Expr, member: &Name) -> Value {
-        let ExprKind::Name(joint) = &inner.kind else { return Value::Unknown };
+    fn value_of_member(&self, inner: &Expr, member: &Name) -> UnitValue {
+        let ExprKind::Name(joint) = &inner.kind else { return UnitValue::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
-            Some(Meaning::Moving(dimension, _)) => Value::quantity_of_dimension(dimension.clone()),
-            _ => Value::Direction,
+            Some(Meaning::Moving(dimension, _)) => UnitValue::quantity_of_dimension(dimension.clone()),
+            _ => UnitValue::Direction,
         }
     }
 
     /// Equates the dimensions of two values; returns the common value.
-    fn equate_values(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
-        let (Value::Quantity { dimension, anchor }, Value::Quantity { dimension: other, anchor: second }) =
-            (&a, &b)
+    fn equate_values(&mut self, a: UnitValue, b: UnitValue, origin: EquationOrigin<'a>) -> UnitValue {
+        let (
+            UnitValue::Quantity { dimension, anchor },
+            UnitValue::Quantity { dimension: other, anchor: second },
+        ) = (&a, &b)
         else {
             return a.more_specific(b);
         };
         match self.equate_dimensions(other, dimension, origin) {
-            true => Value::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
-            false => Value::Unknown,
+            true => UnitValue::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
+            false => UnitValue::Unknown,
         }
     }
 
-    /// Returns the common unit information of several expressions that must have equal dimensions.
-    fn common_value(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
+    /// Returns the common value of several expressions.
+    fn common_value(&mut self, items: &'a [Expr], reason: Reason<'a>) -> UnitValue {
         let mut first: Option<&Expr> = None;
-        let mut common = Value::Number(0.0);
+        let mut common = UnitValue::Number(0.0);
         for item in items {
             let value = self.value_of_expression(item);
-            let is_quantity = matches!(value, Value::Quantity { .. });
-            common =
-                self.equate_values(common, value, Origin { reason, expression: item, compared_with: first });
+            let is_quantity = matches!(value, UnitValue::Quantity { .. });
+            common = self.equate_values(
+                common,
+                value,
+                EquationOrigin { reason, expression: item, compared_with: first },
+            );
             first = first.or(is_quantity.then_some(item));
         }
         match common {
-            Value::Number(_) => Value::Number(f64::NAN),
+            UnitValue::Number(_) => UnitValue::Number(f64::NAN),
             other => other,
         }
     }
 
     /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
     /// unknown dimension get the expected dimension, so that an error is reported at the other term.
-    pub fn value_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
+    pub fn value_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> UnitValue {
         let mut written = Vec::new();
         let mut current = e;
         while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &current.kind {
@@ -99,31 +104,36 @@ impl<'a> Inference<'a> {
             .collect();
         let is_anchored = terms.iter().any(|(.., value)| value.source_of_unit() > Anchor::Motion);
         for (_, term, value) in &terms {
-            if let (Value::Quantity { dimension, .. }, Some(expected), true) = (value, expected, is_anchored)
+            if let (UnitValue::Quantity { dimension, .. }, Some(expected), true) =
+                (value, expected, is_anchored)
                 && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
             {
                 self.equate_dimensions(
                     dimension,
                     expected,
-                    Origin { reason: Reason::Place, expression: term, compared_with: None },
+                    EquationOrigin { reason: Reason::Place, expression: term, compared_with: None },
                 );
             }
         }
         let mut terms = terms.into_iter();
-        let first = terms.next().map_or(Value::Unknown, |(.., value)| value);
+        let first = terms.next().map_or(UnitValue::Unknown, |(.., value)| value);
         let total = terms.fold(first, |total, (sum, term, value)| {
             let (reason, current) = sum.unwrap_or((Reason::Place, term));
-            self.equate_values(total, value, Origin { reason, expression: current, compared_with: None })
+            self.equate_values(
+                total,
+                value,
+                EquationOrigin { reason, expression: current, compared_with: None },
+            )
         });
         match total {
-            Value::Number(_) => Value::Number(f64::NAN),
+            UnitValue::Number(_) => UnitValue::Number(f64::NAN),
             other => other,
         }
     }
 
     /// Returns the value of a product or quotient of any number of factors. Nested products in parentheses
     /// are flattened: `a / (2 * b)` is `a / 2 / b`.
-    fn value_of_product(&mut self, e: &'a Expr) -> Value {
+    fn value_of_product(&mut self, e: &'a Expr) -> UnitValue {
         let mut factors = Vec::new();
         let mut waiting = vec![(false, e)];
         while let Some((below, factor)) = waiting.pop() {
@@ -137,37 +147,37 @@ impl<'a> Inference<'a> {
         }
         let value = self.multiply(&factors);
         // `sin(angle) * x` is a metre along `x` where a length is expected, as `x` is.
-        let has_direction = factors.iter().any(|(_, factor)| matches!(factor, Value::Direction));
+        let has_direction = factors.iter().any(|(_, factor)| matches!(factor, UnitValue::Direction));
         match &value {
-            Value::Quantity { dimension, anchor: Anchor::Motion }
+            UnitValue::Quantity { dimension, anchor: Anchor::Motion }
                 if has_direction && self.system.resolve(dimension).is_some_and(|d| d.is_plain()) =>
             {
-                Value::Direction
+                UnitValue::Direction
             }
             _ => value,
         }
     }
 
-    /// Returns the unit information of a product of factors; the flag marks divisors.
-    fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
+    /// Returns the product of factors; the flag marks divisors.
+    fn multiply(&mut self, factors: &[(bool, UnitValue)]) -> UnitValue {
         let (value, free) = product_of_values(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
-            Value::Number(g) => self.gravity.contains(&g.abs()),
+            UnitValue::Number(g) => self.gravity.contains(&g.abs()),
             _ => false,
         });
-        let (Value::Quantity { dimension, anchor }, true) = (&value, free || is_gravity) else {
+        let (UnitValue::Quantity { dimension, anchor }, true) = (&value, free || is_gravity) else {
             return value;
         };
         let number = Dimension::unknown_dimension(self.system.add_variable());
         self.default_to_plain(number.clone());
         match dimension.dimension_of_product(&number) {
-            Some(dimension) => Value::Quantity { dimension, anchor: *anchor },
-            None => Value::Unknown,
+            Some(dimension) => UnitValue::Quantity { dimension, anchor: *anchor },
+            None => UnitValue::Unknown,
         }
     }
 
     /// Returns the value of a call: of a table, otherwise of a function of the language.
-    fn value_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> Value {
+    fn value_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> UnitValue {
         if let Some(unknown) = self.tables.get(&callee.text).cloned() {
             return self.value_of_table(&unknown, arguments);
         }
@@ -181,62 +191,62 @@ impl<'a> Inference<'a> {
                 self.common_value(compared, Reason::Compared(&callee.text));
                 self.common_value(pieces, Reason::Pieces)
             }
-            _ => Value::Unknown,
+            _ => UnitValue::Unknown,
         }
     }
 
-    /// Returns the unit information of a function's value.
-    fn value_of_function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> Value {
+    /// Returns the value of a function of the language.
+    fn value_of_function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> UnitValue {
         let [first, others @ ..] = arguments else {
             return match rule {
-                UnitRule::Of(dimension) => Value::quantity_of_dimension(dimension.clone()),
-                _ => Value::Unknown,
+                UnitRule::Of(dimension) => UnitValue::quantity_of_dimension(dimension.clone()),
+                _ => UnitValue::Unknown,
             };
         };
         match rule {
-            UnitRule::Unknown => Value::Unknown,
+            UnitRule::Unknown => UnitValue::Unknown,
             UnitRule::Of(dimension) => {
                 self.infer_unused_expressions(arguments);
-                Value::quantity_of_dimension(dimension.clone())
+                UnitValue::quantity_of_dimension(dimension.clone())
             }
             UnitRule::Direction => {
                 self.infer_unused_expressions(arguments);
-                Value::Direction
+                UnitValue::Direction
             }
             UnitRule::Alike => self.common_value(arguments, Reason::Compared(name)),
             UnitRule::Quotient => match self.common_value(arguments, Reason::Compared(name)) {
-                Value::Quantity { .. } => Value::quantity_of_dimension(PLAIN),
-                _ => Value::Number(f64::NAN),
+                UnitValue::Quantity { .. } => UnitValue::quantity_of_dimension(PLAIN),
+                _ => UnitValue::Number(f64::NAN),
             },
             UnitRule::LikeFirst => {
                 self.infer_unused_expressions(others);
                 self.value_of_expression(first)
             }
             UnitRule::LikeLast => {
-                let values: Vec<Value> = arguments.iter().map(|a| self.value_of_expression(a)).collect();
-                values.into_iter().last().unwrap_or(Value::Unknown)
+                let values: Vec<UnitValue> = arguments.iter().map(|a| self.value_of_expression(a)).collect();
+                values.into_iter().last().unwrap_or(UnitValue::Unknown)
             }
             UnitRule::Product { scalar } => {
                 let factors: Vec<_> =
                     arguments.iter().map(|a| (false, self.value_of_expression(a))).collect();
                 match self.multiply(&factors) {
-                    Value::Direction if *scalar => Value::quantity_of_dimension(PLAIN),
+                    UnitValue::Direction if *scalar => UnitValue::quantity_of_dimension(PLAIN),
                     product => product,
                 }
             }
             UnitRule::Magnitude => match self.value_of_expression(first) {
-                Value::Direction => Value::quantity_of_dimension(PLAIN),
+                UnitValue::Direction => UnitValue::quantity_of_dimension(PLAIN),
                 other => other,
             },
             UnitRule::Power => match others {
                 [exponent] => self.value_of_power(first, exponent),
-                _ => Value::Unknown,
+                _ => UnitValue::Unknown,
             },
             UnitRule::TimeDerivative => match &first.kind {
                 // The rate of a vector in a frame; the frame's name has no dimension.
                 ExprKind::Binary(BinaryOp::Div, vector, frame, _) if self.is_frame(frame) => {
                     match self.value_of_expression(vector) {
-                        Value::Direction => Value::quantity_of_dimension(RATE),
+                        UnitValue::Direction => UnitValue::quantity_of_dimension(RATE),
                         other => quotient_by_dimension(other, &TIME),
                     }
                 }
@@ -247,42 +257,42 @@ impl<'a> Inference<'a> {
             }
             UnitRule::Gradient => match &first.kind {
                 ExprKind::Binary(_, field, ..) => match self.value_of_expression(field) {
-                    value @ Value::Quantity { .. } => quotient_by_dimension(value, &LENGTH),
-                    _ => Value::Unknown,
+                    value @ UnitValue::Quantity { .. } => quotient_by_dimension(value, &LENGTH),
+                    _ => UnitValue::Unknown,
                 },
-                _ => Value::Unknown,
+                _ => UnitValue::Unknown,
             },
             UnitRule::Places(dimension) => {
                 self.infer_unused_expressions(others);
                 self.infer_operand_points(first);
-                Value::quantity_of_dimension(dimension.clone())
+                UnitValue::quantity_of_dimension(dimension.clone())
             }
             UnitRule::Moment => {
                 self.infer_operand_points(first);
-                let directions: Vec<Value> = others.iter().map(|a| self.value_of_expression(a)).collect();
-                match directions.iter().all(|direction| matches!(direction, Value::Direction)) {
-                    true => Value::quantity_of_dimension(INERTIA),
+                let directions: Vec<UnitValue> = others.iter().map(|a| self.value_of_expression(a)).collect();
+                match directions.iter().all(|direction| matches!(direction, UnitValue::Direction)) {
+                    true => UnitValue::quantity_of_dimension(INERTIA),
                     // Vectors with a unit would contribute it.
-                    false => Value::Unknown,
+                    false => UnitValue::Unknown,
                 }
             }
             UnitRule::Cable => {
                 self.infer_operand_points(first);
                 let Some(ExprKind::Method(base, _, arguments)) = others.first().map(|e| &e.kind) else {
-                    return Value::Unknown;
+                    return UnitValue::Unknown;
                 };
                 self.infer_point(base);
                 let radius = arguments
                     .first()
                     .map(|radius| self.expect_dimension(radius, &LENGTH, "m", Reason::Argument));
-                Value::Quantity {
+                UnitValue::Quantity {
                     dimension: LENGTH,
                     anchor: radius.map_or(Anchor::Motion, |r| r.source_of_unit()),
                 }
             }
             UnitRule::OfHeight(dimension) => {
                 self.expect_dimension(first, &LENGTH, "m", Reason::Argument);
-                dimension.clone().map_or(Value::Unknown, Value::quantity_of_dimension)
+                dimension.clone().map_or(UnitValue::Unknown, UnitValue::quantity_of_dimension)
             }
         }
     }
@@ -303,26 +313,26 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a table. Its variables have the same units in all calls.
-    fn value_of_table(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> Value {
-        let Some((value, variables)) = unknown.split_last() else { return Value::Unknown };
+    fn value_of_table(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> UnitValue {
+        let Some((value, variables)) = unknown.split_last() else { return UnitValue::Unknown };
         for (argument, variable) in arguments.iter().zip(variables) {
             self.expect_dimension(argument, &Dimension::unknown_dimension(*variable), "", Reason::Argument);
         }
-        Value::Quantity { dimension: Dimension::unknown_dimension(*value), anchor: Anchor::Parameter }
+        UnitValue::Quantity { dimension: Dimension::unknown_dimension(*value), anchor: Anchor::Parameter }
     }
 
     /// Returns the value of an elementary function: magnitudes and roots of any quantity, all others of plain
     /// numbers.
-    fn value_of_elementary(&mut self, f: Function, a: &'a Expr) -> Value {
+    fn value_of_elementary(&mut self, f: Function, a: &'a Expr) -> UnitValue {
         match f {
             Function::Abs => return self.value_of_expression(a),
             Function::Signum => {
                 self.value_of_expression(a);
-                return Value::quantity_of_dimension(PLAIN);
+                return UnitValue::quantity_of_dimension(PLAIN);
             }
             Function::Sqrt => {
                 return match self.value_of_expression(a) {
-                    Value::Number(value) => Value::Number(value.sqrt()),
+                    UnitValue::Number(value) => UnitValue::Number(value.sqrt()),
                     other => other.power_of_value(Ratio::new(1, 2)),
                 };
             }
@@ -330,27 +340,27 @@ impl<'a> Inference<'a> {
         }
         let unit = if matches!(f, Function::Sin | Function::Cos | Function::Tan) { "rad" } else { "1" };
         match self.expect_dimension(a, &PLAIN, unit, Reason::Argument) {
-            Value::Number(value) => Value::Number(f.evaluate_at(value)),
-            Value::Direction => Value::Unknown,
-            _ => Value::quantity_of_dimension(PLAIN),
+            UnitValue::Number(value) => UnitValue::Number(f.evaluate_at(value)),
+            UnitValue::Direction => UnitValue::Unknown,
+            _ => UnitValue::quantity_of_dimension(PLAIN),
         }
     }
 
     /// Returns the value of a power. If the exponent is not a number, the dimension is unknown unless the
     /// base is plain.
-    fn value_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
+    fn value_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> UnitValue {
         let base = self.value_of_expression(a);
         let exponent = self.expect_dimension(n, &PLAIN, "1", Reason::Argument);
         match (base, exponent) {
-            (Value::Number(value), Value::Number(n)) => Value::Number(libm::pow(value, n)),
-            (Value::Number(_), _) => Value::quantity_of_dimension(PLAIN),
-            (base, Value::Number(n)) => base.power_of_value(Ratio::from_value(n)),
-            (Value::Quantity { dimension, anchor }, _) => {
+            (UnitValue::Number(value), UnitValue::Number(n)) => UnitValue::Number(libm::pow(value, n)),
+            (UnitValue::Number(_), _) => UnitValue::quantity_of_dimension(PLAIN),
+            (base, UnitValue::Number(n)) => base.power_of_value(Ratio::from_value(n)),
+            (UnitValue::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::unknown_dimension(self.system.add_variable());
                 self.plain_defaults.push((dimension, Some(power.clone())));
-                Value::Quantity { dimension: power, anchor }
+                UnitValue::Quantity { dimension: power, anchor }
             }
-            _ => Value::Unknown,
+            _ => UnitValue::Unknown,
         }
     }
 
@@ -376,11 +386,11 @@ impl<'a> Inference<'a> {
 }
 
 /// Returns a quantity divided by another dimension; other values are unchanged.
-fn quotient_by_dimension(value: Value, divisor: &Dimension) -> Value {
+fn quotient_by_dimension(value: UnitValue, divisor: &Dimension) -> UnitValue {
     match value {
-        Value::Quantity { dimension, anchor } => match dimension.dimension_of_quotient(divisor) {
-            Some(dimension) => Value::Quantity { dimension, anchor },
-            None => Value::Unknown,
+        UnitValue::Quantity { dimension, anchor } => match dimension.dimension_of_quotient(divisor) {
+            Some(dimension) => UnitValue::Quantity { dimension, anchor },
+            None => UnitValue::Unknown,
         },
         other => other,
     }

@@ -1,0 +1,146 @@
+//! Points where a pair of surfaces may touch.
+
+use super::cylinders::{Drum, capsule_on_pipe};
+use super::geometry::{FLAT_RIM, PointContact, clamp, nearest, rim};
+use super::hull::sphere_on_hull;
+use super::pair::{SurfacePair, sphere_contact, support_point};
+use super::surface::SurfaceForm;
+use super::terrain::Terrain;
+use crate::expr::{Expr, Vec3};
+use crate::kinematics::perpendicular_directions;
+
+impl<'g> SurfacePair<'_, 'g> {
+    /// Returns the points where a pair may touch.
+    pub(super) fn candidate_contacts(&self) -> Vec<PointContact<'g>> {
+        let g = self.graph();
+        let rotate_a = |v| self.first_direction(v).value;
+        let rotate_b = |v| self.second_direction(v).value;
+        let c = self.center.value - self.base.value;
+        if let SurfaceForm::Terrain(terrain) = &self.b.form {
+            return self.terrain_contacts(terrain, c, &rotate_b);
+        }
+        if let SurfaceForm::Cuboid(lengths) = &self.b.form {
+            return self.box_contacts(lengths, c);
+        }
+        if let (SurfaceForm::Sphere(radius), SurfaceForm::Hull(hull)) = (&self.a.form, &self.b.form) {
+            let axes = std::array::from_fn(|k| rotate_b(Vec3::coordinate_axis(g, k)));
+            let contact = hull.shape.as_ref().and_then(|hull| sphere_on_hull(*radius, hull, c, &axes));
+            return contact.into_iter().collect();
+        }
+        let SurfaceForm::Plane(n) = &self.b.form else {
+            return self.curved_contacts(c, &rotate_b);
+        };
+        let [(first, e1), (second, e2)] = perpendicular_directions(*n).map(|(word, e)| (word, rotate_b(e)));
+        let normal = rotate_b(*n);
+        let touch = |point: Vec3<'g>| PointContact {
+            gap: normal.dot(c + point),
+            point,
+            axes: [("normal", normal), (first, e1), (second, e2)],
+            conditions: Vec::new(),
+        };
+        let half = g.num(0.5);
+        match &self.a.form {
+            SurfaceForm::Point => vec![touch(Vec3::zero(g))],
+            SurfaceForm::Cuboid(lengths) => corners(lengths).map(|corner| touch(rotate_a(corner))).into(),
+            SurfaceForm::Hull(hull) => hull.vertices.iter().map(|p| touch(rotate_a(*p))).collect(),
+            SurfaceForm::Drum(radius, length, axis) => {
+                let rim = rim(*axis, normal, &rotate_a);
+                let ends = [-half, half].map(|side| rotate_a(*axis * (*length * side)));
+                let sides =
+                    ends.into_iter().flat_map(|end| rim.map(|direction| touch(end + direction * *radius)));
+                sides.collect()
+            }
+            SurfaceForm::Capsule(radius, length, axis) => {
+                [-half, half].map(|side| touch(rotate_a(*axis * (*length * side)) - normal * *radius)).into()
+            }
+            SurfaceForm::Cone(..) => Vec::new(),
+            form => {
+                support_point(form, normal, FLAT_RIM, &rotate_a).map(|far| touch(-far)).into_iter().collect()
+            }
+        }
+    }
+
+    /// Returns the contacts of a sphere, a point, the ends of a capsule, or the corners of a box or a hull
+    /// with a terrain.
+    fn terrain_contacts(
+        &self,
+        terrain: &Terrain<'g>,
+        c: Vec3<'g>,
+        rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    ) -> Vec<PointContact<'g>> {
+        let g = self.graph();
+        let rotate_a = |v| self.first_direction(v).value;
+        let (radius, places) = match &self.a.form {
+            SurfaceForm::Point => (g.zero(), vec![Vec3::zero(g)]),
+            SurfaceForm::Sphere(radius) => (*radius, vec![Vec3::zero(g)]),
+            SurfaceForm::Cuboid(lengths) => (g.zero(), corners(lengths).map(rotate_a).into()),
+            SurfaceForm::Hull(hull) => (g.zero(), hull.vertices.iter().map(|p| rotate_a(*p)).collect()),
+            SurfaceForm::Capsule(radius, length, axis) => {
+                (*radius, [-0.5, 0.5].map(|side| rotate_a(*axis * (*length * side))).into())
+            }
+            _ => return Vec::new(),
+        };
+        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate_b(Vec3::coordinate_axis(g, k)));
+        let touches = places.into_iter().map(|place| {
+            let touch = terrain.contact(radius, Vec3(axes.map(|axis| axis.dot(c + place))), rotate_b);
+            PointContact { point: touch.point + place, ..touch }
+        });
+        touches.collect()
+    }
+
+    /// Returns the contacts of a sphere, a point or a capsule with a curved surface. Two capsules touch where
+    /// their axes are closest, and at the spheres at their ends, which carry parallel capsules.
+    fn curved_contacts(&self, c: Vec3<'g>, rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> Vec<PointContact<'g>> {
+        let g = self.graph();
+        let half = g.num(0.5);
+        let (radius, own) = match &self.a.form {
+            SurfaceForm::Point => (g.zero(), None),
+            SurfaceForm::Sphere(radius) => (*radius, None),
+            SurfaceForm::Capsule(radius, length, axis) => {
+                (*radius, Some((self.first_direction(*axis).value, *length * half)))
+            }
+            _ => return Vec::new(),
+        };
+        let contact = match &self.b.form {
+            SurfaceForm::Capsule(other, length, axis) => {
+                let (axis, reach) = (rotate_b(*axis), *length * half);
+                let sphere = SurfaceForm::Sphere(*other);
+                let Some((own, own_reach)) = own else {
+                    let along = clamp(axis.dot(c), reach);
+                    return sphere_contact(radius, &sphere, c - axis * along, rotate_b).into_iter().collect();
+                };
+                let own_ends =
+                    [-own_reach, own_reach].map(|near| (near, clamp(axis.dot(c + own * near), reach)));
+                let other_ends = [-reach, reach].map(|far| (clamp(own.dot(axis * far - c), own_reach), far));
+                let places = [nearest(c, (own, own_reach), (axis, reach))].into_iter();
+                let touches = places.chain(own_ends).chain(other_ends).filter_map(|(near, far)| {
+                    let touch = sphere_contact(radius, &sphere, c + own * near - axis * far, rotate_b)?;
+                    Some(PointContact { point: touch.point + own * near, ..touch })
+                });
+                return touches.collect();
+            }
+            SurfaceForm::Drum(wide, length, axis) => {
+                let drum = Drum { radius: *wide, half: *length * half, axis: rotate_b(*axis) };
+                return match own {
+                    Some(own) => drum.capsule_contacts(radius, own, c),
+                    None => vec![drum.sphere_contact(radius, c)],
+                };
+            }
+            SurfaceForm::Cylinder(_, axis) if own.is_some() => {
+                let axis = rotate_b(*axis);
+                let contacts = own.map(|own| capsule_on_pipe(radius, own, &self.b.form, axis, c, rotate_b));
+                return contacts.unwrap_or_default();
+            }
+            form => sphere_contact(radius, form, c, rotate_b),
+        };
+        contact.into_iter().collect()
+    }
+}
+
+/// Returns the corners of a box with these edge lengths, relative to its centre.
+fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
+    std::array::from_fn(|k| {
+        let side = |axis: usize| if k >> axis & 1 == 0 { -0.5 } else { 0.5 };
+        Vec3(std::array::from_fn(|axis| lengths[axis] * side(axis)))
+    })
+}
