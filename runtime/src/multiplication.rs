@@ -3,6 +3,7 @@
 
 mod column;
 pub(crate) use column::{part, write_entries};
+mod elimination;
 mod inverse;
 mod kernels;
 #[cfg(test)]

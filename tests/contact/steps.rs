@@ -286,7 +286,9 @@ fn contact_step_jacobian_of_stacked_bodies() {
     (q[2], q[7], q[9]) = (0.05, 0.03, 0.2);
     // Displacements and velocities that open or close a contact.
     let closed = [2, 3, 4, 8, 14, 15, 16, 20];
-    for (method, push) in stepping_methods(0.01).into_iter().flat_map(|method| [(method, 2.0), (method, 20.0)]) {
+    for (method, push) in
+        stepping_methods(0.01).into_iter().flat_map(|method| [(method, 2.0), (method, 20.0)])
+    {
         check_columns(&m, &method, (&q, &v, &[push].into()), (1e-6, &closed));
     }
 }

@@ -2,7 +2,6 @@
 //! for a large mechanism, straight-line code of these products would exceed the processor's instruction fetch
 //! rate.
 
-use super::column::Column;
 use super::{IndexRange, Run, Tiling, is_long};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
@@ -187,51 +186,6 @@ fn transposed_rows<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N
 fn set_entry<T, const N: usize>(row: &mut [T; N], k: usize, x: T) {
     if let Some(place) = row.get_mut(k) {
         *place = x;
-    }
-}
-
-/// Inverts in place the symmetric positive definite matrix in the leading columns, by Gauss–Jordan
-/// elimination without interchanges (Golub and Van Loan 2013, ch. 3.2). Rows are divided by their pivots at
-/// the end, so that all rows are treated equally during the elimination.
-#[inline(always)]
-pub(super) fn eliminate_leading_columns<
-    A: Arithmetic,
-    T: Real,
-    const E: usize,
-    const F: usize,
-    const N: usize,
-    const K: usize,
->(
-    columns: &mut [[T; N]; N],
-) {
-    let columns = columns.split_at_mut(K.min(N)).0;
-    // A one among zeros: reading from an earlier index yields a unit vector of a later row.
-    let mut one = [[T::zero(); N]; 2];
-    set_entry(&mut one[1], 0, T::one());
-    let mut divisors = [T::zero(); N];
-    for k in 0..columns.len() {
-        let Some(unit) = one.as_flattened().get(N - k..) else { return };
-        let pivot = columns[k];
-        let by = T::one() / pivot[k];
-        divisors[k] = by;
-        let unit = Column::<A, T, E, F>::read(unit);
-        let mut taken = Column::read(&pivot);
-        taken.multiply(&unit.complement());
-        taken.multiply(&Column::all(-by));
-        for column in columns.iter_mut() {
-            let factor = column[k];
-            let mut sum = Column::read(column);
-            sum.add_multiple::<false>(factor, &taken);
-            sum.write(column);
-        }
-        taken.add_multiple::<false>(T::one(), &unit);
-        taken.write(&mut columns[k]);
-    }
-    let divisors = Column::<A, T, E, F>::read(&divisors);
-    for column in columns {
-        let mut sum = Column::read(column);
-        sum.multiply(&divisors);
-        sum.write(column);
     }
 }
 

@@ -1,8 +1,9 @@
 //! Tiles of a matrix: numbers of rows that are computed together, and the registers that hold them.
 
 use super::column::Columns;
+use super::elimination::eliminate_leading_columns;
 use super::kernels::{add_all_multiples, add_products, multiply};
-use super::{IndexRange, Run, inverse};
+use super::{IndexRange, Run};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 use nalgebra::SMatrix;
@@ -98,7 +99,7 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
 
     #[inline(always)]
     fn invert_leading_block<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
-        inverse::eliminate_leading_columns::<A, T, E, F, N, K>(columns);
+        eliminate_leading_columns::<A, T, E, F, N, K>(columns);
     }
 }
 
