@@ -1,8 +1,12 @@
 //! Lookup tables: functions of one to three variables, interpolated between values on a grid.
 
+mod interpolation;
+
 use crate::Real;
 use crate::private::constant;
 use core::fmt;
+use core::ops::Deref;
+use interpolation::{AxisPosition, Shape, Weights};
 
 /// Function of `N` variables, one to three, interpolated between values on a grid. A table is a parameter of
 /// a mechanism.
@@ -15,9 +19,10 @@ use core::fmt;
 /// slopes. Beyond the grid it has the constant value of the edge, or is
 /// [`extrapolated`](Table::extrapolated).
 ///
-/// A table borrows its grid and values for `'static`, so that a mechanism with tables is `Copy` and allocates
-/// no memory. They are constants, or slices from `Vec::leak` if they are read at run time. They are `f64` for
-/// every scalar type of the mechanism.
+/// A compiled mechanism has tables that borrow their grid and values for `'static`, so that the mechanism is
+/// `Copy` and allocates no memory. They are constants, or slices from `Vec::leak` if they are read at run
+/// time. Tables of loaded mechanisms own their values, as `Vec<f64>` or `Arc<[f64]>`: see
+/// [`from_storage`](Table::from_storage). Values are `f64` for every scalar type of the mechanism.
 ///
 /// ```
 /// use linkwork::{Table, TableError};
@@ -49,9 +54,9 @@ use core::fmt;
 /// assert!(LIFT.value([0.0]) < 0.0_f64);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Table<const N: usize> {
-    axes: [&'static [f64]; N],
-    values: &'static [f64],
+pub struct Table<const N: usize, V = &'static [f64]> {
+    axes: [V; N],
+    values: V,
     smooth: bool,
     extrapolated: bool,
 }
@@ -125,7 +130,7 @@ impl fmt::Display for TableError {
 
 impl core::error::Error for TableError {}
 
-impl<const N: usize> Table<N> {
+impl<'a, const N: usize> Table<N, &'a [f64]> {
     /// Returns a table that is linear between its grid points and constant beyond the grid. Values are
     /// ordered like the grid points, with the last axis varying fastest.
     ///
@@ -134,7 +139,7 @@ impl<const N: usize> Table<N> {
     /// Axes that do not increase strictly or have fewer than two points, values that are not finite, or a
     /// number of values that differs from the number of grid points. In a constant these errors can stop the
     /// compilation, see the example of [`Table`].
-    pub const fn new(axes: [&'static [f64]; N], values: &'static [f64]) -> Result<Table<N>, TableError> {
+    pub const fn new(axes: [&'a [f64]; N], values: &'a [f64]) -> Result<Table<N, &'a [f64]>, TableError> {
         const { assert!(N >= 1 && N <= 3, "a table has one to three variables") };
         let (mut axis, mut expected) = (0, 1_usize);
         while axis < N {
@@ -164,26 +169,66 @@ impl<const N: usize> Table<N> {
         }
         Ok(Table { axes, values, smooth: false, extrapolated: false })
     }
+}
 
+impl<const N: usize, V> Table<N, V> {
     /// Returns the table with continuous slopes. Along each axis it is cubic between neighbouring points; the
     /// slope at a point is that of the parabola through the point and its two neighbours (Bessel's tangents;
     /// de Boor, *A Practical Guide to Splines*, ch. IV). The interpolation passes through all values and is
     /// exact for parabolas. Second derivatives jump at the points, where the value to the right is returned.
     #[must_use]
-    pub const fn smooth(self) -> Table<N> {
-        Table { smooth: true, ..self }
+    pub const fn smooth(mut self) -> Table<N, V> {
+        self.smooth = true;
+        self
     }
 
     /// Returns the table extrapolated linearly beyond its grid, with the slopes of the edge.
     #[must_use]
-    pub const fn extrapolated(self) -> Table<N> {
-        Table { extrapolated: true, ..self }
+    pub const fn extrapolated(mut self) -> Table<N, V> {
+        self.extrapolated = true;
+        self
     }
 
     /// Returns the grid points of each axis of the table.
     #[must_use]
-    pub const fn axes(&self) -> &[&'static [f64]; N] {
+    pub const fn axes(&self) -> &[V; N] {
         &self.axes
+    }
+
+    /// Returns the table with its grid and values stored in another type of list.
+    #[must_use]
+    pub fn into_storage<W>(self) -> Table<N, W>
+    where
+        V: Into<W>,
+    {
+        Table {
+            axes: self.axes.map(Into::into),
+            values: self.values.into(),
+            smooth: self.smooth,
+            extrapolated: self.extrapolated,
+        }
+    }
+}
+
+impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
+    /// Returns a table whose grid and values are owned lists, for example `Vec<f64>` or `Arc<[f64]>`. See
+    /// [`new`](Table::new) for the order of the values.
+    ///
+    /// ```
+    /// use linkwork::Table;
+    ///
+    /// let heights: Vec<f64> = [0.0, 0.5, 2.0].iter().map(|x| x * x).collect();
+    /// let table = Table::from_storage([vec![0.0, 0.5, 2.0]], heights)?;
+    /// assert_eq!(table.value([0.25]), 0.125);
+    /// # Ok::<(), linkwork::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`new`](Table::new).
+    pub fn from_storage(axes: [V; N], values: V) -> Result<Table<N, V>, TableError> {
+        Table::new(axes.each_ref().map(|axis| &**axis), &*values)?;
+        Ok(Table { axes, values, smooth: false, extrapolated: false })
     }
 
     /// Returns the value at `x`; NaN if an entry of `x` is NaN.
@@ -285,160 +330,6 @@ impl<const N: usize> Table<N> {
             }
         }
         sum
-    }
-}
-
-/// Interpolation between, and extrapolation beyond, the points of a table.
-#[derive(Clone, Copy)]
-struct Shape {
-    smooth: bool,
-    extrapolated: bool,
-}
-
-/// Position on an axis and order of the derivative, from which the weights of the axis are computed; no
-/// position for an axis that the table does not have.
-#[derive(Clone, Copy)]
-struct Weights<T> {
-    place: Option<AxisPosition<T>>,
-    order: u8,
-}
-
-impl<T> Weights<T> {
-    fn one() -> Weights<T> {
-        Weights { place: None, order: 0 }
-    }
-}
-
-/// Position of an argument on an axis of a table: its value clamped to the axis, its distance beyond the
-/// axis, and one if it is within the axis, otherwise zero.
-#[derive(Clone, Copy)]
-struct AxisPosition<T> {
-    x: T,
-    beyond: T,
-    within: T,
-}
-
-/// Returns the unit step of each lane: one for a nonnegative number and zero for a negative one.
-fn step<T: Real>(x: T) -> T {
-    (T::one() + x.signum()) * constant(0.5)
-}
-
-impl<T: Real> AxisPosition<T> {
-    fn locate_on_axis(points: &[f64], x: T) -> AxisPosition<T> {
-        let coordinate_or_zero = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
-        let (low, high) = (coordinate_or_zero(points.first()), coordinate_or_zero(points.last()));
-        let inner = x.max(low).min(high);
-        // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
-        let nothing = x * T::zero();
-        AxisPosition { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
-    }
-
-    /// Returns the half-open range of grid cells that can contain the argument: a single cell, or all cells
-    /// if SIMD lanes differ.
-    fn possible_cells(&self, points: &[f64]) -> [usize; 2] {
-        let last = points.len().saturating_sub(2);
-        let (mut low, mut high) = (0, last);
-        while low < high {
-            let middle = low + (high - low).div_ceil(2);
-            let Some(p) = points.get(middle) else { break };
-            let p = constant::<T>(*p);
-            if self.x >= p {
-                low = middle;
-            } else if self.x < p {
-                high = middle - 1;
-            } else {
-                return [0, last + 1];
-            }
-        }
-        [low, low + 1]
-    }
-
-    /// Returns one in each lane in which the grid cell contains the argument, and zero in others.
-    fn share_of_cell(&self, points: &[f64], cell: usize) -> T {
-        let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
-        let last = cell + 2 >= points.len();
-        let low = if cell == 0 { T::one() } else { step_at_point(cell) };
-        low - if last { T::zero() } else { step_at_point(cell + 1) }
-    }
-
-    /// Returns the weights of the four points around a cell, for a derivative of the given order.
-    fn weights_of_points(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
-        let around = Around::new(points, cell, shape.smooth);
-        let s = (self.x - constant(around.start)) / constant(around.width);
-        let weights_of_order = |order| around.weights_at_fraction(s, order);
-        match (order, shape.extrapolated) {
-            (0, true) => {
-                let (value, slope) = (weights_of_order(0), weights_of_order(1));
-                core::array::from_fn(|k| value[k] + self.beyond * slope[k])
-            }
-            (0, false) => weights_of_order(0),
-            (1, true) => weights_of_order(1),
-            _ => weights_of_order(order).map(|w| w * self.within),
-        }
-    }
-}
-
-/// Cell of an axis: its start, its width and, for smooth tables, the weights of the four points around it
-/// that yield the slopes at both ends times the width.
-struct Around {
-    start: f64,
-    width: f64,
-    slopes: Option<[[f64; 4]; 2]>,
-}
-
-impl Around {
-    fn new(points: &[f64], cell: usize, smooth: bool) -> Around {
-        let coordinate_of_point = |k: usize| points.get(k).copied();
-        let (start, end) =
-            (coordinate_of_point(cell).unwrap_or(0.0), coordinate_of_point(cell + 1).unwrap_or(1.0));
-        let h = end - start;
-        let before = cell.checked_sub(1).and_then(coordinate_of_point).map(|p| start - p);
-        let after = coordinate_of_point(cell + 2).map(|p| p - end);
-        let slopes = smooth.then(|| {
-            // Slope of the parabola through three points, times `h`: at the middle point, otherwise at the
-            // first or the last point.
-            let first = match before {
-                Some(b) => [-h * h / (b * (b + h)), (h - b) / b, b / (b + h), 0.0],
-                None => after.map_or([0.0, -1.0, 1.0, 0.0], |a| {
-                    [0.0, -(2.0 * h + a) / (h + a), (h + a) / a, -h * h / (a * (h + a))]
-                }),
-            };
-            let second = match after {
-                Some(a) => [0.0, -a / (h + a), (a - h) / a, h * h / (a * (h + a))],
-                None => before.map_or([0.0, -1.0, 1.0, 0.0], |b| {
-                    [h * h / (b * (h + b)), -(h + b) / b, (2.0 * h + b) / (h + b), 0.0]
-                }),
-            };
-            [first, second]
-        });
-        Around { start, width: h, slopes }
-    }
-
-    /// Returns the weights at the fraction `s` of the width, for a derivative of the given order.
-    fn weights_at_fraction<T: Real>(&self, s: T, order: u8) -> [T; 4] {
-        let c = constant::<T>;
-        let zero = T::zero();
-        let scale = (0..order).fold(T::one(), |scale, _| scale / c(self.width));
-        let Some([first, second]) = &self.slopes else {
-            return match order {
-                0 => [zero, T::one() - s, s, zero],
-                1 => [zero, -scale, scale, zero],
-                _ => [zero; 4],
-            };
-        };
-        // Hermite polynomials of the values and slopes at both ends.
-        let (one, s2) = (T::one(), s * s);
-        let s3 = s2 * s;
-        let [end, m0, m1] = match order {
-            0 => [c(3.0) * s2 - c(2.0) * s3, s3 - c(2.0) * s2 + s, s3 - s2],
-            1 => [c(6.0) * (s - s2), c(3.0) * s2 - c(4.0) * s + one, c(3.0) * s2 - c(2.0) * s],
-            2 => [c(6.0) - c(12.0) * s, c(6.0) * s - c(4.0), c(6.0) * s - c(2.0)],
-            3 => [c(-12.0), c(6.0), c(6.0)],
-            _ => [zero; 3],
-        };
-        let start = if order == 0 { one - end } else { -end };
-        let values = [zero, start, end, zero];
-        core::array::from_fn(|k| scale * (values[k] + m0 * c(first[k]) + m1 * c(second[k])))
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::error::{exception, failure};
 use crate::function::Function;
 use crate::shared::{Failed, distribute};
-use linkwork::Table;
 use linkwork_jit::{AdjointStepper, AnyTable, Error, Loader, Quantity, Sensitivity, Stepper};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray2,
@@ -11,9 +10,6 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::Mutex;
 
 /// A loaded mechanism with the values of its parameters, or with one set of values for each state of a batch.
 #[pyclass(frozen, module = "linkwork._native")]
@@ -159,8 +155,10 @@ impl Robot {
         extrapolated: bool,
     ) -> PyResult<Robot> {
         let mut robot = self.robot.clone();
-        let table = table(&axes, &values, smooth, extrapolated)
+        let table = AnyTable::from_grid(&axes, &values)
             .map_err(|error| failure(py, format!("table {name:?}: {error}")))?;
+        let table = if smooth { table.smooth() } else { table };
+        let table = if extrapolated { table.extrapolated() } else { table };
         robot.set_table(name, table).map_err(|error| exception(py, &error, None))?;
         Ok(Robot { robot, sets: self.sets.clone() })
     }
@@ -321,45 +319,4 @@ pub fn set_parameters(
     let width = values.len() / (*count).max(1);
     let first = if *count == 1 { 0 } else { state * width };
     robot.set_parameters(&values[first..first + width])
-}
-
-/// Returns a table. Equal values share memory, which lives as long as the process.
-fn table(
-    axes: &[Vec<f64>],
-    values: &[f64],
-    smooth: bool,
-    extrapolated: bool,
-) -> Result<AnyTable, linkwork::TableError> {
-    fn shaped<const N: usize>(table: Table<N>, smooth: bool, extrapolated: bool) -> Table<N> {
-        let table = if smooth { table.smooth() } else { table };
-        if extrapolated { table.extrapolated() } else { table }
-    }
-    let kept: Vec<&'static [f64]> = axes.iter().map(|axis| keep(axis)).collect();
-    let values = keep(values);
-    match kept[..] {
-        [a] => Table::new([a], values).map(|table| shaped(table, smooth, extrapolated).into()),
-        [a, b] => Table::new([a, b], values).map(|table| shaped(table, smooth, extrapolated).into()),
-        [a, b, c] => Table::new([a, b, c], values).map(|table| shaped(table, smooth, extrapolated).into()),
-        _ => Err(linkwork::TableError::Size { expected: 3, found: axes.len() }),
-    }
-}
-
-/// Lists of numbers that have the same hash.
-type EqualHashes = Vec<&'static [f64]>;
-
-/// Returns a list of numbers with static lifetime. Equal lists are stored once and never freed.
-fn keep(list: &[f64]) -> &'static [f64] {
-    static LISTS: Mutex<Option<HashMap<u64, EqualHashes>>> = Mutex::new(None);
-    let mut hasher = DefaultHasher::new();
-    list.iter().for_each(|x| x.to_bits().hash(&mut hasher));
-    let mut lists = LISTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let lists = lists.get_or_insert_default().entry(hasher.finish()).or_default();
-    let equal =
-        |known: &&&'static [f64]| known.iter().map(|x| x.to_bits()).eq(list.iter().map(|x| x.to_bits()));
-    if let Some(known) = lists.iter().find(equal) {
-        return known;
-    }
-    let kept: &'static [f64] = Vec::leak(list.to_vec());
-    lists.push(kept);
-    kept
 }

@@ -76,6 +76,36 @@ static int simulate(const lw_robot *pendulum) {
     return 0;
 }
 
+/* A mass on a spring whose force is a table of the elongation. */
+static int tabulate(void) {
+    lw_robot *robot = NULL;
+    const char *const text =
+        "#[mechanism] struct Oscillator { force: Table<1>, #[body(mass = 2)] block: Body,"
+        "#[joint(ground -> block, along = x)] slide: Sleeve, #[acts(on = slide, value = -force(slide))] spring: Force }";
+    const double points[] = {-1.0, 0.0, 2.0}, values[] = {-3.0, 0.0, 8.0}, falling[] = {0.0, -1.0, 2.0};
+    const double *axes[] = {points}, *wrong[] = {falling};
+    const size_t length = 3;
+    size_t table = 9, f = 0;
+    CHECK(lw_declare(text, NULL, &robot) == LW_OK && lw_count(robot, LW_TABLES) == 1);
+    CHECK(lw_index(robot, LW_TABLES, "force", &table) == LW_OK && table == 0 && lw_variables(robot, 0) == 1);
+    CHECK(lw_index(robot, LW_FUNCTIONS, "forward_dynamics", &f) == LW_OK);
+    double q = 1.0, v = 0.0, a = 0.0;
+    const double *arguments[] = {&q, &v, &v};
+    CHECK(lw_call(robot, f, arguments, &a) == LW_VALUE && strstr(lw_message(), "force") != NULL);
+    CHECK(lw_set_table(robot, 0, wrong, &length, values, 0) == LW_VALUE);
+    CHECK(lw_set_table(robot, 1, axes, &length, values, 0) == LW_UNKNOWN);
+    CHECK(lw_set_table(robot, 0, axes, &length, NULL, 0) == LW_NULL);
+    CHECK(lw_set_table(robot, 0, axes, &length, values, 0) == LW_OK);
+    CHECK(lw_call(robot, f, arguments, &a) == LW_OK && a == -2.0);
+    /* Beyond the grid the force is constant, or has the last slope. */
+    q = 3.0;
+    CHECK(lw_call(robot, f, arguments, &a) == LW_OK && a == -4.0);
+    CHECK(lw_set_table(robot, 0, axes, &length, values, LW_EXTRAPOLATED) == LW_OK);
+    CHECK(lw_call(robot, f, arguments, &a) == LW_OK && a == -6.0);
+    lw_free(robot);
+    return 0;
+}
+
 int main(void) {
     lw_robot *robot = NULL, *copy = NULL;
     CHECK(lw_declare(TEXT, NULL, &robot) == LW_OK);
@@ -114,7 +144,7 @@ int main(void) {
     CHECK(lw_call(NULL, f, arguments, &a) == LW_NULL && lw_count(copy, 9) == 0);
     CHECK(lw_load("missing.urdf", NULL, &robot) == LW_FILE && robot == NULL);
     CHECK(lw_declare("struct", NULL, &robot) == LW_SYNTAX && lw_declare(NULL, NULL, &robot) == LW_NULL);
-    CHECK(simulate(copy) == 0);
+    CHECK(simulate(copy) == 0 && tabulate() == 0);
     lw_free(copy);
     lw_free(NULL);
     return 0;

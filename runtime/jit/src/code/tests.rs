@@ -144,7 +144,7 @@ fn agree(compile: fn(&Program, &Layout, usize) -> Result<Code, String>) {
     let count = std::env::var("LINKWORK_PROGRAMS").ok().and_then(|count| count.parse().ok());
     let layout = Layout::new(&[Argument::Q, Argument::V]).expect("two arguments");
     let table = Table::new([&[-1.0, 0.0, 2.0]], &[1.0, -0.5, 3.0]).map(Table::smooth);
-    let tables = [AnyTable::One(table.expect("increasing points"))];
+    let tables = [AnyTable::from(table.expect("increasing points"))];
     for seed in 0..count.unwrap_or(PROGRAMS) {
         let mut random = Random(seed);
         let program = random.program();
