@@ -163,8 +163,8 @@ impl Robot {
         Ok(Robot { robot, sets: self.sets.clone() })
     }
 
-    /// Advances states by steps of the classical Runge–Kutta method. The arrays of configurations and
-    /// velocities initially contain the initial states.
+    /// Advances states by steps of the classical Runge–Kutta method, or by time stepping at contacts. The
+    /// arrays of configurations and velocities initially contain the initial states.
     #[pyo3(signature = (q, v, inputs, *, start, h, threads))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn roll_out(
@@ -182,17 +182,26 @@ impl Robot {
         let own = inputs.as_ref().is_some_and(|inputs| inputs.as_array().shape()[0] > 1);
         let inputs = inputs.as_ref().map_or(Ok(&[][..]), |inputs| inputs.as_slice())?;
         let (mut q, mut v) = (q.as_slice_mut()?, v.as_slice_mut()?);
-        let stepper = Stepper::new(&self.robot).map_err(|error| exception(py, &error, None))?;
+        // Steps between constraints and contacts are those of simulations.
+        let is_free = self.robot.constraints() == 0 && self.robot.contacts() == 0;
+        let stepper = is_free.then(|| Stepper::new(&self.robot)).transpose();
+        let stepper = stepper.map_err(|error| exception(py, &error, None))?;
         let sets = self.sets.as_ref();
         let zeros = vec![0.0; nu];
         let simulate_states = |first: usize, _: usize, (q, v): (&mut [f64], &mut [f64])| -> Failed {
-            let mut stepper = stepper.clone();
+            let (mut stepper, mut robot) = (stepper.clone(), self.robot.clone());
             let mut failed = None;
             let states = q.chunks_exact_mut((rows * nq).max(1)).zip(v.chunks_exact_mut((rows * nv).max(1)));
             for (k, (q, v)) in states.enumerate() {
                 let state = first + k;
-                let set = set_parameters(stepper.robot_mut(), sets, state);
+                let set =
+                    set_parameters(stepper.as_mut().map_or(&mut robot, Stepper::robot_mut), sets, state);
                 let motion = set.and_then(|()| {
+                    let Some(stepper) = &mut stepper else {
+                        let row = if own { state * (rows - 1) } else { 0 };
+                        let inputs = inputs.get(row * nu..(row + rows - 1) * nu).unwrap_or(&[]);
+                        return robot.roll_out(start, h, inputs, [q, v]);
+                    };
                     for step in 0..rows - 1 {
                         let row = if own { state * (rows - 1) + step } else { step };
                         let u = inputs.get(row * nu..(row + 1) * nu).unwrap_or(&zeros);
