@@ -308,8 +308,8 @@ impl Robot {
         Ok(self)
     }
 
-    /// Sets a table: an [`AnyTable`], or a `Table<1>`, `Table<2>` or `Table<3>`. The memory of the table that it
-    /// replaces is returned when no other robot uses it.
+    /// Sets a table: an [`AnyTable`], or a `Table<1>`, `Table<2>` or `Table<3>`. The memory of the replaced
+    /// table is returned when no other robot uses it.
     ///
     /// # Errors
     ///

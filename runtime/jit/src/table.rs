@@ -42,9 +42,7 @@ impl AnyTable {
         match axes {
             [a] => Table::from_storage([list(a)], values.into()).map(AnyTable::One),
             [a, b] => Table::from_storage([list(a), list(b)], values.into()).map(AnyTable::Two),
-            [a, b, c] => {
-                Table::from_storage([list(a), list(b), list(c)], values.into()).map(AnyTable::Three)
-            }
+            [a, b, c] => Table::from_storage([list(a), list(b), list(c)], values.into()).map(AnyTable::Three),
             _ => Err(TableError::Size { expected: 3, found: axes.len() }),
         }
     }

@@ -38,7 +38,7 @@ pub unsafe extern "C" fn lw_set_table(
         let lists: Result<Vec<&[f64]>, Failure> =
             // SAFETY: arrays of these lengths, as the header says.
             axes.iter().zip(lengths).map(|(axis, length)| unsafe { raw::array(*axis, *length) }).collect();
-        // SAFETY: as many values as the grid has points, as the header says.
+        // SAFETY: one value for each point of the grid, as the header says.
         let values = unsafe { raw::array(values, count) }?;
         let found = AnyTable::from_grid(&lists?, values).map_err(Failure::Table)?;
         let found = if options & SMOOTH != 0 { found.smooth() } else { found };
