@@ -1,6 +1,7 @@
 /* A pendulum: its accelerations, names and errors. */
 #include "linkwork.h"
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -106,6 +107,37 @@ static int tabulate(void) {
     return 0;
 }
 
+/* Null pointers, indices and lengths that do not exist, and values that are not finite: errors, no crash. */
+static int attack(lw_robot *robot, size_t f) {
+    const double q = 0.1, *arguments[] = {&q, NULL, &q}, nothing = NAN;
+    const double *sets[] = {&q, &q, &q};
+    const size_t lengths[] = {SIZE_MAX, 1, 1}, outside = 99;
+    double a = 0.0, samples[8];
+    size_t count = 0;
+    CHECK(lw_call(robot, f, NULL, &a) == LW_NULL && lw_call(robot, f, arguments, &a) == LW_NULL);
+    CHECK(lw_call(robot, f, sets, NULL) == LW_NULL && lw_call(robot, SIZE_MAX, sets, &a) == LW_UNKNOWN);
+    CHECK(lw_call_many(robot, f, 1, 3, sets, lengths, &a, 1) == LW_UNKNOWN);
+    CHECK(lw_call_many(robot, f, 1, SIZE_MAX, sets, lengths, &a, 1) == LW_UNKNOWN);
+    CHECK(lw_name(robot, LW_INPUTS, 7) == NULL && lw_unit(robot, -1, 0) == NULL && lw_count(NULL, 0) == 0);
+    CHECK(lw_index(robot, LW_INPUTS, NULL, &count) == LW_NULL && lw_index(robot, 99, "motor", &count) == LW_UNKNOWN);
+    CHECK(lw_index(robot, LW_INPUTS, "\xff", &count) == LW_NULL);
+    CHECK(lw_set_table(robot, 0, sets, lengths, &q, 0) == LW_UNKNOWN && lw_variables(robot, 0) == 0);
+    CHECK(lw_assemble(robot, &q, &outside, 1, &a) != LW_OK && lw_assemble(robot, &q, NULL, 1, &a) == LW_NULL);
+    lw_simulation settings = {0};
+    settings.duration = 1e9;
+    settings.every = 1e-9;
+    CHECK(lw_simulate(robot, &q, &q, &settings, samples, 2, &count) == LW_VALUE);
+    CHECK(lw_simulate(robot, &q, &q, NULL, samples, 2, &count) == LW_NULL);
+    CHECK(lw_simulate(robot, &q, &q, &settings, samples, SIZE_MAX, &count) == LW_UNKNOWN);
+    settings.duration = settings.every = 1.0;
+    settings.start = NAN;
+    CHECK(lw_simulate(robot, &q, &q, &settings, samples, 2, &count) == LW_VALUE);
+    settings.start = 0.0;
+    CHECK(lw_simulate(robot, &nothing, &q, &settings, samples, 2, &count) != LW_OK);
+    CHECK(lw_load("/", NULL, &robot) == LW_FILE && lw_load("", NULL, &robot) == LW_FILE);
+    return 0;
+}
+
 int main(void) {
     lw_robot *robot = NULL, *copy = NULL;
     CHECK(lw_declare(TEXT, NULL, &robot) == LW_OK);
@@ -139,6 +171,7 @@ int main(void) {
     CHECK(lw_call_many(copy, f, 3, 3, sets, lengths, both, 2) == LW_LENGTH);
     CHECK(lw_call_many(copy, f, 1, 2, sets, lengths, both, 1) == LW_LENGTH);
 
+    CHECK(attack(copy, f) == 0);
     CHECK(lw_index(copy, LW_FUNCTIONS, "forward", &f) == LW_UNKNOWN);
     CHECK(lw_set_parameter(copy, 7, 1.0) == LW_UNKNOWN && lw_set_parameter(copy, 0, NAN) == LW_VALUE);
     CHECK(lw_call(NULL, f, arguments, &a) == LW_NULL && lw_count(copy, 9) == 0);
