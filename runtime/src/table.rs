@@ -227,7 +227,7 @@ impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
     ///
     /// The errors of [`new`](Table::new).
     pub fn from_storage(axes: [V; N], values: V) -> Result<Table<N, V>, TableError> {
-        Table::new(axes.each_ref().map(|axis| &**axis), &*values)?;
+        Table::new(axes.each_ref().map(|axis| &**axis), &values)?;
         Ok(Table { axes, values, smooth: false, extrapolated: false })
     }
 

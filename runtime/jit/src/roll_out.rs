@@ -42,7 +42,7 @@ impl Robot {
     /// positive, or the motion cannot be continued ([`Error::Motion`]). Rows after an error are NaN.
     pub fn roll_out(&self, start: f64, h: f64, inputs: &[f64], [q, v]: [&mut [f64]; 2]) -> Result<(), Error> {
         let (nq, nv, nu) = (self.nq(), self.nv(), self.nu());
-        let rows = if nv > 0 { v.len() / nv } else { 1 };
+        let rows = v.len().checked_div(nv).unwrap_or(1);
         let steps = rows.saturating_sub(1);
         self.check_length("v", rows.max(1) * nv, v.len())?;
         self.check_length("q", rows.max(1) * nq, q.len())?;
