@@ -1,8 +1,12 @@
 //! Lookup tables: functions of one to three variables, interpolated between values on a grid.
 
+mod interpolation;
+
 use crate::Real;
 use crate::private::constant;
 use core::fmt;
+use core::ops::Deref;
+use interpolation::{AxisPosition, Shape, Weights};
 
 /// Function of `N` variables, one to three, interpolated between values on a grid. A table is a parameter of
 /// a mechanism.
@@ -15,9 +19,10 @@ use core::fmt;
 /// slopes. Beyond the grid it has the constant value of the edge, or is
 /// [`extrapolated`](Table::extrapolated).
 ///
-/// A table borrows its grid and values for `'static`, so that a mechanism with tables is `Copy` and allocates
-/// no memory. They are constants, or slices from `Vec::leak` if they are read at run time. They are `f64` for
-/// every scalar type of the mechanism.
+/// A compiled mechanism has tables that borrow their grid and values for `'static`, so that the mechanism is
+/// `Copy` and allocates no memory. They are constants, or slices from `Vec::leak` if they are read at run
+/// time. Tables of loaded mechanisms own their values, as `Vec<f64>` or `Arc<[f64]>`: see
+/// [`from_storage`](Table::from_storage). Values are `f64` for every scalar type of the mechanism.
 ///
 /// ```
 /// use linkwork::{Table, TableError};
@@ -49,9 +54,9 @@ use core::fmt;
 /// assert!(LIFT.value([0.0]) < 0.0_f64);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Table<const N: usize> {
-    axes: [&'static [f64]; N],
-    values: &'static [f64],
+pub struct Table<const N: usize, V = &'static [f64]> {
+    axes: [V; N],
+    values: V,
     smooth: bool,
     extrapolated: bool,
 }
@@ -60,26 +65,26 @@ pub struct Table<const N: usize> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// Error: an axis of the table has fewer than two grid points.
+    /// An axis of the table has fewer than two grid points.
     TooFewPoints {
         /// Index of the invalid axis, counted from zero.
         axis: usize,
     },
-    /// Error: a point of an axis is not greater than the point before it, or is infinite or NaN.
+    /// A point of an axis is not greater than the point before it, or is infinite or NaN.
     NotIncreasing {
         /// Index of the invalid axis, counted from zero.
         axis: usize,
         /// Index of the grid point on the axis that does not increase or is not finite.
         place: usize,
     },
-    /// Error: the number of values differs from the number of grid points.
+    /// The number of values differs from the number of grid points.
     Size {
         /// Number of grid points, which is the expected number of values.
         expected: usize,
         /// Number of values that were provided.
         found: usize,
     },
-    /// Error: a value of the table is infinite or NaN.
+    /// A value of the table is infinite or NaN.
     NotFinite {
         /// Index of the value that is infinite or NaN.
         place: usize,
@@ -87,7 +92,7 @@ pub enum TableError {
 }
 
 impl TableError {
-    /// Returns the error message without the indices, as a constant, because constants cannot use formatting.
+    /// Returns a message without the indices, as a constant: constants cannot use formatting.
     #[must_use]
     pub const fn message(self) -> &'static str {
         match self {
@@ -125,7 +130,7 @@ impl fmt::Display for TableError {
 
 impl core::error::Error for TableError {}
 
-impl<const N: usize> Table<N> {
+impl<'a, const N: usize> Table<N, &'a [f64]> {
     /// Returns a table that is linear between its grid points and constant beyond the grid. Values are
     /// ordered like the grid points, with the last axis varying fastest.
     ///
@@ -134,7 +139,7 @@ impl<const N: usize> Table<N> {
     /// Axes that do not increase strictly or have fewer than two points, values that are not finite, or a
     /// number of values that differs from the number of grid points. In a constant these errors can stop the
     /// compilation, see the example of [`Table`].
-    pub const fn new(axes: [&'static [f64]; N], values: &'static [f64]) -> Result<Table<N>, TableError> {
+    pub const fn new(axes: [&'a [f64]; N], values: &'a [f64]) -> Result<Table<N, &'a [f64]>, TableError> {
         const { assert!(N >= 1 && N <= 3, "a table has one to three variables") };
         let (mut axis, mut expected) = (0, 1_usize);
         while axis < N {
@@ -164,37 +169,76 @@ impl<const N: usize> Table<N> {
         }
         Ok(Table { axes, values, smooth: false, extrapolated: false })
     }
+}
 
+impl<const N: usize, V> Table<N, V> {
     /// Returns the table with continuous slopes. Along each axis it is cubic between neighbouring points; the
     /// slope at a point is that of the parabola through the point and its two neighbours (Bessel's tangents;
     /// de Boor, *A Practical Guide to Splines*, ch. IV). The interpolation passes through all values and is
     /// exact for parabolas. Second derivatives jump at the points, where the value to the right is returned.
     #[must_use]
-    pub const fn smooth(self) -> Table<N> {
-        Table { smooth: true, ..self }
+    pub const fn smooth(mut self) -> Table<N, V> {
+        self.smooth = true;
+        self
     }
 
-    /// Returns the table with linear extrapolation beyond its grid, with the slopes at the edge.
+    /// Returns the table extrapolated linearly beyond its grid, with the slopes of the edge.
     #[must_use]
-    pub const fn extrapolated(self) -> Table<N> {
-        Table { extrapolated: true, ..self }
+    pub const fn extrapolated(mut self) -> Table<N, V> {
+        self.extrapolated = true;
+        self
     }
 
     /// Returns the grid points of each axis of the table.
     #[must_use]
-    pub const fn axes(&self) -> &[&'static [f64]; N] {
+    pub const fn axes(&self) -> &[V; N] {
         &self.axes
     }
 
-    /// Returns the interpolated value of the table at `x`; NaN if an entry of `x` is NaN.
+    /// Returns the table with its grid and values stored in another type of list.
+    #[must_use]
+    pub fn into_storage<W>(self) -> Table<N, W>
+    where
+        V: Into<W>,
+    {
+        Table {
+            axes: self.axes.map(Into::into),
+            values: self.values.into(),
+            smooth: self.smooth,
+            extrapolated: self.extrapolated,
+        }
+    }
+}
+
+impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
+    /// Returns a table whose grid and values are owned lists, for example `Vec<f64>` or `Arc<[f64]>`. See
+    /// [`new`](Table::new) for the order of the values.
+    ///
+    /// ```
+    /// use linkwork::Table;
+    ///
+    /// let heights: Vec<f64> = [0.0, 0.5, 2.0].iter().map(|x| x * x).collect();
+    /// let table = Table::from_storage([vec![0.0, 0.5, 2.0]], heights)?;
+    /// assert_eq!(table.value([0.25]), 0.125);
+    /// # Ok::<(), linkwork::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`new`](Table::new).
+    pub fn from_storage(axes: [V; N], values: V) -> Result<Table<N, V>, TableError> {
+        Table::new(axes.each_ref().map(|axis| &**axis), &values)?;
+        Ok(Table { axes, values, smooth: false, extrapolated: false })
+    }
+
+    /// Returns the value at `x`; NaN if an entry of `x` is NaN.
     #[must_use]
     pub fn value<T: Real>(&self, x: [T; N]) -> T {
         self.derivative(x, [0; N])
     }
 
-    /// Returns the slope of the table with respect to variable `k` at `x`. The slope is zero where the table
-    /// is constant beyond its edge, and for `k ≥ N`. At a grid point of a linear table it is the slope to the
-    /// right.
+    /// Returns the slope with respect to variable `k` at `x`. The slope is zero where the table is constant
+    /// beyond its edge, and for `k ≥ N`. At a grid point of a linear table it is the slope to the right.
     #[must_use]
     pub fn slope<T: Real>(&self, x: [T; N], k: usize) -> T {
         if k >= N {
@@ -208,13 +252,13 @@ impl<const N: usize> Table<N> {
     /// table; higher than third ones are zero for every table.
     #[must_use]
     pub fn derivative<T: Real>(&self, x: [T; N], orders: [u8; N]) -> T {
-        let mut all = [AxisWeights::constant_weight(); 3];
+        let mut all = [Weights::one(); 3];
         let mut cells = [[0, 1]; 3];
         let axes = self.axes.iter().zip(x).zip(orders);
         for (((points, x), order), (weights, range)) in axes.zip(all.iter_mut().zip(&mut cells)) {
             let place = AxisPosition::locate_on_axis(points, x);
             *range = place.possible_cells(points);
-            *weights = AxisWeights { place: Some(place), order };
+            *weights = Weights { place: Some(place), order };
         }
         let [first, second, third] = cells;
         let mut sum = T::zero();
@@ -238,15 +282,15 @@ impl<const N: usize> Table<N> {
         axis: usize,
         cell: usize,
         range: [usize; 2],
-        all: &[AxisWeights<T>; 3],
+        all: &[Weights<T>; 3],
     ) -> [T; 4] {
         let only = [T::zero(), T::one(), T::zero(), T::zero()];
-        let (Some(points), Some(AxisWeights { place: Some(place), order })) =
+        let (Some(points), Some(Weights { place: Some(place), order })) =
             (self.axes.get(axis), all.get(axis))
         else {
             return only;
         };
-        let shape = TableShape { smooth: self.smooth, extrapolated: self.extrapolated };
+        let shape = Shape { smooth: self.smooth, extrapolated: self.extrapolated };
         let weights = place.weights_of_points(points, cell, *order, shape);
         if range[1] - range[0] <= 1 {
             return weights;
@@ -255,7 +299,7 @@ impl<const N: usize> Table<N> {
         weights.map(|w| w * share)
     }
 
-    /// Returns the range of indices, among the four interpolation weights of an axis, that can be nonzero.
+    /// Returns the range of the four weights of an axis that can be nonzero.
     fn nonzero_weight_slots(&self, axis: usize) -> core::ops::Range<usize> {
         match (axis < N, self.smooth) {
             (false, _) => 1..2,
@@ -264,7 +308,7 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// Returns the weighted sum of the grid values around a cell of the table.
+    /// Returns the weighted sum of the values around a cell.
     fn weighted_block_sum<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
         let axis_length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
         // Slot 0 of the weights is the point before the cell.
@@ -286,166 +330,6 @@ impl<const N: usize> Table<N> {
             }
         }
         sum
-    }
-}
-
-/// Kinds of interpolation between the points of a table, and of extrapolation beyond them.
-#[derive(Clone, Copy)]
-struct TableShape {
-    smooth: bool,
-    extrapolated: bool,
-}
-
-/// Position on an axis and order of the derivative, from which the weights of the axis are computed; no
-/// position for an axis that the table does not have.
-#[derive(Clone, Copy)]
-struct AxisWeights<T> {
-    place: Option<AxisPosition<T>>,
-    order: u8,
-}
-
-impl<T> AxisWeights<T> {
-    fn constant_weight() -> AxisWeights<T> {
-        AxisWeights { place: None, order: 0 }
-    }
-}
-
-/// Position of an argument on an axis of a table: its value clamped to the axis, its distance beyond the
-/// axis, and one if it is within the axis, otherwise zero.
-#[derive(Clone, Copy)]
-struct AxisPosition<T> {
-    x: T,
-    beyond: T,
-    within: T,
-}
-
-/// Returns the unit step of `x` in each lane: one for a nonnegative number and zero for a negative one.
-fn unit_step<T: Real>(x: T) -> T {
-    (T::one() + x.signum()) * constant(0.5)
-}
-
-impl<T: Real> AxisPosition<T> {
-    fn locate_on_axis(points: &[f64], x: T) -> AxisPosition<T> {
-        let coordinate_or_zero = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
-        let (low, high) = (coordinate_or_zero(points.first()), coordinate_or_zero(points.last()));
-        let inner = x.max(low).min(high);
-        // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
-        let nothing = x * T::zero();
-        AxisPosition {
-            x: inner + nothing,
-            beyond: x - inner,
-            within: unit_step(x - low) * unit_step(high - x),
-        }
-    }
-
-    /// Returns the half-open range of grid cells that can contain the argument: a single cell, or all cells
-    /// if SIMD lanes differ.
-    fn possible_cells(&self, points: &[f64]) -> [usize; 2] {
-        let last = points.len().saturating_sub(2);
-        let (mut low, mut high) = (0, last);
-        while low < high {
-            let middle = low + (high - low).div_ceil(2);
-            let Some(p) = points.get(middle) else { break };
-            let p = constant::<T>(*p);
-            if self.x >= p {
-                low = middle;
-            } else if self.x < p {
-                high = middle - 1;
-            } else {
-                return [0, last + 1];
-            }
-        }
-        [low, low + 1]
-    }
-
-    /// Returns one in each lane in which the grid cell contains the argument, and zero in others.
-    fn share_of_cell(&self, points: &[f64], cell: usize) -> T {
-        let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| unit_step(self.x - constant(*p)));
-        let last = cell + 2 >= points.len();
-        let low = if cell == 0 { T::one() } else { step_at_point(cell) };
-        low - if last { T::zero() } else { step_at_point(cell + 1) }
-    }
-
-    /// Returns the interpolation weights of the four grid points around a cell, for a derivative of the given
-    /// order.
-    fn weights_of_points(&self, points: &[f64], cell: usize, order: u8, shape: TableShape) -> [T; 4] {
-        let around = CellGeometry::new(points, cell, shape.smooth);
-        let s = (self.x - constant(around.start)) / constant(around.width);
-        let weights_of_order = |order| around.weights_at_fraction(s, order);
-        match (order, shape.extrapolated) {
-            (0, true) => {
-                let (value, slope) = (weights_of_order(0), weights_of_order(1));
-                core::array::from_fn(|k| value[k] + self.beyond * slope[k])
-            }
-            (0, false) => weights_of_order(0),
-            (1, true) => weights_of_order(1),
-            _ => weights_of_order(order).map(|w| w * self.within),
-        }
-    }
-}
-
-/// Cell of an axis: its start, its width and, for smooth tables, the weights of the four points around it
-/// that yield the slopes at both ends times the width.
-struct CellGeometry {
-    start: f64,
-    width: f64,
-    slopes: Option<[[f64; 4]; 2]>,
-}
-
-impl CellGeometry {
-    fn new(points: &[f64], cell: usize, smooth: bool) -> CellGeometry {
-        let coordinate_of_point = |k: usize| points.get(k).copied();
-        let (start, end) =
-            (coordinate_of_point(cell).unwrap_or(0.0), coordinate_of_point(cell + 1).unwrap_or(1.0));
-        let h = end - start;
-        let before = cell.checked_sub(1).and_then(coordinate_of_point).map(|p| start - p);
-        let after = coordinate_of_point(cell + 2).map(|p| p - end);
-        let slopes = smooth.then(|| {
-            // Slope of the parabola through three points, times `h`: at the middle point, otherwise at the
-            // first or the last point.
-            let first = match before {
-                Some(b) => [-h * h / (b * (b + h)), (h - b) / b, b / (b + h), 0.0],
-                None => after.map_or([0.0, -1.0, 1.0, 0.0], |a| {
-                    [0.0, -(2.0 * h + a) / (h + a), (h + a) / a, -h * h / (a * (h + a))]
-                }),
-            };
-            let second = match after {
-                Some(a) => [0.0, -a / (h + a), (a - h) / a, h * h / (a * (h + a))],
-                None => before.map_or([0.0, -1.0, 1.0, 0.0], |b| {
-                    [h * h / (b * (h + b)), -(h + b) / b, (2.0 * h + b) / (h + b), 0.0]
-                }),
-            };
-            [first, second]
-        });
-        CellGeometry { start, width: h, slopes }
-    }
-
-    /// Returns the interpolation weights at the fraction `s` of the cell's width, for a derivative of the
-    /// given order.
-    fn weights_at_fraction<T: Real>(&self, s: T, order: u8) -> [T; 4] {
-        let c = constant::<T>;
-        let zero = T::zero();
-        let scale = (0..order).fold(T::one(), |scale, _| scale / c(self.width));
-        let Some([first, second]) = &self.slopes else {
-            return match order {
-                0 => [zero, T::one() - s, s, zero],
-                1 => [zero, -scale, scale, zero],
-                _ => [zero; 4],
-            };
-        };
-        // Hermite polynomials of the values and slopes at both ends.
-        let (one, s2) = (T::one(), s * s);
-        let s3 = s2 * s;
-        let [end, m0, m1] = match order {
-            0 => [c(3.0) * s2 - c(2.0) * s3, s3 - c(2.0) * s2 + s, s3 - s2],
-            1 => [c(6.0) * (s - s2), c(3.0) * s2 - c(4.0) * s + one, c(3.0) * s2 - c(2.0) * s],
-            2 => [c(6.0) - c(12.0) * s, c(6.0) * s - c(4.0), c(6.0) * s - c(2.0)],
-            3 => [c(-12.0), c(6.0), c(6.0)],
-            _ => [zero; 3],
-        };
-        let start = if order == 0 { one - end } else { -end };
-        let values = [zero, start, end, zero];
-        core::array::from_fn(|k| scale * (values[k] + m0 * c(first[k]) + m1 * c(second[k])))
     }
 }
 

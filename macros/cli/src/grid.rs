@@ -4,7 +4,7 @@
 use crate::Stop;
 use crate::table::text_of;
 use clap::ArgMatches;
-use linkwork::{Table, TableError};
+use linkwork::TableError;
 use linkwork_jit::AnyTable;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -78,22 +78,11 @@ impl Grid {
         Ok(grid)
     }
 
-    /// Returns the table for interpolation; its values are leaked and live as long as the process.
+    /// Returns the table for interpolation.
     pub fn interpolation_table(&self) -> Result<AnyTable, TableError> {
-        let leak_to_static_slice = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
-        let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| leak_to_static_slice(axis)).collect();
-        let values = leak_to_static_slice(&self.values);
-        match axes[..] {
-            [a] => Table::new([a], values).map(|table| self.apply_table_options(table).into()),
-            [a, b] => Table::new([a, b], values).map(|table| self.apply_table_options(table).into()),
-            [a, b, c] => Table::new([a, b, c], values).map(|table| self.apply_table_options(table).into()),
-            _ => Err(TableError::Size { expected: 3, found: axes.len() }),
-        }
-    }
-
-    fn apply_table_options<const N: usize>(&self, table: Table<N>) -> Table<N> {
+        let table = AnyTable::from_grid(&self.axes, &self.values)?;
         let table = if self.smooth { table.smooth() } else { table };
-        if self.extrapolated { table.extrapolated() } else { table }
+        Ok(if self.extrapolated { table.extrapolated() } else { table })
     }
 }
 

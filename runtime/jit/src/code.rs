@@ -4,13 +4,15 @@
 //! Memory of code is written first, then made executable and never written again. Every load and store of
 //! generated code is at a constant index that [`Code::call`] compares with the lengths of its slices.
 //!
-//! A program becomes a [`plan`] of steps on registers and memory. `x86` writes them as instructions with AVX2
-//! and FMA; for AArch64 Cranelift generates the code.
+//! The values of a program with lanes are split into [`pieces`] that fit registers. A program becomes a
+//! [`plan`] of steps on registers and memory. `x86` writes them as instructions with AVX2 and FMA; for
+//! AArch64 Cranelift generates the code, without lanes.
 
 #![allow(unsafe_code, reason = "calls of generated code, and the functions that it calls")]
 
 #[cfg(any(test, target_arch = "aarch64"))]
 mod cranelift;
+mod pieces;
 mod plan;
 #[cfg(test)]
 mod tests;
@@ -22,6 +24,7 @@ use crate::table::AnyTable;
 use linkwork::__private::{Arithmetic, Evaluate, dispatch};
 use linkwork_compiler::expr::Function as Elementary;
 use linkwork_compiler::lower::Program;
+use pieces::Pieces;
 use plan::{Allocation, TOGETHER};
 
 /// Declares functions in the calling convention of generated code, that of System V on all systems.
@@ -44,11 +47,15 @@ type Entry = unsafe extern "sysv64" fn(*const *const f64, *const f64, *const Any
 #[cfg(not(target_arch = "x86_64"))]
 type Entry = unsafe extern "C" fn(*const *const f64, *const f64, *const AnyTable, *mut f64, *mut f64);
 
-/// Machine code of a program, with the data that it reads.
+/// Four constants in one line of the cache.
+#[repr(align(32))]
+struct Constants(#[allow(dead_code, reason = "read by generated code")] [f64; 4]);
+
+/// Machine code of a program.
 pub(crate) struct Code {
     entry: Entry,
     /// Constants that the machine code loads; their address is fixed while the code exists.
-    constants: Box<[f64]>,
+    constants: Box<[Constants]>,
     /// Minimum number of entries of each input of the program.
     lengths: Box<[usize]>,
     /// Number of lookup tables that the code reads.
@@ -75,13 +82,15 @@ impl Code {
         return Code::by_cranelift(program, layout, results);
     }
 
-    /// Compiles a program to instructions of this x86-64 processor.
+    /// Compiles a program, or its variant with lanes, to instructions of this x86-64 processor.
     #[cfg(target_arch = "x86_64")]
     fn assemble_x86_code(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
         if !x86::is_supported() {
             return Err("the processor has neither AVX2 nor FMA".to_string());
         }
-        let mut plan = Allocation::new(program, layout, results, x86::REGISTERS)?;
+        let pieces = program.simd.as_ref().and_then(|simd| Pieces::split_program(simd, layout).ok());
+        let pieces = pieces.map_or_else(|| Pieces::split_program(program, layout), Ok)?;
+        let mut plan = Allocation::new(pieces, layout, results, x86::REGISTERS)?;
         let bytes = x86::write(&mut plan, results, helper_address)?;
         let memory = memmap2::MmapMut::map_anon(bytes.len()).and_then(|mut memory| {
             memory.copy_from_slice(&bytes);
@@ -95,7 +104,8 @@ impl Code {
     /// Compiles a program to machine code with Cranelift.
     #[cfg(any(test, target_arch = "aarch64"))]
     fn by_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
-        let plan = Allocation::new(program, layout, results, cranelift::REGISTERS)?;
+        let pieces = Pieces::split_program(program, layout)?;
+        let plan = Allocation::new(pieces, layout, results, cranelift::REGISTERS)?;
         let (module, address) = cranelift::translate(&plan, results, helper_address)?;
         let outputs = [results, program.outputs.len() - results];
         Ok(Code::new(plan, outputs, address, Executable::Module(Box::new(module))))
@@ -104,7 +114,10 @@ impl Code {
     fn new(plan: Allocation, outputs: [usize; 2], address: *const u8, memory: Executable) -> Code {
         // SAFETY: the code at this address was generated with this signature.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
-        let (constants, lengths) = (plan.constants.into(), plan.lengths.into());
+        let four_constants =
+            |list: &[f64]| Constants(std::array::from_fn(|k| list.get(k).copied().unwrap_or(0.0)));
+        let constants = plan.constants.chunks(4).map(four_constants).collect();
+        let lengths = plan.lengths.into();
         Code { entry, constants, lengths, tables: plan.tables, outputs, _memory: memory }
     }
 
@@ -127,7 +140,7 @@ impl Code {
         unsafe {
             (self.entry)(
                 pointers.as_ptr(),
-                self.constants.as_ptr(),
+                self.constants.as_ptr().cast(),
                 tables.as_ptr(),
                 results.as_mut_ptr(),
                 more.as_mut_ptr(),

@@ -410,7 +410,8 @@ impl Maker<'_, '_> {
         })
     }
 
-    /// Returns a program preceded by the programs of the passive forces that it uses.
+    /// Returns a program preceded by the programs of the passive forces that it uses. A program without them
+    /// keeps its variant with lanes.
     pub fn whole(&self, program: &Program) -> Program {
         let symbols = program.used_symbols();
         let takes_called_argument = |called: Called| {
@@ -429,7 +430,8 @@ impl Maker<'_, '_> {
             }
         }
         let outputs = merged.append(program);
-        merged.finish(outputs)
+        let calls_others = Called::ALL.into_iter().any(takes_called_argument);
+        Program { simd: program.simd.clone().filter(|_| !calls_others), ..merged.finish(outputs) }
     }
 
     /// Returns the function of an output that contains joint reactions, for the motion that state and inputs

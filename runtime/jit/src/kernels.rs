@@ -3,6 +3,9 @@
 
 #![allow(unsafe_code, reason = "calls of functions for the instructions of the host")]
 
+#[cfg(target_arch = "x86_64")]
+mod registers;
+
 /// Number of matrix rows that are computed together.
 const ROWS: usize = 8;
 /// Minimum number of rows for which registers of eight numbers are used.
@@ -99,6 +102,11 @@ pub(crate) fn minus_products<const K: usize>(
     columns: &[Vec<Columns>; K],
     work: &mut [f64],
 ) {
+    #[cfg(target_arch = "x86_64")]
+    if n > ROWS && std::arch::is_x86_feature_detected!("avx512f") {
+        // SAFETY: the processor has the feature.
+        return unsafe { registers::multiply(n, square, matrices, columns, work) };
+    }
     run_kernel(n, Products { n, square, matrices, columns, work });
 }
 
@@ -196,6 +204,41 @@ fn multiply_in_tiles<const M: usize>(
             match rows.first_chunk_mut() {
                 Some(rows) => *rows = *sum,
                 None => rows.iter_mut().zip(sum).for_each(|(to, from)| *to = *from),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Products with columns that share zeros equal sums over all entries, for all sizes around those of
+    /// registers.
+    #[test]
+    fn products_equal_sums_of_entries() {
+        for n in 1..60 {
+            let entry = |j: usize, i: usize, k: usize| ((37 * j + 11 * i + 5 * k) % 19) as f64 - 9.0;
+            let is_zero = |j: usize, i: usize| j > 5 && i > 5 && j / 3 != i / 3;
+            let square: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n, 0)).collect();
+            let matrix = |which: usize| -> Vec<f64> {
+                let entry = |j, i| if is_zero(j, i) { 0.0 } else { entry(j, i, which) };
+                (0..n * n).map(|k| entry(k / n, k % n)).collect()
+            };
+            let (mut first, mut second) = (matrix(1), matrix(2));
+            let columns: Vec<usize> = (0..n).filter(|j| j % 7 != 3).collect();
+            let groups = [1, 2].map(|_| Columns::group(n, &columns, is_zero));
+            let mut work = vec![f64::NAN; work_space_size(n)];
+            minus_products(n, &square, [&mut first, &mut second], &groups, &mut work);
+            for (which, found) in [(1, first), (2, second)] {
+                let before = matrix(which);
+                for k in 0..n * n {
+                    let (j, i) = (k / n, k % n);
+                    let sum: f64 = (0..n).map(|m| square[m * n + i] * before[j * n + m]).sum();
+                    // Integers are exact.
+                    let expected = if columns.contains(&j) { -sum } else { before[k] };
+                    assert_eq!(found[k], expected, "entry ({i}, {j}) of {n} rows");
+                }
             }
         }
     }

@@ -25,6 +25,7 @@ mod methods;
 mod names;
 mod padded;
 mod robot;
+mod roll_out;
 mod routine;
 mod shared;
 mod simulate;

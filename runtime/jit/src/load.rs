@@ -151,7 +151,7 @@ impl Loader {
             requests.equations = Printed::Structure;
         }
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
-        let passes = Passes { lanes: false, ..Passes::default() };
+        let passes = Passes { lanes: cfg!(target_arch = "x86_64"), ..Passes::default() };
         let allowed = reject_reproducible(&source, "loaded mechanisms", cx);
         let compiled = allowed.and_then(|()| compile_with(&source, &graph, passes, cx));
         let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else {

@@ -309,7 +309,8 @@ impl Robot {
         Ok(self)
     }
 
-    /// Sets an interpolation table by its name: a `Table<1>`, `Table<2>` or `Table<3>`.
+    /// Sets a table: an [`AnyTable`], or a `Table<1>`, `Table<2>` or `Table<3>`. The memory of the replaced
+    /// table is returned when no other robot uses it.
     ///
     /// # Errors
     ///

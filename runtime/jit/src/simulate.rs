@@ -11,8 +11,10 @@ use driver::{Driver, Given, Moving, Settings, on_large_stack};
 pub use method::Method;
 use method::STEP;
 
-/// Controller of a simulation: a function of time, configuration and velocity that writes the inputs. An
-/// error ends the simulation.
+/// Maximum number of samples of a run.
+const MOST_SAMPLES: f64 = 5e7;
+
+/// Function of time, configuration and velocity that writes the inputs. An error ends the run.
 pub type Controller<'a> = &'a mut (dyn FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send);
 
 /// Inputs of the mechanism during a simulation.
@@ -203,8 +205,23 @@ impl<'a, 'i> Simulation<'a, 'i> {
                 return Err(invalid_value_error(name, value));
             }
         }
+        if !self.start.is_finite() {
+            return Err(Error::Value(format!(
+                "the time at the start must be finite, but it is {}",
+                self.start
+            )));
+        }
         if self.every == Some(0.0) {
             return Err(Error::Value("the interval between samples must not be zero".to_string()));
+        }
+        if self.every.is_some_and(|every| self.duration / every > MOST_SAMPLES) {
+            let message = format!(
+                "{:.3e} samples are too many: the interval between samples is {} s, the duration {} s",
+                self.duration / self.every.unwrap_or(1.0),
+                self.every.unwrap_or(0.0),
+                self.duration
+            );
+            return Err(Error::Value(message));
         }
         let q = self.q.map_or_else(|| robot.neutral().map(|q| q.as_slice().to_vec()), |q| Ok(q.to_vec()))?;
         let mut v = self.v.map_or_else(|| vec![0.0; n], <[f64]>::to_vec);
@@ -241,7 +258,8 @@ impl<'a, 'i> Simulation<'a, 'i> {
         );
         if with_contacts && !is_contact_method {
             return Err(Error::Value(format!(
-                "`{}` has contacts: choose the method `time_stepping`, `time_stepping_midpoint`, `time_stepping_leapfrog` or `event_driven`, or leave the contacts out",
+                "`{}` has contacts: choose the method `time_stepping`, `time_stepping_midpoint`, \
+                 `time_stepping_leapfrog` or `event_driven`, or leave the contacts out",
                 robot.name()
             )));
         }

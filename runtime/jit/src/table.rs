@@ -1,23 +1,75 @@
 //! Interpolation tables of a mechanism with any number of variables, which are parameters.
 
-use linkwork::Table;
+use linkwork::{Table, TableError};
+use std::sync::Arc;
 
 /// Interpolation table of one, two or three variables, or a table that has not been set.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// Copies share the values, whose memory is returned with the last copy. Tables of static slices, of `Vec`
+/// and of `Arc` become values of this type by `into`.
+///
+/// ```
+/// use linkwork::Table;
+/// use linkwork_jit::AnyTable;
+///
+/// let table = Table::from_storage([vec![0.0, 1.0]], vec![2.0, 3.0])?;
+/// assert_eq!(AnyTable::from(table), AnyTable::from_grid(&[[0.0, 1.0]], &[2.0, 3.0])?);
+/// # Ok::<(), linkwork::TableError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AnyTable {
     /// Missing table, which has not been set: its values are NaN.
     Missing,
     /// Interpolation table of one variable.
-    One(Table<1>),
+    One(Table<1, Arc<[f64]>>),
     /// Interpolation table of two variables.
-    Two(Table<2>),
+    Two(Table<2, Arc<[f64]>>),
     /// Interpolation table of three variables.
-    Three(Table<3>),
+    Three(Table<3, Arc<[f64]>>),
 }
 
 impl AnyTable {
-    /// Returns the number of variables of the table, zero for a missing table.
+    /// Returns a table that is linear between its grid points and constant beyond the grid. Values are
+    /// ordered like the grid points, with the last axis varying fastest.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Table::new`]. Other numbers of axes than one, two and three are
+    /// [`TableError::Size`].
+    pub fn from_grid(axes: &[impl AsRef<[f64]>], values: &[f64]) -> Result<AnyTable, TableError> {
+        let list = |axis: &dyn AsRef<[f64]>| Arc::<[f64]>::from(axis.as_ref());
+        match axes {
+            [a] => Table::from_storage([list(a)], values.into()).map(AnyTable::One),
+            [a, b] => Table::from_storage([list(a), list(b)], values.into()).map(AnyTable::Two),
+            [a, b, c] => Table::from_storage([list(a), list(b), list(c)], values.into()).map(AnyTable::Three),
+            _ => Err(TableError::Size { expected: 3, found: axes.len() }),
+        }
+    }
+
+    /// Returns the table with continuous slopes: see [`Table::smooth`].
+    #[must_use]
+    pub fn smooth(self) -> AnyTable {
+        match self {
+            AnyTable::Missing => AnyTable::Missing,
+            AnyTable::One(table) => AnyTable::One(table.smooth()),
+            AnyTable::Two(table) => AnyTable::Two(table.smooth()),
+            AnyTable::Three(table) => AnyTable::Three(table.smooth()),
+        }
+    }
+
+    /// Returns the table extrapolated linearly beyond its grid: see [`Table::extrapolated`].
+    #[must_use]
+    pub fn extrapolated(self) -> AnyTable {
+        match self {
+            AnyTable::Missing => AnyTable::Missing,
+            AnyTable::One(table) => AnyTable::One(table.extrapolated()),
+            AnyTable::Two(table) => AnyTable::Two(table.extrapolated()),
+            AnyTable::Three(table) => AnyTable::Three(table.extrapolated()),
+        }
+    }
+
+    /// Returns the number of variables, zero for a missing table.
     #[must_use]
     pub fn variables(&self) -> usize {
         match self {
@@ -39,20 +91,20 @@ impl AnyTable {
     }
 }
 
-impl From<Table<1>> for AnyTable {
-    fn from(table: Table<1>) -> AnyTable {
-        AnyTable::One(table)
+impl<V: Into<Arc<[f64]>>> From<Table<1, V>> for AnyTable {
+    fn from(table: Table<1, V>) -> AnyTable {
+        AnyTable::One(table.into_storage())
     }
 }
 
-impl From<Table<2>> for AnyTable {
-    fn from(table: Table<2>) -> AnyTable {
-        AnyTable::Two(table)
+impl<V: Into<Arc<[f64]>>> From<Table<2, V>> for AnyTable {
+    fn from(table: Table<2, V>) -> AnyTable {
+        AnyTable::Two(table.into_storage())
     }
 }
 
-impl From<Table<3>> for AnyTable {
-    fn from(table: Table<3>) -> AnyTable {
-        AnyTable::Three(table)
+impl<V: Into<Arc<[f64]>>> From<Table<3, V>> for AnyTable {
+    fn from(table: Table<3, V>) -> AnyTable {
+        AnyTable::Three(table.into_storage())
     }
 }

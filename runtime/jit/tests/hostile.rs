@@ -3,7 +3,7 @@
 //! `LINKWORK_LOADS` and `LINKWORK_INPUTS` choose the numbers of loads and of random inputs, `LINKWORK_SEED`
 //! the first seed. Each input is in a file `input` in a folder of the temporary folder until the next one.
 
-use linkwork_jit::{Error, Loader, Robot};
+use linkwork_jit::{AnyTable, Error, Loader, Robot};
 use random::Random;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,6 +60,38 @@ fn memory_is_returned() -> Result<(), Error> {
     (0..loads).try_for_each(|_| load_and_call())?;
     let growth = resident_memory().unwrap_or(before).saturating_sub(before);
     assert!(growth < GROWTH, "{growth} bytes more after {loads} loads");
+    Ok(())
+}
+
+/// A robot whose table is replaced uses no more memory, and equal tables give equal forces.
+#[test]
+fn memory_of_replaced_tables_is_returned() -> Result<(), Box<dyn std::error::Error>> {
+    const POINTS: usize = 100;
+    const SETS: usize = 10_000;
+    let _turn = TURN.lock();
+    let mut robot = Loader::text(
+        "#[mechanism] struct Slider {
+            force: Table<1>,
+            #[body(mass = 2)] block: Body,
+            #[joint(ground -> block, along = x)] slide: Sleeve,
+            #[acts(on = slide, value = -force(slide))] spring: Force,
+        }",
+    )
+    .load()?;
+    let axis: Vec<f64> = (0..POINTS).map(|k| k as f64).collect();
+    let mut set_and_call = |stiffness: f64| -> Result<(), Box<dyn std::error::Error>> {
+        let values: Vec<f64> = axis.iter().map(|x| stiffness * x).collect();
+        robot.set_table("force", AnyTable::from_grid(&[&axis], &values)?)?;
+        let found = robot.forward_dynamics(&[3.0], &[0.0], &[0.0])?[0];
+        assert!((found + 1.5 * stiffness).abs() < 1e-12 * stiffness.max(1.0), "{found}");
+        Ok(())
+    };
+    (0..SETS / 4).try_for_each(|k| set_and_call(k as f64))?;
+    let Some(before) = resident_memory() else { return Ok(()) };
+    (0..SETS).try_for_each(|k| set_and_call(k as f64))?;
+    let growth = resident_memory().unwrap_or(before).saturating_sub(before);
+    // The values alone are 8 MB.
+    assert!(growth < 500_000, "{growth} bytes more after {SETS} tables");
     Ok(())
 }
 

@@ -62,6 +62,9 @@ def call(function: Function, mechanism: Any, given: tuple[Any, ...], named: dict
     # Matrices are stored in column-major order, which is the memory layout of their transposes.
     stored = [lead + tuple(shape[::-1]) for _, shape in function.results]
     found = [np.empty(shape) for shape in stored] if out is None else _placed(name, out, stored, function)
+    if out is not None:
+        # Results may replace arguments.
+        arrays = [array.copy() if any(np.may_share_memory(array, own) for own in found) else array for array in arrays]
     if states != 0:
         n = 1 if states is None else states
         threads = (0 if n >= 256 else 1) if threads is None else whole(threads, "threads")
@@ -102,10 +105,12 @@ def _placed(name: str, out: Any, stored: list[tuple[int, ...]], function: Functi
     for array, shape, (result, own) in zip(given, stored, function.results):
         kept = array.swapaxes(-1, -2) if len(own) > 1 and isinstance(array, np.ndarray) and array.ndim > 1 else array
         fits = isinstance(kept, np.ndarray) and kept.shape == shape and kept.dtype == np.float64
-        if not fits or not kept.flags.c_contiguous or not kept.flags.writeable:
+        if not fits or not kept.flags.c_contiguous or not kept.flags.writeable or not kept.flags.aligned:
             raise ValueError(
                 f"{name}: `out` must be the arrays that a call with as many states returned, but {result} differs"
             )
+        if any(np.may_share_memory(kept, other) for other in arrays):
+            raise ValueError(f"{name}: the arrays of `out` share memory")
         arrays.append(kept)
     return arrays
 

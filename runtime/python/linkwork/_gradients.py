@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ._functions import _frame
 from ._mechanism import Mechanism
-from ._names import index, number
+from ._names import Error, index, number
 from ._native import Function, Robot, roll_back
 
 Array = NDArray[Any]
@@ -94,6 +94,8 @@ class Rollout:
     velocities, and the inputs of each step."""
 
     def __init__(self, kind: type[Mechanism], h: float, start: float = 0.0) -> None:
+        if kind._description["constraints"] or kind._description["contacts"]:
+            raise Error(f"{kind.name}: gradients of rollouts need a mechanism without constraints and contacts")
         self.kind, self.h, self.start = kind, number(h, "`h`"), number(start, "`start`")
         self.ends = [len(kind.parameter_names), kind.nq, kind.nv, kind.nu]
 

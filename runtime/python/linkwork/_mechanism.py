@@ -396,7 +396,8 @@ class Mechanism(metaclass=_Kind):
         threads: int = 0,
     ) -> tuple[NDArray[Any], NDArray[Any]]:
         """Simulates many motions by steps of the classical Runge–Kutta method on all processors. Other threads of
-        Python continue meanwhile. If the mechanism has arrays of parameters, each state has its own values.
+        Python continue meanwhile. If the mechanism has arrays of parameters, each state has its own values. States
+        of mechanisms with constraints satisfy them after each step; mechanisms with contacts move by time stepping.
 
         Args:
             q: initial configurations, (N, nq).

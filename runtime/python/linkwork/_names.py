@@ -92,7 +92,8 @@ def numbers(value: Any, dtype: Any, what: str) -> NDArray[Any]:
         # NumPy would convert strings and dates.
         if array.dtype.kind not in "biufO":
             raise ValueError
-        return np.asarray(array, dtype)
+        array = np.asarray(array, dtype)
+        return array if array.flags.aligned else array.copy()
     except (TypeError, ValueError) as error:
         raise type(error)(f"{what} is an array of numbers, found {value!r:.100}") from None
 

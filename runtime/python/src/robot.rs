@@ -3,7 +3,6 @@
 use crate::error::{exception, failure};
 use crate::function::Function;
 use crate::shared::{Failed, distribute};
-use linkwork::Table;
 use linkwork_jit::{AdjointStepper, AnyTable, Error, Loader, Quantity, Sensitivity, Stepper};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray2,
@@ -11,9 +10,6 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::Mutex;
 
 /// Loaded mechanism with the values of its parameters, or with one set of values for each state of a batch.
 #[pyclass(frozen, module = "linkwork._native")]
@@ -160,14 +156,16 @@ impl Robot {
         extrapolated: bool,
     ) -> PyResult<Robot> {
         let mut robot = self.robot.clone();
-        let table = table(&axes, &values, smooth, extrapolated)
+        let table = AnyTable::from_grid(&axes, &values)
             .map_err(|error| failure(py, format!("table {name:?}: {error}")))?;
+        let table = if smooth { table.smooth() } else { table };
+        let table = if extrapolated { table.extrapolated() } else { table };
         robot.set_table(name, table).map_err(|error| exception(py, &error, None))?;
         Ok(Robot { robot, sets: self.sets.clone() })
     }
 
-    /// Advances states by steps of the classical Runge–Kutta method. The arrays of configurations and
-    /// velocities initially contain the initial states.
+    /// Advances states by steps of the classical Runge–Kutta method, or by time stepping at contacts. The
+    /// arrays of configurations and velocities initially contain the initial states.
     #[pyo3(signature = (q, v, inputs, *, start, h, threads))]
     #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn roll_out(
@@ -185,17 +183,26 @@ impl Robot {
         let own = inputs.as_ref().is_some_and(|inputs| inputs.as_array().shape()[0] > 1);
         let inputs = inputs.as_ref().map_or(Ok(&[][..]), |inputs| inputs.as_slice())?;
         let (mut q, mut v) = (q.as_slice_mut()?, v.as_slice_mut()?);
-        let stepper = Stepper::new(&self.robot).map_err(|error| exception(py, &error, None))?;
+        // Steps between constraints and contacts are those of simulations.
+        let is_free = self.robot.constraints() == 0 && self.robot.contacts() == 0;
+        let stepper = is_free.then(|| Stepper::new(&self.robot)).transpose();
+        let stepper = stepper.map_err(|error| exception(py, &error, None))?;
         let sets = self.sets.as_ref();
         let zeros = vec![0.0; nu];
         let simulate_states = |first: usize, _: usize, (q, v): (&mut [f64], &mut [f64])| -> Failed {
-            let mut stepper = stepper.clone();
+            let (mut stepper, mut robot) = (stepper.clone(), self.robot.clone());
             let mut failed = None;
             let states = q.chunks_exact_mut((rows * nq).max(1)).zip(v.chunks_exact_mut((rows * nv).max(1)));
             for (k, (q, v)) in states.enumerate() {
                 let state = first + k;
-                let set = set_parameters(stepper.robot_mut(), sets, state);
+                let set =
+                    set_parameters(stepper.as_mut().map_or(&mut robot, Stepper::robot_mut), sets, state);
                 let motion = set.and_then(|()| {
+                    let Some(stepper) = &mut stepper else {
+                        let row = if own { state * (rows - 1) } else { 0 };
+                        let inputs = inputs.get(row * nu..(row + rows - 1) * nu).unwrap_or(&[]);
+                        return robot.roll_out(start, h, inputs, [q, v]);
+                    };
                     for step in 0..rows - 1 {
                         let row = if own { state * (rows - 1) + step } else { step };
                         let u = inputs.get(row * nu..(row + 1) * nu).unwrap_or(&zeros);
@@ -323,45 +330,4 @@ pub fn set_parameters(
     let width = values.len() / (*count).max(1);
     let first = if *count == 1 { 0 } else { state * width };
     robot.set_parameters(&values[first..first + width])
-}
-
-/// Returns a lookup table for these axes and values. Equal values share memory, which is never freed.
-fn table(
-    axes: &[Vec<f64>],
-    values: &[f64],
-    smooth: bool,
-    extrapolated: bool,
-) -> Result<AnyTable, linkwork::TableError> {
-    fn shaped<const N: usize>(table: Table<N>, smooth: bool, extrapolated: bool) -> Table<N> {
-        let table = if smooth { table.smooth() } else { table };
-        if extrapolated { table.extrapolated() } else { table }
-    }
-    let kept: Vec<&'static [f64]> = axes.iter().map(|axis| keep(axis)).collect();
-    let values = keep(values);
-    match kept[..] {
-        [a] => Table::new([a], values).map(|table| shaped(table, smooth, extrapolated).into()),
-        [a, b] => Table::new([a, b], values).map(|table| shaped(table, smooth, extrapolated).into()),
-        [a, b, c] => Table::new([a, b, c], values).map(|table| shaped(table, smooth, extrapolated).into()),
-        _ => Err(linkwork::TableError::Size { expected: 3, found: axes.len() }),
-    }
-}
-
-/// Lists of numbers that have the same hash.
-type EqualHashes = Vec<&'static [f64]>;
-
-/// Returns a list of numbers with static lifetime. Equal lists are stored once and never freed.
-fn keep(list: &[f64]) -> &'static [f64] {
-    static LISTS: Mutex<Option<HashMap<u64, EqualHashes>>> = Mutex::new(None);
-    let mut hasher = DefaultHasher::new();
-    list.iter().for_each(|x| x.to_bits().hash(&mut hasher));
-    let mut lists = LISTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let lists = lists.get_or_insert_default().entry(hasher.finish()).or_default();
-    let equal =
-        |known: &&&'static [f64]| known.iter().map(|x| x.to_bits()).eq(list.iter().map(|x| x.to_bits()));
-    if let Some(known) = lists.iter().find(equal) {
-        return known;
-    }
-    let kept: &'static [f64] = Vec::leak(list.to_vec());
-    lists.push(kept);
-    kept
 }

@@ -56,6 +56,21 @@ class UnderConstraints(unittest.TestCase):
         jacobian = self.m.constraint_jacobian([0.0, -1.0])
         np.testing.assert_allclose(jacobian.T @ multipliers, [0.0, 3.0 * 9.81], rtol=1e-12, atol=1e-12)
 
+    def test_rollouts_stay_on_the_wire(self):
+        # A bead on a circle of radius one is a pendulum: its energy is constant.
+        angle = np.array([0.3, 1.2, 2.5])
+        q = np.stack([np.sin(angle), -np.cos(angle)], axis=1)
+        all_q, all_v = self.m.roll_out(q, np.zeros((3, 2)), steps=400, h=5e-3)
+        np.testing.assert_allclose(np.hypot(all_q[..., 0], all_q[..., 1]), 1.0, atol=1e-9)
+        np.testing.assert_allclose(np.sum(all_q * all_v, axis=-1), 0.0, atol=1e-9)
+        energy = 0.5 * np.sum(all_v**2, axis=-1) + 9.81 * all_q[..., 1]
+        np.testing.assert_allclose(energy, np.broadcast_to(energy[:, :1], energy.shape), atol=1e-5)
+        self.assertGreater(np.abs(all_q[:, :, 0]).max(), 0.5)
+        alone, _ = self.m.roll_out(q[1:2], np.zeros((1, 2)), steps=400, h=5e-3, threads=1)
+        np.testing.assert_array_equal(alone[0], all_q[1])
+        with self.assertRaisesRegex(linkwork.Error, "step"):
+            self.m.roll_out(q, np.zeros((3, 2)), steps=4, h=-1.0)
+
     def test_assembling(self):
         q = self.m.assemble([0.6, -0.7], ["plane.x"])
         np.testing.assert_allclose(q, [0.6, -0.8], rtol=1e-12)
@@ -124,6 +139,16 @@ class WithContacts(unittest.TestCase):
             self.assertAlmostEqual(stepped.q[-1, 0], 0.0, places=6)
         with self.assertRaisesRegex(linkwork.Error, "has contacts"):
             m.simulate([1.0], duration=1.0, method="rk4", step=1e-3)
+
+    def test_rollouts_bounce(self):
+        # The heights of the bounces are a quarter of the heights before; all balls rest in the end.
+        m, start = compiled(BALL)(), np.array([[0.25], [1.0]])
+        q, v = m.roll_out(start, np.zeros((2, 1)), steps=4000, h=1e-3)
+        for k, height in enumerate(start[:, 0]):
+            landing = int(1000 * np.sqrt(2 * height / 9.81))
+            self.assertAlmostEqual(q[k, landing + 5 :].max(), height / 4, delta=0.01)
+        np.testing.assert_allclose([q[:, -1], v[:, -1]], 0.0, atol=1e-8)
+        self.assertGreater(q.min(), -1e-3)
 
 
 class OfRobots(unittest.TestCase):

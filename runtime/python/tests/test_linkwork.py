@@ -138,6 +138,25 @@ class OfAPendulum(unittest.TestCase):
         np.testing.assert_allclose(gain, [[first, second]], rtol=1e-9)
         np.testing.assert_allclose(np.sort(np.linalg.eigvals(system.a - system.b @ gain)), np.sort(poles), rtol=1e-9)
 
+    def test_arrays_that_share_memory_or_lie_at_odd_addresses(self):
+        q, v, a = np.random.default_rng(5).normal(size=(3, 7, 1))
+        expected = self.m.inverse_dynamics(q, v, a)
+        odd = np.frombuffer(b"\0" + q.tobytes(), dtype=np.uint8)[1:].view(np.float64).reshape(7, 1)
+        np.testing.assert_array_equal(self.m.inverse_dynamics(odd, v, a), expected)
+        reused = q.copy()
+        self.assertIs(self.m.inverse_dynamics(reused, v, a, out=reused), reused)
+        np.testing.assert_array_equal(reused, expected)
+        shifted = np.concatenate([q, [[0.0]]])
+        self.m.inverse_dynamics(shifted[:7], v, a, out=shifted[1:])
+        np.testing.assert_array_equal(shifted[1:], expected)
+        both = np.zeros((7, 1, 1))
+        with self.assertRaisesRegex(ValueError, "share memory"):
+            self.m.inverse_dynamics_derivatives(q, v, a, out=(both, both))
+        with self.assertRaisesRegex(linkwork.Error, "samples are too many"):
+            self.m.simulate([0.1], duration=1e9, every=1e-9)
+        with self.assertRaisesRegex(linkwork.Error, "time at the start"):
+            self.m.simulate([0.1], duration=0.1, start=np.nan)
+
     def test_rollouts_are_steps_one_after_another(self):
         rng = np.random.default_rng(2)
         q, v = rng.normal(size=(2, 21, 1))

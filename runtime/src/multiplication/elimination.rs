@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn leading_blocks_of_all_sizes_are_inverted() {
-        let factor = numbers::<N, N>(3.0);
+        let factor = pseudorandom_matrix::<N, N>(3.0);
         let matrix = factor * factor.transpose() + SMatrix::<f64, N, N>::identity() * 4.0;
         macro_rules! check_sizes {
             ($($size:literal)*) => {$({

@@ -9,7 +9,14 @@ impl Program {
     /// Reorders the instructions so that few values are live at once. `arrays` are the lengths of the arrays
     /// to which consecutive results belong. The best of several orders is used.
     pub fn with_few_live_values(self, arrays: &[usize]) -> Program {
-        let mut needs = OperandNeeds::from_program(&self);
+        let order = self.order_with_few_live_values(arrays);
+        self.reorder_instructions(&order)
+    }
+
+    /// Returns the order of the instructions that [`with_few_live_values`](Self::with_few_live_values) uses.
+    #[must_use]
+    pub fn order_with_few_live_values(&self, arrays: &[usize]) -> Vec<usize> {
+        let mut needs = OperandNeeds::from_program(self);
         let mut best: Vec<usize> = (0..self.instructions.len()).collect();
         let mut fewest = needs.maximum_live_values(&best);
         let mut consider = |order: Vec<usize>, needs: &OperandNeeds| {
@@ -24,13 +31,13 @@ impl Program {
             for _ in 0..2 {
                 results.reverse();
                 needs.results.clone_from(&results);
-                consider(needs.depth_first_order(&self), &needs);
+                consider(needs.depth_first_order(self), &needs);
                 if self.instructions.len() <= GREEDY {
                     consider(needs.schedule_backwards(), &needs);
                 }
             }
         }
-        self.reorder_instructions(&best)
+        best
     }
 
     /// Returns the instructions of the results, with `together` consecutive arrays of equal length entry by

@@ -34,7 +34,8 @@ enum {
     LW_INPUTS = 2,
     LW_PARAMETERS = 3,
     LW_FRAMES = 4,
-    LW_FUNCTIONS = 5
+    LW_FUNCTIONS = 5,
+    LW_TABLES = 6
 };
 
 /* A mechanism with values of its parameters. */
@@ -65,7 +66,7 @@ size_t lw_count(const lw_robot *robot, int list);
 /* Name of an entry of a list; NULL if there is none. */
 const char *lw_name(const lw_robot *robot, int list, size_t index);
 
-/* Unit of an entry of a list; empty for frames and functions, NULL if there is no such entry. */
+/* Unit of an entry of a list; empty for frames, functions and tables, NULL if there is no such entry. */
 const char *lw_unit(const lw_robot *robot, int list, size_t index);
 
 /* Index of an entry by its name. */
@@ -75,6 +76,14 @@ int lw_index(const lw_robot *robot, int list, const char *name, size_t *index);
 int lw_set_parameter(lw_robot *robot, size_t index, double value);
 int lw_parameter(const lw_robot *robot, size_t index, double *value);
 int lw_validate(const lw_robot *robot);
+
+/* Interpolation tables: functions of one to three variables that are parameters. A table is set by the grid points
+ * of each axis, their numbers, and the values at all grid points, the last axis varying fastest. It is linear
+ * between the points and constant beyond, or has the options LW_SMOOTH and LW_EXTRAPOLATED. Values are copied. */
+enum { LW_SMOOTH = 1, LW_EXTRAPOLATED = 2 };
+size_t lw_variables(const lw_robot *robot, size_t table);
+int lw_set_table(lw_robot *robot, size_t table, const double *const *axes, const size_t *lengths,
+                 const double *values, int options);
 
 /* Limits: NV values each, infinite where there are none. */
 int lw_limits(const lw_robot *robot, double *lower, double *upper, double *velocity, double *effort);

@@ -5,10 +5,13 @@
 #![allow(missing_docs, reason = "the header documents the functions")]
 
 mod raw;
+mod simulate;
+mod table;
 
-use linkwork_jit::{Error, Function, Inputs, Loader, Method, Robot};
+use linkwork::TableError;
+use linkwork_jit::{Error, Function, Loader, Robot};
 use std::cell::RefCell;
-use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::ffi::{CStr, CString, c_char, c_int};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Loaded robot, with its names and documentation as C strings.
@@ -17,8 +20,8 @@ pub struct LwRobot {
     functions: Vec<Function>,
     /// Names of arguments and results, and documentation, of each function.
     signatures: Vec<Signature>,
-    /// Names and units of the lists that the C header declares, such as coordinates and inputs.
-    lists: [Vec<(CString, CString)>; 6],
+    /// Names and units of the lists of the header.
+    lists: [Vec<(CString, CString)>; 7],
     name: CString,
 }
 
@@ -36,6 +39,8 @@ enum Failure {
     Null,
     /// Failure: an index for which no entry exists.
     Index(usize),
+    /// Grid points and values that do not form a table.
+    Table(TableError),
     Linkwork(Error),
 }
 
@@ -53,7 +58,7 @@ impl Failure {
             Failure::Linkwork(Error::Mechanism(_)) => 3,
             Failure::Index(_) | Failure::Linkwork(Error::Unknown { .. } | Error::OtherMechanism(_)) => 4,
             Failure::Linkwork(Error::Length { .. } | Error::Arguments { .. }) => 5,
-            Failure::Linkwork(Error::Missing(_) | Error::Value(_)) => 6,
+            Failure::Table(_) | Failure::Linkwork(Error::Missing(_) | Error::Value(_)) => 6,
             Failure::Linkwork(Error::Motion { .. }) => 9,
             Failure::Null => 7,
             Failure::Linkwork(_) => 8,
@@ -64,6 +69,7 @@ impl Failure {
         match self {
             Failure::Null => "a pointer is NULL, or a text is not UTF-8".to_string(),
             Failure::Index(index) => format!("there is no entry {index}"),
+            Failure::Table(error) => error.to_string(),
             Failure::Linkwork(error) => error.to_string(),
         }
     }
@@ -115,9 +121,10 @@ impl LwRobot {
         let [configuration, velocities, inputs, parameters] = quantities;
         let frames = robot.frames().iter().map(|name| name_without_unit(name)).collect();
         let names = functions.iter().map(|f| name_without_unit(f.name())).collect();
+        let tables = robot.tables().iter().map(|(name, _)| name_without_unit(name)).collect();
         LwRobot {
             signatures: functions.iter().map(signature_of_function).collect(),
-            lists: [configuration, velocities, inputs, parameters, frames, names],
+            lists: [configuration, velocities, inputs, parameters, frames, names, tables],
             name: c_text(robot.name()),
             functions,
             robot,
@@ -228,7 +235,7 @@ pub unsafe extern "C" fn lw_index(
         let (robot, name, to) = unsafe { (raw::shared(robot)?, raw::text(name)?, raw::unique(to)?) };
         let is_searched_name = |known: &CStr| known.to_bytes() == name.as_bytes();
         let found = robot.names_of_list(list)?.iter().position(|(known, _)| is_searched_name(known));
-        let kinds = ["coordinate", "velocity", "input", "parameter", "frame", "function"];
+        let kinds = ["coordinate", "velocity", "input", "parameter", "frame", "function", "table"];
         *to = match found {
             Some(index) => index,
             None if list as usize == FUNCTIONS => {
@@ -436,141 +443,5 @@ pub unsafe extern "C" fn lw_call_many(
             *list = unsafe { raw::array(*pointer, *length) }?;
         }
         Ok(robot.robot.evaluate_many_into(f, count, &lists[..arguments.min(ARGUMENTS)], out)?)
-    })
-}
-
-/// Settings of a simulation, in the layout that the C header declares.
-#[repr(C)]
-pub struct LwSimulation {
-    start: f64,
-    duration: f64,
-    every: f64,
-    method: *const c_char,
-    setting: f64,
-    control: Option<raw::Control>,
-    user: *mut c_void,
-    period: f64,
-    without_contacts: c_int,
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn lw_sample(robot: *const LwRobot) -> usize {
-    // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || Ok(sample_width(&unsafe { raw::shared(robot) }?.robot)))
-}
-
-fn sample_width(robot: &Robot) -> usize {
-    1 + robot.nq() + robot.nv() + robot.states() + robot.nu()
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn lw_simulate(
-    robot: *const LwRobot,
-    q: *const f64,
-    v: *const f64,
-    settings: *const LwSimulation,
-    samples: *mut f64,
-    rows: usize,
-    count: *mut usize,
-) -> c_int {
-    run_guarded(|| {
-        // SAFETY: a robot of this library, and variables of the caller, as the header says.
-        let (robot, settings, count) =
-            unsafe { (&raw::shared(robot)?.robot, raw::shared(settings)?, raw::unique(count)?) };
-        let width = sample_width(robot);
-        *count = 0;
-        // SAFETY: arrays of these lengths, as the header says.
-        let (q, v, samples) = unsafe {
-            (
-                raw::array(q, robot.nq())?,
-                raw::array(v, robot.nv())?,
-                raw::array_mut(samples, rows.checked_mul(width).ok_or(Failure::Index(rows))?)?,
-            )
-        };
-        // SAFETY: a text of the caller, as the header says.
-        let name = match settings.method.is_null() {
-            true => "automatic",
-            false => unsafe { raw::text(settings.method) }?,
-        };
-        let nonzero_setting = |x: f64| (x != 0.0).then_some(x);
-        let method = Method::from_name(name, nonzero_setting(settings.setting))?;
-        let control = settings.control.map(|control| raw::Controller { control, user: settings.user });
-        let mut controller = |t: f64, q: &[f64], v: &[f64], u: &mut [f64]| match &control {
-            Some(control) => control.call(t, q, v, u),
-            None => Ok(()),
-        };
-        let inputs = match (&control, nonzero_setting(settings.period)) {
-            (None, _) => Inputs::Zero,
-            (Some(_), None) => Inputs::Function(&mut controller),
-            (Some(_), Some(period)) => Inputs::Sampled(period, &mut controller),
-        };
-        let run = robot.simulate().start_at(settings.start).from(q, v).inputs(inputs).method(method);
-        let run = run.duration(settings.duration);
-        let run = match nonzero_setting(settings.every) {
-            Some(every) => run.sample_every(every),
-            None => run,
-        };
-        let run = if settings.without_contacts != 0 { run.without_contacts() } else { run };
-        let mut places = samples.chunks_exact_mut(width);
-        let ended = run.each(&mut |sample| {
-            *count += 1;
-            let Some(place) = places.next() else { return };
-            let all = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v).chain(&sample.u);
-            place.iter_mut().zip(all).for_each(|(to, from)| *to = *from);
-        });
-        ended?;
-        match *count <= rows {
-            true => Ok(()),
-            false => {
-                let (of, name) = ("lw_simulate".to_string(), "samples".to_string());
-                Err(Error::Length { of, name, expected: *count * width, found: rows * width }.into())
-            }
-        }
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn lw_assemble(
-    robot: *const LwRobot,
-    q: *const f64,
-    held: *const usize,
-    count: usize,
-    result: *mut f64,
-) -> c_int {
-    run_guarded(|| {
-        // SAFETY: a robot of this library, as the header says.
-        let robot = &unsafe { raw::shared(robot) }?.robot;
-        // SAFETY: arrays of these lengths, as the header says.
-        let (q, held, to) = unsafe {
-            (raw::array(q, robot.nq())?, raw::array(held, count)?, raw::array_mut(result, robot.nq())?)
-        };
-        to.copy_from_slice(robot.assemble(q, held)?.as_slice());
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn lw_complete_velocity(
-    robot: *const LwRobot,
-    q: *const f64,
-    v: *const f64,
-    held: *const usize,
-    count: usize,
-    result: *mut f64,
-) -> c_int {
-    run_guarded(|| {
-        // SAFETY: a robot of this library, as the header says.
-        let robot = &unsafe { raw::shared(robot) }?.robot;
-        // SAFETY: arrays of these lengths, as the header says.
-        let (q, v, held, to) = unsafe {
-            (
-                raw::array(q, robot.nq())?,
-                raw::array(v, robot.nv())?,
-                raw::array(held, count)?,
-                raw::array_mut(result, robot.nv())?,
-            )
-        };
-        to.copy_from_slice(robot.complete_velocity(q, v, held)?.as_slice());
-        Ok(())
     })
 }

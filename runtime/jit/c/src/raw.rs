@@ -48,6 +48,7 @@ pub unsafe fn array<'a, T>(pointer: *const T, length: usize) -> Result<&'a [T], 
     match (length, pointer.is_null()) {
         (0, _) => Ok(&[]),
         (_, true) => Err(Failure::Null),
+        _ if is_too_long::<T>(length) => Err(Failure::Index(length)),
         // SAFETY: as the caller promises.
         (_, false) => Ok(unsafe { std::slice::from_raw_parts(pointer, length) }),
     }
@@ -63,9 +64,15 @@ pub unsafe fn array_mut<'a, T>(pointer: *mut T, length: usize) -> Result<&'a mut
     match (length, pointer.is_null()) {
         (0, _) => Ok(&mut []),
         (_, true) => Err(Failure::Null),
+        _ if is_too_long::<T>(length) => Err(Failure::Index(length)),
         // SAFETY: as the caller promises.
         (_, false) => Ok(unsafe { std::slice::from_raw_parts_mut(pointer, length) }),
     }
+}
+
+/// Whether an array of this length is larger than the address space.
+fn is_too_long<T>(length: usize) -> bool {
+    length > isize::MAX as usize / size_of::<T>().max(1)
 }
 
 /// Frees a value that [`Box::into_raw`] returned.

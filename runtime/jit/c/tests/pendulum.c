@@ -1,6 +1,7 @@
 /* A pendulum: its accelerations, names and errors. */
 #include "linkwork.h"
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -76,6 +77,67 @@ static int simulate(const lw_robot *pendulum) {
     return 0;
 }
 
+/* A mass on a spring whose force is a table of the elongation. */
+static int tabulate(void) {
+    lw_robot *robot = NULL;
+    const char *const text =
+        "#[mechanism] struct Oscillator { force: Table<1>, #[body(mass = 2)] block: Body,"
+        "#[joint(ground -> block, along = x)] slide: Sleeve, #[acts(on = slide, value = -force(slide))] spring: Force }";
+    const double points[] = {-1.0, 0.0, 2.0}, values[] = {-3.0, 0.0, 8.0}, falling[] = {0.0, -1.0, 2.0};
+    const double *axes[] = {points}, *wrong[] = {falling};
+    const size_t length = 3;
+    size_t table = 9, f = 0;
+    CHECK(lw_declare(text, NULL, &robot) == LW_OK && lw_count(robot, LW_TABLES) == 1);
+    CHECK(lw_index(robot, LW_TABLES, "force", &table) == LW_OK && table == 0 && lw_variables(robot, 0) == 1);
+    CHECK(lw_index(robot, LW_FUNCTIONS, "forward_dynamics", &f) == LW_OK);
+    double q = 1.0, v = 0.0, a = 0.0;
+    const double *arguments[] = {&q, &v, &v};
+    CHECK(lw_call(robot, f, arguments, &a) == LW_VALUE && strstr(lw_message(), "force") != NULL);
+    CHECK(lw_set_table(robot, 0, wrong, &length, values, 0) == LW_VALUE);
+    CHECK(lw_set_table(robot, 1, axes, &length, values, 0) == LW_UNKNOWN);
+    CHECK(lw_set_table(robot, 0, axes, &length, NULL, 0) == LW_NULL);
+    CHECK(lw_set_table(robot, 0, axes, &length, values, 0) == LW_OK);
+    CHECK(lw_call(robot, f, arguments, &a) == LW_OK && a == -2.0);
+    /* Beyond the grid the force is constant, or has the last slope. */
+    q = 3.0;
+    CHECK(lw_call(robot, f, arguments, &a) == LW_OK && a == -4.0);
+    CHECK(lw_set_table(robot, 0, axes, &length, values, LW_EXTRAPOLATED) == LW_OK);
+    CHECK(lw_call(robot, f, arguments, &a) == LW_OK && a == -6.0);
+    lw_free(robot);
+    return 0;
+}
+
+/* Null pointers, indices and lengths that do not exist, and values that are not finite: errors, no crash. */
+static int attack(lw_robot *robot, size_t f) {
+    const double q = 0.1, *arguments[] = {&q, NULL, &q}, nothing = NAN;
+    const double *sets[] = {&q, &q, &q};
+    const size_t lengths[] = {SIZE_MAX, 1, 1}, outside = 99;
+    double a = 0.0, samples[8];
+    size_t count = 0;
+    CHECK(lw_call(robot, f, NULL, &a) == LW_NULL && lw_call(robot, f, arguments, &a) == LW_NULL);
+    CHECK(lw_call(robot, f, sets, NULL) == LW_NULL && lw_call(robot, SIZE_MAX, sets, &a) == LW_UNKNOWN);
+    CHECK(lw_call_many(robot, f, 1, 3, sets, lengths, &a, 1) == LW_UNKNOWN);
+    CHECK(lw_call_many(robot, f, 1, SIZE_MAX, sets, lengths, &a, 1) == LW_UNKNOWN);
+    CHECK(lw_name(robot, LW_INPUTS, 7) == NULL && lw_unit(robot, -1, 0) == NULL && lw_count(NULL, 0) == 0);
+    CHECK(lw_index(robot, LW_INPUTS, NULL, &count) == LW_NULL && lw_index(robot, 99, "motor", &count) == LW_UNKNOWN);
+    CHECK(lw_index(robot, LW_INPUTS, "\xff", &count) == LW_NULL);
+    CHECK(lw_set_table(robot, 0, sets, lengths, &q, 0) == LW_UNKNOWN && lw_variables(robot, 0) == 0);
+    CHECK(lw_assemble(robot, &q, &outside, 1, &a) != LW_OK && lw_assemble(robot, &q, NULL, 1, &a) == LW_NULL);
+    lw_simulation settings = {0};
+    settings.duration = 1e9;
+    settings.every = 1e-9;
+    CHECK(lw_simulate(robot, &q, &q, &settings, samples, 2, &count) == LW_VALUE);
+    CHECK(lw_simulate(robot, &q, &q, NULL, samples, 2, &count) == LW_NULL);
+    CHECK(lw_simulate(robot, &q, &q, &settings, samples, SIZE_MAX, &count) == LW_UNKNOWN);
+    settings.duration = settings.every = 1.0;
+    settings.start = NAN;
+    CHECK(lw_simulate(robot, &q, &q, &settings, samples, 2, &count) == LW_VALUE);
+    settings.start = 0.0;
+    CHECK(lw_simulate(robot, &nothing, &q, &settings, samples, 2, &count) != LW_OK);
+    CHECK(lw_load("/", NULL, &robot) == LW_FILE && lw_load("", NULL, &robot) == LW_FILE);
+    return 0;
+}
+
 int main(void) {
     lw_robot *robot = NULL, *copy = NULL;
     CHECK(lw_declare(TEXT, NULL, &robot) == LW_OK);
@@ -109,12 +171,13 @@ int main(void) {
     CHECK(lw_call_many(copy, f, 3, 3, sets, lengths, both, 2) == LW_LENGTH);
     CHECK(lw_call_many(copy, f, 1, 2, sets, lengths, both, 1) == LW_LENGTH);
 
+    CHECK(attack(copy, f) == 0);
     CHECK(lw_index(copy, LW_FUNCTIONS, "forward", &f) == LW_UNKNOWN);
     CHECK(lw_set_parameter(copy, 7, 1.0) == LW_UNKNOWN && lw_set_parameter(copy, 0, NAN) == LW_VALUE);
     CHECK(lw_call(NULL, f, arguments, &a) == LW_NULL && lw_count(copy, 9) == 0);
     CHECK(lw_load("missing.urdf", NULL, &robot) == LW_FILE && robot == NULL);
     CHECK(lw_declare("struct", NULL, &robot) == LW_SYNTAX && lw_declare(NULL, NULL, &robot) == LW_NULL);
-    CHECK(simulate(copy) == 0);
+    CHECK(simulate(copy) == 0 && tabulate() == 0);
     lw_free(copy);
     lw_free(NULL);
     return 0;

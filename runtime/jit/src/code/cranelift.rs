@@ -126,23 +126,24 @@ struct Translator<'a> {
 impl Translator<'_> {
     fn step(&mut self, step: Step) -> Result<(), String> {
         match step {
-            Step::Load(to, from) => {
+            Step::Load(to, from, _) => {
                 let value = self.load(from)?;
                 self.registers[usize::from(to)] = Some(value);
             }
-            Step::Store(from, to) => {
+            Step::Store(from, to, _) => {
                 let value = self.value(Place::Register(from))?;
                 self.store(value, to)?;
             }
-            Step::Copy(from, to) => {
+            Step::Copy(from, to, _) => {
                 let value = self.load(from)?;
                 self.store(value, to)?;
             }
+            Step::StoreSecond(..) => return Err("a program has lanes".to_string()),
             Step::Fill(constant, first, count) => {
                 let value = self.load(Memory::Constant(constant))?;
                 (first..first + count).try_for_each(|k| self.store(value, Memory::Output(k)))?;
             }
-            Step::Operation(op, to, places) => {
+            Step::Operation(op, to, places, _) => {
                 let value = self.operation(op, places)?;
                 self.registers[usize::from(to)] = Some(value);
             }

@@ -4,14 +4,16 @@
 //! no register for a value, the one whose next use is last goes to memory (Belady 1966), from where
 //! instructions read it. Inputs, constants, sines and cosines are always in memory.
 
-use crate::layout::Layout;
-use linkwork_compiler::expr::{Function, Symbol};
-use linkwork_compiler::lower::{Angles, Op, Operand, Program};
-use std::collections::HashMap;
+mod registers;
 
-/// Maximum distance, in instructions, to the next use of a value in memory for which it is loaded into a
-/// register.
-const SOON: usize = 12;
+use super::pieces::Pieces;
+use crate::layout::Layout;
+use linkwork_compiler::expr::Function;
+use linkwork_compiler::lower::{Angles, Op, Operand, Program};
+use std::collections::{BTreeMap, HashMap};
+
+/// Maximum number of lanes of a register.
+const WIDEST: usize = 4;
 /// Number of angles whose sines and cosines are computed together.
 pub const TOGETHER: usize = 8;
 
@@ -39,21 +41,23 @@ pub enum Place {
     Memory(Memory),
 }
 
-/// Step of machine code on registers and memory.
+/// A step of machine code. The numbers of lanes are one, two or four.
 #[derive(Clone, Copy, Debug)]
 pub enum Step {
-    /// Loads a number from memory into a register.
-    Load(u8, Memory),
-    /// Stores a register to memory.
-    Store(u8, Memory),
-    /// Copies a number from memory to memory.
-    Copy(Memory, Memory),
+    /// Loads numbers into the lanes of a register: register, memory, and number of lanes.
+    Load(u8, Memory, usize),
+    /// Stores the first lanes of a register: register, memory, and number of lanes.
+    Store(u8, Memory, usize),
+    /// Stores the second lane of a register.
+    StoreSecond(u8, Memory),
+    /// Copies numbers from memory to memory, with their count.
+    Copy(Memory, Memory, usize),
     /// Copies a constant to consecutive outputs: the constant, the first output, and their number.
     Fill(usize, usize, usize),
-    /// Performs an operation on the numbers at these locations. Its result is in a register, which may be
-    /// that of an operand. No other register has a value if the operation is a call.
-    Operation(Op, u8, [Place; 3]),
-    /// Computes the sines and cosines of all angles.
+    /// An operation on places with its number of lanes. The result is in a register, also in that of an
+    /// operand. No other register has a value if the operation is a call.
+    Operation(Op, u8, [Place; 3], usize),
+    /// Computes sines and cosines of the angles.
     Sines,
 }
 
@@ -92,20 +96,15 @@ pub struct Allocation {
 }
 
 impl Allocation {
-    /// Plans a program whose first `results` outputs are its results, for processors with this number of
-    /// registers.
-    pub fn new(
-        program: &Program,
-        layout: &Layout,
-        results: usize,
-        registers: u8,
-    ) -> Result<Allocation, String> {
+    /// Plans a program whose first `results` outputs are its results, for a number of registers.
+    pub fn new(pieces: Pieces, layout: &Layout, results: usize, registers: u8) -> Result<Allocation, String> {
         // The results of derivatives are two matrices, whose corresponding entries share most values.
         let halves = [results / 2, results - results / 2];
-        let program = &program.clone().with_few_live_values(&halves);
+        let Pieces { program, widths } = &pieces.with_few_live_values(&halves);
         let n = program.instructions.len();
         let mut planner = Planner {
             program,
+            widths,
             layout,
             plan: Allocation {
                 steps: Vec::new(),
@@ -121,22 +120,26 @@ impl Allocation {
             uses: vec![Vec::new(); n],
             values: vec![None; registers.into()],
             places: vec![None; n],
-            free: Vec::new(),
+            free: Default::default(),
         };
         let angles = Angles::find_angles(program);
         planner.angles(&angles)?;
-        planner.body(&angles, results)?;
+        planner.body(results)?;
+        // The angles follow the work space.
+        planner.plan.work = planner.plan.work.next_multiple_of(WIDEST);
         Ok(planner.plan)
     }
 }
 
 struct Planner<'a> {
     program: &'a Program,
+    /// Number of lanes of each value.
+    widths: &'a [usize],
     layout: &'a Layout,
     plan: Allocation,
-    /// Index of each constant, by the bits of its value.
-    known: HashMap<u64, usize>,
-    /// Index of each value that is a sine or cosine among those that are computed together.
+    /// Indices of the constants, by the bits of their lanes.
+    known: HashMap<Vec<u64>, usize>,
+    /// Positions of sines and cosines that are computed together, and of their lanes.
     sines: HashMap<usize, usize>,
     /// Indices of the instructions that use each value, the last one first.
     uses: Vec<Vec<usize>>,
@@ -144,8 +147,17 @@ struct Planner<'a> {
     values: Vec<Option<usize>>,
     /// Register, and location in memory, of each value.
     places: Vec<Option<Residence>>,
-    /// Entries of the workspace that contain no value.
-    free: Vec<usize>,
+    /// Entries of the work space without a value, by their numbers of lanes.
+    free: BTreeMap<usize, Vec<usize>>,
+}
+
+/// Store of lanes of a value.
+#[derive(Clone, Copy)]
+enum Target {
+    /// Stores the first lanes, with their number.
+    First(Memory, usize),
+    /// Stores the second lane.
+    Second(Memory),
 }
 
 /// Register and location in memory of a value; at least one of them exists.
@@ -158,47 +170,78 @@ struct Residence {
 impl Planner<'_> {
     /// Plans the computation of the angles, their sines and cosines.
     fn angles(&mut self, angles: &Angles) -> Result<(), String> {
-        let list = angles.widest_first(self.program, |_| 1);
-        let count = padded(list.len());
-        if count == 0 {
-            return Ok(());
+        let widths = self.widths;
+        let width_of_angle = |angle: Operand| match angle {
+            Operand::Value(k) => widths[k],
+            Operand::Gather(k) => self.program.gathers[k].len(),
+            Operand::Tuple(k) => self.program.tuples[k].len(),
+            Operand::Const(_) | Operand::Symbol(_) => 1,
+        };
+        let list = angles.widest_first(self.program, width_of_angle);
+        let mut first = Vec::with_capacity(list.len());
+        let mut next = 0;
+        for angle in &list {
+            first.push(next);
+            next += width_of_angle(angle.angle);
         }
+        let count = padded(next);
+        let Some(padding) = list.first().filter(|_| count > 0) else { return Ok(()) };
         let mut stores = vec![Vec::new(); self.program.instructions.len()];
-        for at in 0..count {
-            // Padding repeats the first angle: no exceptional value slows the others down.
-            let to = Memory::Angle(at);
-            match list[if at < list.len() { at } else { 0 }].angle {
-                Operand::Value(k) => stores[k].push(to),
+        // Padding repeats the first angle: no exceptional value slows the others down.
+        let repeated = (next..count).map(|at| (padding.angle, at, 1));
+        let places = list.iter().zip(&first);
+        for (angle, at, width) in
+            places.map(|(angle, at)| (angle.angle, *at, width_of_angle(angle.angle))).chain(repeated)
+        {
+            match angle {
+                Operand::Value(k) => stores[k].push(Target::First(Memory::Angle(at), width)),
                 other => {
                     let from = self.leaf(other)?;
-                    self.plan.steps.push(Step::Copy(from, to));
+                    self.plan.steps.push(Step::Copy(from, Memory::Angle(at), width));
                 }
             }
         }
         self.run(&angles.before, &stores)?;
         self.plan.steps.push(Step::Sines);
         self.plan.angles = count;
-        for k in (0..self.program.instructions.len()).filter(|k| angles.covered[*k]) {
-            let Op::Call(f, operand) = self.program.instructions[k] else { continue };
-            let at = list.iter().position(|angle| angle.angle == operand).ok_or("an angle is missing")?;
-            self.sines.insert(k, if f == Function::Sin { count + at } else { 2 * count + at });
+        for k in 0..self.program.instructions.len() {
+            match self.program.instructions[k] {
+                Op::Call(f, operand) if angles.covered[k] => {
+                    let at = list.iter().position(|angle| angle.angle == operand);
+                    let at = first[at.ok_or("an angle is missing")?];
+                    self.sines.insert(k, if f == Function::Sin { count + at } else { 2 * count + at });
+                }
+                Op::Lane(lane @ 1.., Operand::Value(whole)) => {
+                    if let Some(at) = self.sines.get(&whole) {
+                        self.sines.insert(k, at + lane);
+                    }
+                }
+                _ => {}
+            }
         }
         Ok(())
     }
 
-    /// Plans the computation of the outputs.
-    fn body(&mut self, angles: &Angles, results: usize) -> Result<(), String> {
+    /// Plans the outputs.
+    fn body(&mut self, results: usize) -> Result<(), String> {
         let (program, n) = (self.program, self.program.instructions.len());
         let mut stores = vec![Vec::new(); n];
         let mut live = vec![false; n];
+        let is_operand = self.values_that_are_operands();
         for (k, output) in program.outputs.iter().enumerate() {
             match *output {
-                Operand::Value(at) if !angles.covered[at] => {
-                    stores[at].push(Memory::Output(k));
+                Operand::Value(at) if !self.sines.contains_key(&at) => {
+                    let (at, target) = match program.instructions[at] {
+                        Op::Lane(1, Operand::Value(whole)) if !is_operand[at] => {
+                            (whole, Target::Second(Memory::Output(k)))
+                        }
+                        _ => (at, Target::First(Memory::Output(k), 1)),
+                    };
+                    stores[at].push(target);
                     live[at] = true;
                 }
                 Operand::Const(c) => {
-                    let constant = self.constant(c);
+                    let constant = self.constant(&[c]);
                     match self.plan.steps.last_mut() {
                         // Results and further outputs are not adjacent.
                         Some(Step::Fill(known, first, count))
@@ -211,12 +254,12 @@ impl Planner<'_> {
                 }
                 other => {
                     let from = self.leaf(other)?;
-                    self.plan.steps.push(Step::Copy(from, Memory::Output(k)));
+                    self.plan.steps.push(Step::Copy(from, Memory::Output(k), 1));
                 }
             }
         }
         for k in (0..n).rev() {
-            live[k] &= !angles.covered[k];
+            live[k] &= !self.sines.contains_key(&k);
             if live[k] {
                 program.instructions[k].visit_operands(|operand| {
                     if let Operand::Value(j) = operand {
@@ -225,11 +268,25 @@ impl Planner<'_> {
                 });
             }
         }
+        stores.iter_mut().for_each(|targets| join_targets(targets, results));
         self.run(&live, &stores)
     }
 
-    /// Plans the instructions that are needed (`live`) and the stores of their values.
-    fn run(&mut self, live: &[bool], stores: &[Vec<Memory>]) -> Result<(), String> {
+    /// Returns for each value whether an instruction uses it.
+    fn values_that_are_operands(&self) -> Vec<bool> {
+        let mut is_operand = vec![false; self.program.instructions.len()];
+        for op in &self.program.instructions {
+            op.visit_operands(|operand| {
+                if let Operand::Value(k) = operand {
+                    is_operand[k] = true;
+                }
+            });
+        }
+        is_operand
+    }
+
+    /// Plans instructions and the stores of their values.
+    fn run(&mut self, live: &[bool], stores: &[Vec<Target>]) -> Result<(), String> {
         let n = self.program.instructions.len();
         self.places.fill(None);
         for k in (0..n).rev().filter(|k| live[*k]) {
@@ -256,147 +313,25 @@ impl Planner<'_> {
         });
         list
     }
+}
 
-    fn instruction(&mut self, k: usize, stores: &[Memory]) -> Result<(), String> {
-        let op = self.program.instructions[k];
-        let operands = self.operands(k);
-        if is_call(&op) {
-            (0..self.values.len()).for_each(|register| self.release(register));
-        } else {
-            for j in &operands {
-                self.load_if_needed_soon(*j, k);
-            }
-        }
-        if let Op::Table(lookup, ..) = op {
-            self.plan.tables = self.plan.tables.max(lookup.table_index() + 1);
-        }
-        let places = self.places_of(op)?;
-        // Their memory is not overwritten before the operation.
-        let mut ended = Vec::new();
-        for j in operands {
-            self.uses[j].pop();
-            if self.uses[j].is_empty() {
-                ended.extend(self.forget(j));
-            }
-        }
-        // The result replaces an operand that is not used again, preferably an addend.
-        let dying = places.iter().rev().find_map(|place| match place {
-            Place::Register(register) if self.values[usize::from(*register)].is_none() => Some(*register),
+/// Joins the stores of a value's first and second lane in adjacent outputs.
+fn join_targets(targets: &mut Vec<Target>, results: usize) {
+    let seconds: Vec<usize> = (targets.iter())
+        .filter_map(|target| match target {
+            Target::Second(Memory::Output(k)) => Some(*k),
             _ => None,
-        });
-        let to = dying.unwrap_or_else(|| self.take());
-        self.plan.steps.push(Step::Operation(op, to, places));
-        self.free.extend(ended);
-        let mut residence = Residence { register: Some(to), memory: None };
-        for memory in stores {
-            self.plan.steps.push(Step::Store(to, *memory));
-            residence.memory.get_or_insert(*memory);
-        }
-        if !self.uses[k].is_empty() {
-            self.values[usize::from(to)] = Some(k);
-            self.places[k] = Some(residence);
-        }
-        Ok(())
-    }
-
-    /// Returns the locations of the operands of an operation. A missing operand repeats the first one.
-    fn places_of(&mut self, op: Op) -> Result<[Place; 3], String> {
-        let mut list = Vec::with_capacity(3);
-        op.visit_operands(|operand| list.push(operand));
-        let mut places = Vec::with_capacity(3);
-        for operand in list {
-            places.push(match operand {
-                Operand::Value(k) if !self.sines.contains_key(&k) => {
-                    let Residence { register, memory } =
-                        self.places[k].ok_or("a value is used before it is computed")?;
-                    match register {
-                        Some(register) => Place::Register(register),
-                        None => Place::Memory(memory.ok_or("a value is nowhere")?),
-                    }
-                }
-                other => Place::Memory(self.leaf(other)?),
-            });
-        }
-        let first = *places.first().ok_or("an operand is missing")?;
-        Ok(std::array::from_fn(|k| places.get(k).copied().unwrap_or(first)))
-    }
-
-    /// Returns the location in memory of an operand that is not the value of an instruction of the body.
-    fn leaf(&mut self, operand: Operand) -> Result<Memory, String> {
-        match operand {
-            Operand::Const(c) => Ok(Memory::Constant(self.constant(c))),
-            Operand::Symbol(symbol) => self.input(symbol),
-            Operand::Value(k) => match self.sines.get(&k) {
-                Some(at) => Ok(Memory::Angle(*at)),
-                None => Err("a value is used before it is computed".to_string()),
-            },
-            Operand::Tuple(_) | Operand::Gather(_) => Err("a program has lanes".to_string()),
+        })
+        .collect();
+    let mut joined = Vec::new();
+    for target in targets.iter_mut() {
+        if let Target::First(Memory::Output(k), width @ 1) = target
+            && *k + 1 != results
+            && seconds.contains(&(*k + 1))
+        {
+            *width = 2;
+            joined.push(*k + 1);
         }
     }
-
-    fn constant(&mut self, c: f64) -> usize {
-        let next = self.plan.constants.len();
-        let at = *self.known.entry(c.to_bits()).or_insert(next);
-        if at == next {
-            self.plan.constants.push(c);
-        }
-        at
-    }
-
-    fn input(&mut self, symbol: Symbol) -> Result<Memory, String> {
-        let (slot, index) = self.layout.locate(symbol).ok_or("a program reads what it is not given")?;
-        self.plan.lengths[slot] = self.plan.lengths[slot].max(index + 1);
-        Ok(Memory::Input(slot, index))
-    }
-
-    /// Loads a value in memory into a register if an instruction soon after instruction `now` uses it again.
-    fn load_if_needed_soon(&mut self, k: usize, now: usize) {
-        let next = self.uses[k].iter().rev().nth(1);
-        let Some(Residence { register: None, memory: Some(memory) }) = self.places[k] else { return };
-        if next.is_some_and(|next| *next <= now + SOON) {
-            let register = self.take();
-            self.plan.steps.push(Step::Load(register, memory));
-            self.values[usize::from(register)] = Some(k);
-            self.places[k] = Some(Residence { register: Some(register), memory: Some(memory) });
-        }
-    }
-
-    /// Returns a free register. If all registers have values, the one whose next use is last is moved to
-    /// memory.
-    fn take(&mut self) -> u8 {
-        let next = |value: Option<usize>| value.and_then(|k| self.uses[k].last().copied());
-        let free = self.values.iter().position(Option::is_none);
-        let register = free.unwrap_or_else(|| {
-            (0..self.values.len()).max_by_key(|register| next(self.values[*register])).unwrap_or(0)
-        });
-        self.release(register);
-        register as u8
-    }
-
-    /// Removes the value from a register, and moves it to memory if it is used again.
-    fn release(&mut self, register: usize) {
-        let Some(k) = self.values[register].take() else { return };
-        let Some(residence) = &mut self.places[k] else { return };
-        residence.register = None;
-        if residence.memory.is_none() {
-            let at = self.free.pop().unwrap_or_else(|| {
-                self.plan.work += 1;
-                self.plan.work - 1
-            });
-            residence.memory = Some(Memory::Work(at));
-            self.plan.steps.push(Step::Store(register as u8, Memory::Work(at)));
-        }
-    }
-
-    /// Frees the register of a value that is not used again, and returns its entry of the workspace.
-    fn forget(&mut self, k: usize) -> Option<usize> {
-        let Residence { register, memory } = self.places[k].take()?;
-        if let Some(register) = register {
-            self.values[usize::from(register)] = None;
-        }
-        match memory {
-            Some(Memory::Work(at)) => Some(at),
-            _ => None,
-        }
-    }
+    targets.retain(|target| !matches!(target, Target::Second(Memory::Output(k)) if joined.contains(k)));
 }

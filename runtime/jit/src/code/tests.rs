@@ -1,7 +1,7 @@
 //! Tests with random programs: machine code equals an evaluation of one operation after the other, bit for
 //! bit.
 
-use super::plan::padded;
+use super::plan::{is_call, padded};
 use super::{Code, write_sines_and_cosines};
 use crate::layout::Layout;
 use crate::table::AnyTable;
@@ -18,7 +18,9 @@ mod random;
 
 /// Number of random programs; the environment variable `LINKWORK_PROGRAMS` chooses another number.
 const PROGRAMS: u64 = 1000;
-/// Numbers of parameters, coordinates and velocities of the random programs.
+/// Numbers of lanes of programs with lanes.
+const LANES: [usize; 7] = [2, 3, 4, 5, 6, 7, 8];
+/// Numbers of parameters, coordinates and velocities.
 const INPUTS: [usize; 3] = [3, 9, 5];
 const CONSTANTS: [f64; 8] = [0.0, -0.0, 1.0, -1.0, 0.5, 9.81, -1e-3, 1e6];
 const VALUES: [f64; 6] = [0.0, -0.0, 1e5, f64::NAN, f64::INFINITY, 5e-324];
@@ -111,7 +113,124 @@ fn values(
     values
 }
 
-/// Evaluates a program, with the functions for sines and cosines that machine code calls.
+/// Program under construction whose values have one lane or `lanes` lanes.
+struct Wide {
+    program: Program,
+    lanes: usize,
+    /// Whether each value has lanes.
+    is_wide: Vec<bool>,
+    /// Whether each value depends on no function: only sines of such values are computed together.
+    is_plain: Vec<bool>,
+}
+
+impl Wide {
+    fn push(&mut self, op: Op, is_wide: bool) {
+        let mut is_plain = true;
+        op.visit_operands(|operand| is_plain &= !matches!(operand, Operand::Value(k) if !self.is_plain[k]));
+        // The library's sines of single lanes have other bits.
+        let op = match op {
+            Op::Call(Function::Sin | Function::Cos, a) if !is_plain => Op::Neg(a),
+            op => op,
+        };
+        self.is_plain.push(is_plain && !matches!(op, Op::Call(..)) && !is_call(&op));
+        self.program.instructions.push(op);
+        self.is_wide.push(is_wide);
+    }
+
+    /// Returns a random value that has lanes, or has no lanes; `None` if no value does.
+    fn value(&self, random: &mut Random, reach: usize, is_wide: bool) -> Option<Operand> {
+        let first = self.is_wide.len().saturating_sub(reach);
+        let all: Vec<usize> = (first..self.is_wide.len()).filter(|k| self.is_wide[*k] == is_wide).collect();
+        (!all.is_empty()).then(|| Operand::Value(all[random.index_below(all.len())]))
+    }
+
+    /// Returns a random operand with lanes: constants, inputs in any order or adjacent ones, or a value.
+    fn wide_operand(&mut self, random: &mut Random, reach: usize) -> Operand {
+        let choice = random.index_below(12);
+        if let Some(value) = self.value(random, reach, true).filter(|_| choice > 2) {
+            return value;
+        }
+        if choice == 0 {
+            let constants = (0..self.lanes).map(|_| CONSTANTS[random.index_below(CONSTANTS.len())]);
+            self.program.tuples.push(constants.collect());
+            return Operand::Tuple(self.program.tuples.len() - 1);
+        }
+        let first = random.index_below(INPUTS[1] - self.lanes + 1);
+        let is_adjacent = random.index_below(2) == 0;
+        let symbols = (0..self.lanes).map(|k| {
+            let k = if is_adjacent { first + k } else { random.index_below(INPUTS[1]) };
+            Quantity::Configuration(k).symbol()
+        });
+        self.program.gathers.push(symbols.collect());
+        Operand::Gather(self.program.gathers.len() - 1)
+    }
+
+    /// Returns a random operand without lanes.
+    fn scalar_operand(&self, random: &mut Random, reach: usize) -> Operand {
+        match self.value(random, reach, false).filter(|_| random.index_below(3) > 0) {
+            Some(value) => value,
+            None => random.operand(0, 1),
+        }
+    }
+
+    fn add_instruction(&mut self, random: &mut Random, reach: usize, calls: usize) {
+        let is_wide = random.index_below(4) > 0;
+        let half = self.lanes / 2;
+        let (op, is_wide) = match random.index_below(10) {
+            0 => (Op::Sum(1 + random.index_below(self.lanes), self.wide_operand(random, reach)), false),
+            1 | 2 => (Op::Lane(random.index_below(self.lanes), self.wide_operand(random, reach)), false),
+            3 if self.lanes == 2 * half => {
+                let [a, b] = std::array::from_fn(|_| match random.index_below(2) {
+                    0 => self.wide_operand(random, reach),
+                    _ => self.scalar_operand(random, reach),
+                });
+                (Op::Join(half, a, b), true)
+            }
+            _ => {
+                let op = random.operation(0, 1, calls);
+                let mut first = is_wide;
+                let op = op.map_operands(|_| {
+                    match std::mem::take(&mut first) || is_wide && random.index_below(3) > 0 {
+                        true => self.wide_operand(random, reach),
+                        false => self.scalar_operand(random, reach),
+                    }
+                });
+                (op, is_wide)
+            }
+        };
+        self.push(op, is_wide);
+    }
+
+    fn random_program(random: &mut Random) -> Program {
+        let lanes = LANES[random.index_below(LANES.len())];
+        let (is_wide, is_plain) = (Vec::new(), Vec::new());
+        let mut wide = Wide { program: Program::default(), lanes, is_wide, is_plain };
+        let most = [8, 40, 200][random.index_below(3)];
+        let reach = [4, 20, 1000][random.index_below(3)];
+        let calls = [0, 0, 5][random.index_below(3)];
+        (0..1 + random.index_below(most)).for_each(|_| wide.add_instruction(random, reach, calls));
+        let mut outputs = Vec::new();
+        for _ in 0..1 + random.index_below(10) {
+            match random.index_below(3) {
+                0 => outputs.push(wide.scalar_operand(random, 1000)),
+                // Lanes of one value are neighbours.
+                _ => {
+                    let value = wide.wide_operand(random, 1000);
+                    for k in 0..lanes {
+                        wide.push(Op::Lane(k, value), false);
+                        outputs.push(Operand::Value(wide.is_wide.len() - 1));
+                    }
+                }
+            }
+        }
+        let Wide { mut program, .. } = wide;
+        program.outputs = outputs;
+        program.remove_unused();
+        program
+    }
+}
+
+/// Evaluates a program; sines and cosines are those of the functions that machine code calls.
 fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTable) -> Vec<f64> {
     let value = |values: &[f64], operand: Operand| match operand {
         Operand::Const(c) => c,
@@ -142,23 +261,30 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
     program.outputs.iter().map(|output| value(&all, *output)).collect()
 }
 
-fn agree(compile: fn(&Program, &Layout, usize) -> Result<Code, String>) {
+/// Compares machine code of random programs with their evaluation.
+///
+/// `random_program` returns a program, and the program without lanes that computes the same bits.
+fn agree(
+    compile: fn(&Program, &Layout, usize) -> Result<Code, String>,
+    random_program: fn(&mut Random) -> [Program; 2],
+) {
     let count = std::env::var("LINKWORK_PROGRAMS").ok().and_then(|count| count.parse().ok());
+    let first = std::env::var("LINKWORK_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
     let layout = Layout::new(&[Argument::Q, Argument::V]).expect("two arguments");
     let table = Table::new([&[-1.0, 0.0, 2.0]], &[1.0, -0.5, 3.0]).map(Table::smooth);
-    let tables = [AnyTable::One(table.expect("increasing points"))];
-    for seed in 0..count.unwrap_or(PROGRAMS) {
+    let tables = [AnyTable::from(table.expect("increasing points"))];
+    for seed in first..first + count.unwrap_or(PROGRAMS) {
         let mut random = Random(seed);
-        let program = random.program();
+        let [program, oracle] = random_program(&mut random);
         let results = random.index_below(program.outputs.len() + 1);
         let code = compile(&program, &layout, results).expect("machine code");
         for _ in 0..3 {
-            let inputs = INPUTS.map(|n| (0..n).map(|_| random.value()).collect::<Vec<f64>>());
+            let inputs = INPUTS.map(|n| (0..n).map(|_| random.value()).collect::<Vec<_>>());
             let inputs = inputs.each_ref().map(Vec::as_slice);
             let mut found = vec![f64::NAN; program.outputs.len()];
             let (first, more) = found.split_at_mut(results);
             code.call(&inputs, &tables, first, more);
-            let expected = evaluate(&program, &layout, &inputs, &tables[0]);
+            let expected = evaluate(&oracle, &layout, &inputs, &tables[0]);
             for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
                 let equal = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
                 assert!(equal, "program {seed}, output {k}: {found:e} instead of {expected:e}");
@@ -167,15 +293,33 @@ fn agree(compile: fn(&Program, &Layout, usize) -> Result<Code, String>) {
     }
 }
 
+fn program_without_lanes(random: &mut Random) -> [Program; 2] {
+    let program = random.program();
+    [program.clone(), program]
+}
+
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn assembled_programs_equal_an_evaluation_operation_by_operation() {
     if super::x86::is_supported() {
-        agree(Code::assemble_x86_code);
+        agree(Code::assemble_x86_code, program_without_lanes);
+    }
+}
+
+/// A program with lanes computes the bits of the program with one instruction for every lane.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn assembled_lanes_equal_an_evaluation_lane_by_lane() {
+    if super::x86::is_supported() {
+        agree(Code::assemble_x86_code, |random| {
+            let program = Wide::random_program(random);
+            let oracle = program.expand_lanes();
+            [program, oracle]
+        });
     }
 }
 
 #[test]
 fn programs_by_cranelift_equal_an_evaluation_operation_by_operation() {
-    agree(Code::by_cranelift);
+    agree(Code::by_cranelift, program_without_lanes);
 }
