@@ -88,6 +88,17 @@ pub enum LimitOption {
     Stops,
 }
 
+/// Option for the treatment of loops of a URDF file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopOption {
+    /// Loops are errors.
+    Refuse,
+    /// Joints of the file and of other tools' extensions close loops.
+    Close,
+    /// Loops remain open: joints that close them are left out.
+    Ignore,
+}
+
 /// File format of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
@@ -186,8 +197,9 @@ pub struct FileOptions {
     pub parameters: Vec<FileParameters>,
     /// Whether contacts of the file are included.
     pub contacts: bool,
-    /// Whether a link of a URDF file may be the child of several joints, of which all but one close loops.
-    pub close_loops: bool,
+    /// Option for loops of a URDF file: a link may be the child of several joints, of which all but one close
+    /// loops.
+    pub loops: LoopOption,
     /// Whether contacts use the collision geometry of links.
     pub collisions: bool,
     /// Whether the visual geometry of a robot file is drawn.

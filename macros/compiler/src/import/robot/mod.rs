@@ -20,16 +20,17 @@ mod tree;
 mod visual;
 
 pub(super) use assemble::{assemble, bare_joint};
-pub(super) use closing::close_loops;
+pub(super) use closing::{close_loops, open_loops, refuse_declared_loops};
 pub(super) use collision::FileCollision;
 pub(super) use figures::{identifier, make_fields};
 pub(super) use joint::{FileJoint, has_axis, has_coordinate};
 pub(super) use limit::{FileLimits, IGNORE_LIMITS};
 pub(super) use motion::resolve_motions;
 pub(super) use names::{
-    check_ends, check_locks, check_names, check_unique, declare_world, rename_ground, unused_name,
+    check_ends, check_locks, check_names, check_unique, check_unknown_links, declare_world, rename_ground,
+    unused_name,
 };
-pub(super) use origin::Origin;
+pub(super) use origin::{Origin, origin_from_pose};
 pub(super) use parts::{MAX_ELEMENTS, Robot, bare_link};
 pub(super) use snap::snap_joint_frame;
 pub(super) use tree::{Order, order_joints};

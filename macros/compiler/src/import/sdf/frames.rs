@@ -8,9 +8,8 @@ use crate::import::element::{
     Attribute, Node, check_plain, check_radians, child_elements, element_position, read_numbers_content,
     relevant_contents, report_second,
 };
-use crate::import::imported::Placed;
-use crate::import::pose::{IDENTITY, Pose, axis_rotation, matrix_product, of_quaternion, roll_pitch_yaw};
-use crate::import::robot::Origin;
+use crate::import::pose::{IDENTITY, Pose, axis_rotation, matrix_product, of_quaternion};
+use crate::import::robot::{Origin, origin_from_pose};
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
@@ -201,10 +200,4 @@ impl Frames {
         cx.report_error(&at.place, message, |d| d);
         None
     }
-}
-
-/// Converts a pose to an [`Origin`].
-pub(super) fn origin_from_pose(pose: &Pose, place: &Place) -> Origin {
-    let value_at_pose = |value| Placed { value, place: place.clone() };
-    Origin { xyz: value_at_pose(pose.at.map(|x| x + 0.0)), rpy: value_at_pose(roll_pitch_yaw(&pose.axes)) }
 }

@@ -166,7 +166,7 @@ fn a_link_hangs_from_one_joint() {
 /// child.
 #[test]
 fn joints_close_loops() {
-    let options = FileOptions { close_loops: true, ..default_options() };
+    let options = FileOptions { loops: LoopOption::Close, ..default_options() };
     let robot_with_joints = |joints: &[String]| {
         format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(massless_link).concat(), joints.concat())
     };
