@@ -186,6 +186,24 @@ impl<const N: usize> Table<N> {
         &self.axes
     }
 
+    /// Returns the values in the order of the grid points, with the last axis varying fastest.
+    #[must_use]
+    pub const fn values(&self) -> &'static [f64] {
+        self.values
+    }
+
+    /// Returns true if the interpolation has continuous slopes.
+    #[must_use]
+    pub const fn is_smooth(&self) -> bool {
+        self.smooth
+    }
+
+    /// Returns true if the table is extrapolated beyond its grid.
+    #[must_use]
+    pub const fn is_extrapolated(&self) -> bool {
+        self.extrapolated
+    }
+
     /// Returns the value at `x`; NaN if an entry of `x` is NaN.
     #[must_use]
     pub fn value<T: Real>(&self, x: [T; N]) -> T {
