@@ -6,7 +6,7 @@
 
 mod raw;
 
-use linkwork_jit::{Error, Function, Inputs, Loader, Method, Robot};
+use linkwork_jit::{Error, Function, Inputs, Loader, Method, Overlaps, Robot};
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -450,6 +450,7 @@ pub struct LwSimulation {
     user: *mut c_void,
     period: f64,
     without_contacts: c_int,
+    overlaps: c_int,
 }
 
 #[unsafe(no_mangle)]
@@ -510,6 +511,12 @@ pub unsafe extern "C" fn lw_simulate(
             None => run,
         };
         let run = if settings.without_contacts != 0 { run.without_contacts() } else { run };
+        let run = run.overlaps(match settings.overlaps {
+            0 => Overlaps::Refuse,
+            1 => Overlaps::Part,
+            2 => Overlaps::Keep,
+            other => return Err(Error::Value(format!("`overlaps` is 0, 1 or 2, not {other}")).into()),
+        });
         let mut places = samples.chunks_exact_mut(width);
         let ended = run.each(&mut |sample| {
             *count += 1;

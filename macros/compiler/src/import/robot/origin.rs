@@ -2,7 +2,7 @@
 
 use crate::diag::Place;
 use crate::import::imported::Placed;
-use crate::import::pose::{Pose, roll_pitch_yaw, transpose};
+use crate::import::pose::{Pose, axis_rotation, matrix_product, roll_pitch_yaw};
 use crate::syntax::Expr;
 
 /// Pose of a frame as a file specifies it.
@@ -27,11 +27,12 @@ impl Origin {
         turns.map(|(axis, angle)| rotation_expression(axis, angle, self)).collect()
     }
 
-    /// Returns the pose as position and axes.
+    /// Returns the pose as position and axes, exact at multiples of a right angle.
     pub(in crate::import) fn pose(&self) -> Pose {
-        let columns =
-            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.rotate_vector(axis));
-        Pose { at: self.xyz.value, axes: transpose(&columns) }
+        let [roll, pitch, yaw] = self.rpy.value;
+        let tilted =
+            matrix_product(&axis_rotation([0.0, 1.0, 0.0], pitch), &axis_rotation([1.0, 0.0, 0.0], roll));
+        Pose { at: self.xyz.value, axes: matrix_product(&axis_rotation([0.0, 0.0, 1.0], yaw), &tilted) }
     }
 
     /// Rotates a vector from the axes of this frame to those of its reference frame.
