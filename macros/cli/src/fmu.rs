@@ -56,29 +56,38 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
         archive.add(path, text.as_bytes())?;
     }
     if !matches.get_flag("no-binary") {
-        let binary_folder = binary_folder();
-        match compile(&files, text_option(matches, "compiler"), library)? {
-            Some(binary) => {
-                let name = format!("{}{}", files.identifier, std::env::consts::DLL_SUFFIX);
-                archive.add(&format!("{binary_folder}/{name}"), &binary)?;
-                if let Some(library) = library.filter(|library| !is_static(library)) {
-                    archive.add(&format!("{binary_folder}/{}", LIBRARY_FILE), &std::fs::read(library)?)?;
-                }
-            }
-            None if files.has_sources => crate::note!(
-                "linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only"
-            ),
-            None => {
-                let why = "an FMU with the run-time library needs a C compiler `cc` (`--compiler NAME`)";
-                return Err(Stop::Failure(why.to_string()));
-            }
-        }
+        add_binary(&mut archive, &files, text_option(matches, "compiler"), library)?;
     }
     let path = matches.get_one::<PathBuf>("out").cloned();
     let path = path.unwrap_or_else(|| PathBuf::from(format!("{}.fmu", files.identifier)));
     std::fs::write(&path, archive.archive_bytes())
         .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))?;
     crate::say!("{}", path.display());
+    Ok(())
+}
+
+/// Compiles the binary for this machine and adds it to the archive, with the run-time library if that is
+/// shared.
+fn add_binary(
+    archive: &mut Archive,
+    files: &FmuFiles,
+    compiler: Option<&str>,
+    library: Option<&PathBuf>,
+) -> Result<(), Stop> {
+    let Some(binary) = compile(files, compiler, library)? else {
+        if !files.has_sources {
+            let why = "an FMU with the run-time library needs a C compiler `cc` (`--compiler NAME`)";
+            return Err(Stop::Failure(why.to_string()));
+        }
+        crate::note!("linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only");
+        return Ok(());
+    };
+    let folder = binary_folder();
+    let name = format!("{}{}", files.identifier, std::env::consts::DLL_SUFFIX);
+    archive.add(&format!("{folder}/{name}"), &binary)?;
+    if let Some(library) = library.filter(|library| !is_static(library)) {
+        archive.add(&format!("{folder}/{LIBRARY_FILE}"), &std::fs::read(library)?)?;
+    }
     Ok(())
 }
 

