@@ -370,17 +370,45 @@ fn link_named_ground_is_the_fixed_root() {
 #[mechanism(urdf = "data/urdf/parallelogram.urdf", loops = close)]
 struct Parallelogram;
 
-/// Checks the motion of a parallelogram, whose coupler moves in translation. By the principle of virtual work
-/// its inertia about the cranks is `2 (I + m c²) + M l²`, and gravity acts on it with `2 m g c + M g l`.
+/// The same linkage, whose loop is closed by an element of Isaac Sim.
+#[mechanism(urdf = "data/urdf/parallelogram_loop_joint.urdf", loops = close)]
+struct LoopJoint;
+
+/// The same linkage, whose loop is closed by a joint in a `<gazebo>` element.
+#[mechanism(urdf = "data/urdf/parallelogram_gazebo.urdf", loops = close)]
+struct GazeboJoint;
+
+/// The same linkage, whose loop is closed by a ball constraint of Drake.
+#[mechanism(urdf = "data/urdf/parallelogram_drake.urdf", loops = close)]
+struct BallConstraint;
+
+/// Checks a linkage against the motion of a parallelogram, whose coupler moves in translation. By the
+/// principle of virtual work its inertia about the cranks is `2 (I + m c²) + M l²`, and gravity acts on it
+/// with `2 m g c + M g l`.
+macro_rules! check_parallelogram {
+    ($name:ident) => {
+        let (inertia, weight) =
+            (2.0 * (0.02 + 1.5 * 0.04) + 2.0 * 0.16, 9.81 * (2.0 * 1.5 * 0.2 + 2.0 * 0.4));
+        assert_eq!($name::INPUTS, ["shoulder", "elbow", "support"]);
+        for (angle, rate, torque) in [(0.7_f64, 0.0, 0.0), (2.0, -1.5, 3.0), (-1.2, 4.0, -2.0)] {
+            let (q, v) = ([angle, -angle, angle].into(), [rate, -rate, rate].into());
+            let residuals = $name.constraint_residuals(&q);
+            assert!(residuals.amax() < 1e-15, "closed: {residuals}");
+            let a = $name.forward_dynamics(&q, &v, &[torque, 0.0, 0.0].into());
+            let expected = (torque - weight * angle.cos()) / inertia;
+            assert_close("accelerations", a.as_slice(), &[expected, -expected, expected], 1e-12);
+        }
+    };
+}
+
 #[test]
 fn urdf_joint_closes_a_loop() {
-    let (inertia, weight) = (2.0 * (0.02 + 1.5 * 0.04) + 2.0 * 0.16, 9.81 * (2.0 * 1.5 * 0.2 + 2.0 * 0.4));
-    assert_eq!(Parallelogram::INPUTS, ["shoulder", "elbow", "support"]);
-    for (angle, rate, torque) in [(0.7_f64, 0.0, 0.0), (2.0, -1.5, 3.0), (-1.2, 4.0, -2.0)] {
-        let (q, v) = ([angle, -angle, angle].into(), [rate, -rate, rate].into());
-        assert_close("closed", Parallelogram.constraint_residuals(&q).as_slice(), &[0.0; 2], 1e-15);
-        let a = Parallelogram.forward_dynamics(&q, &v, &[torque, 0.0, 0.0].into());
-        let expected = (torque - weight * angle.cos()) / inertia;
-        assert_close("accelerations", a.as_slice(), &[expected, -expected, expected], 1e-12);
-    }
+    check_parallelogram!(Parallelogram);
+}
+
+#[test]
+fn extensions_of_other_tools_close_loops() {
+    check_parallelogram!(LoopJoint);
+    check_parallelogram!(GazeboJoint);
+    check_parallelogram!(BallConstraint);
 }

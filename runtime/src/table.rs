@@ -195,6 +195,18 @@ impl<const N: usize, V> Table<N, V> {
         &self.axes
     }
 
+    /// Returns true if the interpolation has continuous slopes.
+    #[must_use]
+    pub const fn is_smooth(&self) -> bool {
+        self.smooth
+    }
+
+    /// Returns true if the table is extrapolated beyond its grid.
+    #[must_use]
+    pub const fn is_extrapolated(&self) -> bool {
+        self.extrapolated
+    }
+
     /// Returns the table with its grid and values stored in another type of list.
     #[must_use]
     pub fn into_storage<W>(self) -> Table<N, W>
@@ -211,6 +223,12 @@ impl<const N: usize, V> Table<N, V> {
 }
 
 impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
+    /// Returns the values in the order of the grid points, with the last axis varying fastest.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Returns a table whose grid and values are owned lists, for example `Vec<f64>` or `Arc<[f64]>`. See
     /// [`new`](Table::new) for the order of the values.
     ///

@@ -163,7 +163,7 @@ fn build_package(flags: &str) -> Result<(String, Vec<u8>), String> {
 
 /// Returns the size of every function in an object file, bytes.
 fn function_sizes(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
-    let file = object::File::parse_source(object).map_err(|error| error.to_string())?;
+    let file = object::File::parse(object).map_err(|error| error.to_string())?;
     let symbols = file.symbols();
     Ok(symbols.filter_map(|symbol| Some((symbol.name().ok()?.to_string(), symbol.size()))).collect())
 }

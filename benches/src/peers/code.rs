@@ -35,7 +35,7 @@ impl Sizes {
         let line = maps.lines().find(|line| line.ends_with(&*path.to_string_lossy()))?;
         let start = u64::from_str_radix(line.split('-').next()?, 16).ok()?;
         let file = std::fs::read(&path).ok()?;
-        let file = object::File::parse_source(&*file).ok()?;
+        let file = object::File::parse(&*file).ok()?;
         let offset = if file.kind() == ObjectKind::Dynamic { start } else { 0 };
         let symbol_name = |symbol: &object::Symbol<'_, '_>| symbol.name().unwrap_or_default().to_string();
         Some(Sizes {

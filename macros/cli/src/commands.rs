@@ -111,16 +111,7 @@ pub fn view_command() -> Command {
             "live",
             "Writes a page that simulates the mechanism, with sliders for parameters, state and inputs",
         )
-        .conflicts_with_all([
-            "motion",
-            "duration",
-            "every",
-            "inputs",
-            "method",
-            "step",
-            "tolerance",
-            "table",
-        ]),
+        .conflicts_with_all(["motion", "duration", "every", "inputs", "method", "step", "tolerance"]),
     )
     .arg(switch_argument(
         "fragment",
@@ -199,6 +190,15 @@ fn export_fmu() -> Command {
         .arg(text_argument("prefix", "NAME", "Identifier of the model [default: the mechanism's name]"))
         .arg(switch_argument("no-derivatives", "Leaves out directional and adjoint derivatives"))
         .arg(switch_argument("no-binary", "Writes sources only"))
+        .arg(
+            text_argument(
+                "library",
+                "FILE",
+                "Run-time library for the binary, liblinkwork_c: an FMU for co-simulation with all contacts",
+            )
+            .value_parser(value_parser!(PathBuf))
+            .conflicts_with_all(["no-binary", "no-derivatives"]),
+        )
         .arg(
             text_argument("compiler", "NAME", "C compiler of the binary [default: cc]")
                 .conflicts_with("no-binary"),

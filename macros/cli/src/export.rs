@@ -20,7 +20,7 @@ pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
     let single = prepare_source(&mut source, matches);
-    let prefix = text_option(matches, "prefix").unwrap_or_default().to_string();
+    let prefix = checked_prefix(matches, "C")?;
     let fixed = named_option_values("set", matches)?;
     let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
     let casadi = matches.get_flag("casadi").then(|| fixed.collect());

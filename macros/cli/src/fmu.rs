@@ -10,10 +10,9 @@ use crate::zip::Archive;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::fmu::{FmuFiles, StartValues, TableValues};
-use linkwork_compiler::export_fmu;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::syntax::Inertias;
+use linkwork_compiler::{export_fmu, export_library_fmu};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -28,38 +27,76 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
     let values = start_values(&input, &graph, matches)?;
     let requests = &mut source.mechanism.requests;
     let is_kinematic = source.mechanism.description.inertias == Inertias::None;
-    if values.is_tree && !is_kinematic && !matches.get_flag("no-derivatives") {
+    let has_derivatives = !is_kinematic && !matches.get_flag("no-derivatives");
+    if has_derivatives && values.has_generated_derivatives {
         requests.derivatives = true;
-        requests.sensitivities |= !values.start.parameters.is_empty();
+        requests.sensitivities |= values.is_tree && !values.start.parameters.is_empty();
     }
-    let files = export_fmu(&source, &prefix, &values.start, cx);
+    let library = matches.get_one::<PathBuf>("library");
+    let files = match library {
+        None => export_fmu(&source, &prefix, &values.start, has_derivatives, cx),
+        Some(_) => {
+            let declaration = declaration_text(&input);
+            let made = export_library_fmu(&source, &declaration, &prefix, &values.start, cx);
+            made.map(|(files, left_out)| {
+                for name in left_out {
+                    crate::note!(
+                        "linkwork: not in the FMU: {name}, which depends on accelerations or forces"
+                    );
+                }
+                files
+            })
+        }
+    };
     let files = input.result_without_errors(files, cx)?;
     let mut archive = Archive::default();
-    for (path, text) in &files.files {
+    for (path, text) in
+        files.files.iter().filter(|(path, _)| files.has_sources || !path.starts_with("sources"))
+    {
         archive.add(path, text.as_bytes())?;
     }
     if !matches.get_flag("no-binary") {
-        match compile_shared_library(&files, text_option(matches, "compiler"))? {
-            Some(binary) => archive.add(&binary_path(&files.identifier), &binary)?,
-            None => crate::note!(
-                "linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only"
-            ),
-        }
+        add_binary(&mut archive, &files, text_option(matches, "compiler"), library)?;
     }
     let path = matches.get_one::<PathBuf>("out").cloned();
     let path = path.unwrap_or_else(|| PathBuf::from(format!("{}.fmu", files.identifier)));
     std::fs::write(&path, archive.archive_bytes())
         .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))?;
     crate::say!("{}", path.display());
-    for line in &files.left_out {
-        crate::note!("linkwork: not in the FMU: {line}");
+    Ok(())
+}
+
+/// Compiles the binary for this machine and adds it to the archive, with the run-time library if that is
+/// shared.
+fn add_binary(
+    archive: &mut Archive,
+    files: &FmuFiles,
+    compiler: Option<&str>,
+    library: Option<&PathBuf>,
+) -> Result<(), Stop> {
+    let Some(binary) = compile_shared_library(files, compiler, library)? else {
+        if !files.has_sources {
+            let why = "an FMU with the run-time library needs a C compiler `cc` (`--compiler NAME`)";
+            return Err(Stop::Failure(why.to_string()));
+        }
+        crate::note!("linkwork: there is no C compiler `cc` (`--compiler NAME`): the FMU has sources only");
+        return Ok(());
+    };
+    let folder = binary_folder();
+    let name = format!("{}{}", files.identifier, std::env::consts::DLL_SUFFIX);
+    archive.add(&format!("{folder}/{name}"), &binary)?;
+    if let Some(library) = library.filter(|library| !is_static(library)) {
+        archive.add(&format!("{folder}/{LIBRARY_FILE}"), &std::fs::read(library)?)?;
     }
     Ok(())
 }
 
-/// Start values of the variables, and whether the mechanism has derivatives of its motion.
+/// Start values of the variables, and generated functions that derivatives need.
 struct VariableValues {
     start: StartValues,
+    /// Whether functions are generated for derivatives of the accelerations by state and inputs.
+    has_generated_derivatives: bool,
+    /// Whether the mechanism has no constraints.
     is_tree: bool,
 }
 
@@ -93,29 +130,42 @@ fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<Va
             tables: tables.collect(),
             states,
         },
-        is_tree: is_tree(&loaded.model),
+        has_generated_derivatives: loaded.model.contacts.is_empty() && loaded.model.speeds.is_none(),
+        is_tree: loaded.model.constraints.is_empty(),
     })
 }
 
-/// Returns true for mechanisms whose accelerations have generated derivatives in C.
-fn is_tree(model: &Model<'_>) -> bool {
-    model.constraints.is_empty() && model.contacts.is_empty() && model.speeds.is_none()
+/// Returns the declaration of a mechanism in Rust, with the options of the command.
+fn declaration_text(input: &Input) -> String {
+    format!("#[mechanism({})]\n{}", input.declaration.arguments, input.declaration.item)
 }
 
-/// Returns the path of the binary for this machine in an FMU.
-fn binary_path(identifier: &str) -> String {
+/// Name of the shared library in an FMU.
+const LIBRARY_FILE: &str = if cfg!(target_os = "macos") { "liblinkwork_c.dylib" } else { "liblinkwork_c.so" };
+
+/// Returns true for a static library, which becomes a part of the binary.
+fn is_static(library: &Path) -> bool {
+    library.extension().is_some_and(|end| end == "a")
+}
+
+/// Returns the folder of the binaries for this machine in an FMU.
+fn binary_folder() -> String {
     let system = match std::env::consts::OS {
         "macos" => "darwin",
         other => other,
     };
-    format!("binaries/{}-{system}/{identifier}{}", std::env::consts::ARCH, std::env::consts::DLL_SUFFIX)
+    format!("binaries/{}-{system}", std::env::consts::ARCH)
 }
 
 /// Compiles the sources to a shared library. Returns `None` if no compiler is named, and the
 /// usual one is not installed.
-fn compile_shared_library(files: &FmuFiles, compiler: Option<&str>) -> Result<Option<Vec<u8>>, Stop> {
+fn compile_shared_library(
+    files: &FmuFiles,
+    compiler: Option<&str>,
+    library: Option<&PathBuf>,
+) -> Result<Option<Vec<u8>>, Stop> {
     let folder = std::env::temp_dir().join(format!("linkwork-fmu-{}", std::process::id()));
-    let done = compile_in_folder(&folder, files, compiler);
+    let done = compile_in_folder(&folder, files, compiler, library);
     let _ = std::fs::remove_dir_all(&folder);
     done
 }
@@ -124,22 +174,38 @@ fn compile_in_folder(
     folder: &Path,
     files: &FmuFiles,
     compiler: Option<&str>,
+    library: Option<&PathBuf>,
 ) -> Result<Option<Vec<u8>>, Stop> {
     std::fs::create_dir_all(folder.join("sources"))?;
+    let mut further: Vec<&str> = Vec::new();
+    if let Some(from) = library {
+        let name = if is_static(from) { "liblinkwork_c.a" } else { LIBRARY_FILE };
+        std::fs::copy(from, folder.join(name))
+            .map_err(|error| Stop::Failure(format!("cannot read {}: {error}", from.display())))?;
+        further.extend(["-L.", "-llinkwork_c"]);
+        further.extend(match (is_static(from), cfg!(target_os = "macos")) {
+            // Symbols of the library remain those of this FMU.
+            (true, false) => &["-Wl,--exclude-libs,ALL", "-lpthread", "-ldl"][..],
+            (true, true) => &[],
+            (false, true) => &["-Wl,-rpath,@loader_path"],
+            (false, false) => &["-Wl,-rpath,$ORIGIN"],
+        });
+    }
     for (path, text) in &files.files {
         std::fs::write(folder.join(path), text)?;
     }
-    let library = folder.join("library");
+    let binary = folder.join("binary");
     let name = compiler.unwrap_or("cc");
     let output = Command::new(name)
         .current_dir(folder)
         .args(["-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-o"])
-        .arg(&library)
+        .arg(&binary)
         .args(&files.sources)
+        .args(further)
         .arg("-lm")
         .output();
     match output {
-        Ok(output) if output.status.success() => Ok(Some(std::fs::read(&library)?)),
+        Ok(output) if output.status.success() => Ok(Some(std::fs::read(&binary)?)),
         Ok(output) => {
             let message = String::from_utf8_lossy(&output.stderr).into_owned();
             Err(Stop::Failure(format!(

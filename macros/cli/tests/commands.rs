@@ -142,6 +142,7 @@ fn unsupported_requests_are_reported() {
             "`linkwork export library` writes all functions with constraints",
         ),
         (&["export", "wgsl", "pendulum.rs", "--scalar", "double"], 2, "WGSL has no double precision"),
+        (&["export", "c", "pendulum.rs", "--prefix", "double"], 2, "use `--prefix double_`"),
         (&["export", "cuda", "pendulum.rs", "--prefix", "2x"], 2, "use `--prefix x2x`"),
         (&["export", "wgsl", "pendulum.rs", "--prefix", "class"], 2, "use `--prefix class_`"),
         (

@@ -145,6 +145,7 @@ pub fn export_fmu(
     source: &Source,
     prefix: &str,
     start: &export::fmu::StartValues,
+    has_derivatives: bool,
     cx: &mut Diagnostics,
 ) -> Option<export::fmu::FmuFiles> {
     reject_reproducible(source, "FMUs", cx)?;
@@ -157,9 +158,37 @@ pub fn export_fmu(
     }
     let tables = source.mechanism.shell.table_names();
     let options = export::c::Options { prefix: prefix.to_string(), ..Default::default() };
-    export::fmu::export_fmu(&model, &output, &tables, &options, start)
+    export::fmu::export_fmu(&model, &output, &tables, &options, start, has_derivatives)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
+}
+
+/// Compiles a mechanism to the description of an FMU whose binary contains the run-time library, which reads
+/// the `declaration`. Returns the files, and the names of outputs that the FMU does not have. Returns `None`
+/// with the errors in `cx` if the mechanism is not supported.
+pub fn export_library_fmu(
+    source: &Source,
+    declaration: &str,
+    prefix: &str,
+    start: &export::fmu::StartValues,
+    cx: &mut Diagnostics,
+) -> Option<(export::fmu::FmuFiles, Vec<String>)> {
+    reject_reproducible(source, "FMUs", cx)?;
+    let graph = Graph::new();
+    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    let (model, output) = compile_with(source, &graph, passes, cx)?;
+    let tables = source.mechanism.shell.table_names();
+    let files = |what: &str| format!("FMUs with the run-time library have no {what}");
+    let what = match (&source.mechanism.file, tables.is_empty()) {
+        (Some(_), _) => Some((files("mechanisms of robot files"), "`linkwork convert` writes a declaration")),
+        (None, false) => Some((files("tables"), "remove them, or `--library`")),
+        (None, true) => None,
+    };
+    if let Some((what, help)) = what {
+        cx.report_error(model.place.clone(), what).add_help(help);
+        return None;
+    }
+    Some(export::fmu::export_library_fmu(&model, &output, declaration, prefix, start))
 }
 
 /// Derives the functions of a tree mechanism, with instructions in an order for processors that keep all values

@@ -41,6 +41,7 @@ pub use drawing::Drawing;
 pub use drawing::drawn;
 pub use error::Error;
 pub use functions::Matrix;
+pub use linkwork::simulate::Overlaps;
 pub use load::{Loader, declare, load};
 #[doc(hidden)]
 pub use load::{compiled, without_rust};

@@ -80,6 +80,16 @@ impl AnyTable {
         }
     }
 
+    /// Returns the grid and the values of the table; `None` for a missing table.
+    pub(crate) fn grid(&self) -> Option<Grid<'_>> {
+        match self {
+            AnyTable::Missing => None,
+            AnyTable::One(table) => Some(Grid::new(table)),
+            AnyTable::Two(table) => Some(Grid::new(table)),
+            AnyTable::Three(table) => Some(Grid::new(table)),
+        }
+    }
+
     /// Returns the value of the table, or its partial derivative of the given orders, at a point.
     pub(crate) fn derivative_value(&self, [x, y, z]: [f64; 3], [a, b, c]: [u8; 3]) -> f64 {
         match self {
@@ -87,6 +97,29 @@ impl AnyTable {
             AnyTable::One(table) => table.derivative([x], [a]),
             AnyTable::Two(table) => table.derivative([x, y], [a, b]),
             AnyTable::Three(table) => table.derivative([x, y, z], [a, b, c]),
+        }
+    }
+}
+
+/// Grid and values of a table with any number of variables.
+pub(crate) struct Grid<'a> {
+    /// Points of each axis.
+    pub axes: Vec<&'a [f64]>,
+    /// Values in the order of the grid points, with the last axis varying fastest.
+    pub values: &'a [f64],
+    /// Whether the interpolation has continuous slopes.
+    pub is_smooth: bool,
+    /// Whether the table is extrapolated beyond its grid.
+    pub is_extrapolated: bool,
+}
+
+impl<'a> Grid<'a> {
+    fn new<const N: usize>(table: &'a Table<N, Arc<[f64]>>) -> Grid<'a> {
+        Grid {
+            axes: table.axes().iter().map(|axis| &**axis).collect(),
+            values: table.values(),
+            is_smooth: table.is_smooth(),
+            is_extrapolated: table.is_extrapolated(),
         }
     }
 }

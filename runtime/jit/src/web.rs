@@ -7,6 +7,7 @@ use crate::functions::{Entry, Plan};
 use crate::layout::Layout;
 use crate::robot::Robot;
 use crate::shared::Quantity;
+use crate::table::{AnyTable, Grid};
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, InQ, InV};
@@ -91,7 +92,7 @@ impl Robot {
     ///
     /// # Errors
     ///
-    /// The mechanism has no inertia, uses tables, or a parameter has no value.
+    /// The mechanism has no inertia, or a parameter or table has no value.
     #[doc(hidden)]
     pub fn web_data(&self, drawing: &Program, start: WebStart<'_>) -> Result<(String, Vec<u8>), Error> {
         self.validate()?;
@@ -102,9 +103,6 @@ impl Robot {
             return Err(refused("it has no masses (`inertia = none`), so it has no equations of motion"));
         }
         let module = self.web_module(drawing).map_err(Error::Internal)?;
-        if module.module.tables > 0 {
-            return Err(refused("it uses tables"));
-        }
         let mut fields = self.web_structure();
         let parameters = self.parameter_values();
         for (name, list) in
@@ -112,6 +110,10 @@ impl Robot {
         {
             fields.push((name, json_numbers(list)));
         }
+        fields.push((
+            "tables",
+            json_list(self.table_values().iter().filter_map(AnyTable::grid).map(table_json)),
+        ));
         fields.push(("functions", format!("{{{}}}", module.signatures.join(","))));
         let fields: Vec<String> =
             fields.into_iter().map(|(name, value)| format!("{}:{value}", json_string(name))).collect();
@@ -187,7 +189,14 @@ impl Robot {
     }
 }
 
-/// Formats a JSON array of items that are already JSON texts.
+/// Returns a table as JSON: axes, values, and whether it is smooth and extrapolated.
+fn table_json(grid: Grid<'_>) -> String {
+    let axes = json_list(grid.axes.iter().map(|axis| json_numbers(axis)));
+    let values = json_numbers(grid.values);
+    format!("[{axes},{values},{},{}]", grid.is_smooth, grid.is_extrapolated)
+}
+
+/// Returns a JSON list of items that are already JSON.
 fn json_list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(","))
 }

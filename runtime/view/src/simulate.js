@@ -25,6 +25,47 @@ const IMPORTS = {
   isa_temperature: h => air(h)[0], isa_pressure: h => air(h)[1], isa_lapse_rate: h => air(h)[2],
 };
 
+// ---- Tables
+
+// Returns the cell of an axis that contains x, and the weights of the four points around it for a derivative
+// of the given order. Smooth tables have Bessel's tangents: slopes of parabolas through three points.
+function weightsAround(points, x, order, isSmooth, isExtrapolated) {
+  const last = points.length - 1, low = points[0], high = points[last], inner = Math.min(Math.max(x, low), high);
+  let cell = 0, end = last - 1;
+  while (cell < end) {
+    const middle = cell + (end - cell + 1 >> 1);
+    if (inner >= points[middle]) cell = middle; else end = middle - 1;
+  }
+  const h = points[cell + 1] - points[cell], s = (inner - points[cell]) / h;
+  let weights = order === 0 ? [0, 1 - s, s, 0] : order === 1 ? [0, -1 / h, 1 / h, 0] : [0, 0, 0, 0], slope = [0, -1 / h, 1 / h, 0];
+  if (isSmooth) {
+    const b = cell > 0 ? points[cell] - points[cell - 1] : 0, a = cell + 2 <= last ? points[cell + 2] - points[cell + 1] : 0;
+    // Slopes at both ends of the cell, times its width.
+    const first = b > 0 ? [-h * h / (b * (b + h)), (h - b) / b, b / (b + h), 0] : a > 0 ? [0, -(2 * h + a) / (h + a), (h + a) / a, -h * h / (a * (h + a))] : [0, -1, 1, 0];
+    const second = a > 0 ? [0, -a / (h + a), (a - h) / a, h * h / (a * (h + a))] : b > 0 ? [h * h / (b * (b + h)), -(b + h) / b, (2 * h + b) / (h + b), 0] : [0, -1, 1, 0];
+    // Hermite polynomials of the value at the end and of both slopes.
+    const value = [3 * s * s - 2 * s * s * s, 6 * (s - s * s), 6 - 12 * s, -12];
+    const m0 = [s * s * s - 2 * s * s + s, 3 * s * s - 4 * s + 1, 6 * s - 4, 6], m1 = [s * s * s - s * s, 3 * s * s - 2 * s, 6 * s - 2, 6];
+    const sums = n => [0, 1, 2, 3].map(k => ((k === 1 ? (n === 0 ? 1 : 0) - value[n] : k === 2 ? value[n] : 0) + m0[n] * first[k] + m1[n] * second[k]) / h ** n);
+    [weights, slope] = [sums(order), sums(1)];
+  }
+  const isWithin = x >= low && x <= high;
+  if (order === 0) { if (isExtrapolated) weights = weights.map((w, k) => w + (x - inner) * slope[k]); }
+  else if (order > 1 || !isExtrapolated) weights = weights.map(w => x !== x ? NaN : isWithin ? w : 0);
+  return [cell, weights];
+}
+// Returns the function that looks up one of several tables. Each variable has two bits of `orders`.
+const lookup = tables => (index, orders, ...variables) => {
+  const [axes, values, isSmooth, isExtrapolated] = tables[index];
+  let sums = [[0, 1]];
+  axes.forEach((points, k) => {
+    const [cell, weights] = weightsAround(points, variables[k], orders >> 2 * k & 3, isSmooth, isExtrapolated), next = [];
+    for (const [at, factor] of sums) weights.forEach((w, i) => { const j = cell + i - 1; if (j >= 0 && j < points.length) next.push([at * points.length + j, factor * w]); });
+    sums = next;
+  });
+  return sums.reduce((sum, [at, factor]) => sum + factor * values[at], 0);
+};
+
 // ---- Linear equations
 
 // Solves a square system by elimination with complete pivoting. Columns of zero pivots have zero solutions,
@@ -144,7 +185,7 @@ class Simulation {
     for (const [, { args }] of names) for (const [name, length] of args) sizes.set(name, Math.max(sizes.get(name) ?? 0, length));
     const total = [...sizes.values()].reduce((sum, n) => sum + n, 0) + names.reduce((sum, [, f]) => sum + f.length, 0);
     const memory = new WebAssembly.Memory({ initial: 1 + Math.ceil(8 * total / 65536) });
-    const { instance } = await WebAssembly.instantiate(bytes, { m: { ...IMPORTS, memory } });
+    const { instance } = await WebAssembly.instantiate(bytes, { m: { ...IMPORTS, lookup: lookup(data.tables), memory } });
     return new Simulation(data, instance.exports, memory, sizes);
   }
 

@@ -234,6 +234,38 @@ static void differentiate(const char *token, size_t inputs, size_t parameters, s
     fmi3FreeInstance(m);
 }
 
+/* Prints, for each state in Continuous-Time Mode, the directional derivatives of the rates and central differences, at a
+ * state that violates constraints. */
+static void differentiate_rates(const char *token) {
+    instance m = started(token, false, 1e-9);
+    fmi3ValueReference knowns[MAX], unknowns[MAX];
+    double x[MAX], found[MAX], sides[2][MAX];
+    size_t n;
+    check(fmi3GetNumberOfContinuousStates(m, &n));
+    update(m);
+    check(fmi3GetContinuousStates(m, x, n));
+    for (size_t k = 0; k < n; ++k) {
+        knowns[k] = (fmi3ValueReference)(1 + k);
+        unknowns[k] = (fmi3ValueReference)(1 + n + k);
+        x[k] += 0.01 * (double)(1 + k % 3);
+    }
+    for (size_t k = 0; k < n; ++k) {
+        const double h = 1e-6, value = x[k], one = 1.0;
+        check(fmi3SetContinuousStates(m, x, n));
+        check(fmi3GetDirectionalDerivative(m, unknowns, n, knowns + k, 1, &one, 1, found, n));
+        for (int side = 0; side < 2; ++side) {
+            x[k] = value + (side ? h : -h);
+            check(fmi3SetContinuousStates(m, x, n));
+            check(fmi3GetContinuousStateDerivatives(m, sides[side], n));
+        }
+        x[k] = value;
+        for (size_t i = 0; i < n; ++i) {
+            printf("%.17g %.17g %.17g\n", found[i], found[i], (sides[1][i] - sides[0][i]) / (2.0 * h));
+        }
+    }
+    fmi3FreeInstance(m);
+}
+
 /* Continues twice from a stored and from a serialised state, and prints both ends. */
 static void restore(const char *token) {
     instance m = started(token, true, 1e-9);
@@ -320,6 +352,8 @@ int main(int count, char **arguments) {
         exchange(token, stop, samples, steps);
     } else if (strcmp(kind, "derivatives") == 0) {
         differentiate(token, (size_t)atoi(arguments[3]), (size_t)samples, (size_t)steps);
+    } else if (strcmp(kind, "rate-derivatives") == 0) {
+        differentiate_rates(token);
     } else if (strcmp(kind, "states") == 0) {
         restore(token);
     } else {

@@ -88,3 +88,22 @@ pub struct Door {
     #[contact(left.sphere(0.1), right.sphere(0.1), restitution = 1)]
     collision: Contact,
 }
+
+/// Pendulum whose names are keywords of C, no identifiers of C, or names of arguments of functions.
+#[mechanism(gravity = -9.81 * y)]
+pub struct Kernel {
+    pub double: f64,
+    pub int: f64,
+    pub θ: f64,
+    pub r#struct: f64,
+    pub q: f64,
+    pub m: f64,
+    #[body(mass = double + int, com = θ * y, inertia = rod(double + r#struct + m, θ + q, y))]
+    array: Body,
+    #[joint(ground -> array, about = z)]
+    register: Pin,
+    #[acts(on = register)]
+    switch: Torque,
+    #[output(sin(register))]
+    main: Scalar,
+}

@@ -88,6 +88,58 @@ fn pages_and_the_command_compute_equal_trajectories() {
     }
 }
 
+/// Checks that pages look up tables as the library does: linear and smooth ones, within the grid and beyond
+/// it, with one, two and three variables, and the slopes of a potential.
+#[test]
+fn pages_look_up_tables() {
+    let here = test_folder("live_tables");
+    let text = "#[mechanism]
+        struct Boat {
+            mass: f64,
+            drag: Table<1>,
+            wind: Table<2>,
+            well: Table<3>,
+            #[body(mass = mass)] hull: Body,
+            #[joint(ground -> hull, along = x)] way: Sleeve,
+            #[body(mass = mass)] crate_: Body,
+            #[joint(hull -> crate_, along = y)] slide: Sleeve,
+            #[acts(on = way, value = -drag(rate(way)) + wind(way, slide))] force: Force,
+            #[energy(well(way, slide, way + slide))] bay: Potential,
+        }";
+    std::fs::write(here.join("boat.rs"), text).unwrap();
+    std::fs::write(here.join("drag.csv"), "-3,-7\n-1,-1.5\n0,0\n1,1\n3,8\n").unwrap();
+    let (mut wind, mut well) = (String::new(), String::new());
+    for x in [-1.0_f64, 0.5, 2.0, 3.0] {
+        for y in [-2.0_f64, 0.0, 0.7, 2.0] {
+            wind += &format!("{x},{y},{}\n", (x + 0.3 * y).cos());
+            for z in [-3.0_f64, 0.1, 1.0, 4.0] {
+                well += &format!("{x},{y},{z},{}\n", x * x + 2.0 * y * y + 0.1 * z * x + (y * z).sin());
+            }
+        }
+    }
+    std::fs::write(here.join("wind.csv"), wind).unwrap();
+    std::fs::write(here.join("well.csv"), well).unwrap();
+    for options in [[",smooth", "", ",smooth"], [",smooth,extrapolated", ",smooth", ",smooth,extrapolated"]] {
+        let tables = ["drag", "wind", "well"].iter().zip(options);
+        let tables: Vec<String> = tables.map(|(name, option)| format!("{name}={name}.csv{option}")).collect();
+        let set = "mass=0.8 q.way=1.9 v.way=4 q.slide=0.5 v.slide=-2";
+        let set: Vec<&str> = set.split(' ').flat_map(|value| ["--set", value]).collect();
+        let tables: Vec<&str> = tables.iter().flat_map(|table| ["--table", table]).collect();
+        let given = [&["boat.rs"], &set[..], &tables[..]].concat();
+        let Some(found) = simulate_page(&here, &given, "0.5", "1e-11") else { return };
+        let times = ["--duration", "0.5", "--every", "0.5", "--tolerance", "1e-11"];
+        let (status, log, stderr) = run_linkwork(&here, &[&["simulate"], &given[..], &times].concat());
+        assert_eq!(status, 0, "{stderr}");
+        let expected = rows_of_log(&log).pop().unwrap();
+        for (a, b) in found.iter().zip(&expected[1..]) {
+            // Steps that cross the edges of linear tables have larger errors.
+            assert!((a - b).abs() <= 1e-7 * b.abs().max(1.0), "{found:?} {expected:?}");
+        }
+    }
+    let (status, _, stderr) = run_linkwork(&here, &["view", "--live", "boat.rs", "--set", "mass=1"]);
+    assert!(status == 2 && stderr.contains("tables without values: --table drag=FILE"), "{stderr}");
+}
+
 /// Checks contacts with closed forms. A ball dropped from 0.9 m with restitution ½ rebounds to a quarter of
 /// the height. A block slides `v²/(2μg)`. A ball that slides at first rolls with 5/7 of its speed, so that
 /// its kinetic energy is `m (5/7 v)² (1 + 2/5) / 2`. All of them come to rest on the floor, not in it.

@@ -169,6 +169,11 @@ impl Shape {
             Shape::Record(Record::InputDerivatives(n, m)) => {
                 vec![("by_q", n, n), ("by_v", n, n), ("by_u", n, m)]
             }
+            Shape::Record(record @ Record::MotionDerivatives(..)) => record
+                .record_fields()
+                .into_iter()
+                .map(|field| (field.name, field.rows, field.columns.unwrap_or(1)))
+                .collect(),
             Shape::Scalar | Shape::Record(_) | Shape::Symmetric(_) => Vec::new(),
             Shape::Vector(n) | Shape::Array(n) => vec![("result", n, 1)],
             Shape::Square(n) | Shape::Inverse(n) => vec![("result", n, n)],

@@ -83,7 +83,18 @@ pub enum LimitOption {
     Stops,
 }
 
-/// File format from which robots are imported.
+/// Option for the treatment of loops of a URDF file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopOption {
+    /// Loops are errors.
+    Refuse,
+    /// Joints of the file and of other tools' extensions close loops.
+    Close,
+    /// Loops remain open: joints that close them are left out.
+    Ignore,
+}
+
+/// File format of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
     /// URDF, imported by the option `urdf = "…"`.
@@ -181,8 +192,9 @@ pub struct FileOptions {
     pub parameters: Vec<FileParameters>,
     /// Whether contacts of the file are included.
     pub contacts: bool,
-    /// Whether a link of a URDF file may be the child of several joints, of which all but one close loops.
-    pub close_loops: bool,
+    /// Option for loops of a URDF file: a link may be the child of several joints, of which all but one close
+    /// loops.
+    pub loops: LoopOption,
     /// Whether contacts use the collision geometry of links.
     pub collisions: bool,
     /// Whether the visual geometry of a robot file is drawn.

@@ -40,7 +40,7 @@ pub use description::{
 };
 pub use duplicate::second_definition;
 pub use mechanism::{
-    FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, ROOT_JOINT, Shell,
+    FileFormat, FileOptions, GROUND, InputOption, LimitOption, LoopOption, Mechanism, ROOT_JOINT, Shell,
 };
 pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::insert_missing_commas;

@@ -3,7 +3,7 @@
 
 use super::arguments::Arguments;
 use super::file_parameters::{self, FileParameters};
-use super::mechanism::{FileFormat, FileOptions, InputOption, LimitOption};
+use super::mechanism::{FileFormat, FileOptions, InputOption, LimitOption, LoopOption};
 use super::parameter::unify_scalar;
 use super::request::{Printed, REQUESTS, Requests};
 use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, skipped, words};
@@ -78,7 +78,7 @@ pub fn read_options(
         }
     }
     let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
-    let close_loops = read_loops(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
+    let loops = read_loops(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let limits = arguments.take_choice("limits", &["honour", "ignore", "stops"], cx);
     let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
         "ignore" => LimitOption::Ignore,
@@ -120,7 +120,7 @@ pub fn read_options(
         snap,
         parameters,
         contacts,
-        close_loops,
+        loops,
         collisions: false,
         visuals: false,
     })
@@ -139,17 +139,21 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
     from_file && unsupported.is_none()
 }
 
-/// Reads `loops = refuse | close`, an option of URDF files, and returns whether loops are closed. Other
-/// formats have joints or constraints that close loops.
-fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
+/// Reads `loops = refuse | close | ignore`, an option of URDF files. Other formats have joints or constraints
+/// that close loops.
+fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> LoopOption {
     let place = arguments.place_of("loops");
-    let close =
-        arguments.take_choice("loops", &["refuse", "close"], cx).is_some_and(|(word, _)| word == "close");
+    let loops = arguments.take_choice("loops", &["refuse", "close", "ignore"], cx);
+    let loops = loops.map_or(LoopOption::Refuse, |(word, _)| match word.as_str() {
+        "close" => LoopOption::Close,
+        "ignore" => LoopOption::Ignore,
+        _ => LoopOption::Refuse,
+    });
     if let (Some(place), Some(other)) = (place, format.filter(|format| *format != FileFormat::Urdf)) {
         cx.report_error(place, "`loops` is an option of URDF files")
             .add_help(format!("remove it: the loops of {} are always closed", other.phrase_with_article()));
     }
-    close
+    loops
 }
 
 /// Reads `urdf = "…"`, `mjcf = "…"` or `sdf = "…"`.

@@ -8,7 +8,7 @@ use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::mechanism::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity};
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{Base, FileFormat, FileOptions, Inertias, InputOption, Name};
+use linkwork_compiler::syntax::{Base, FileFormat, FileOptions, Inertias, InputOption, LoopOption, Name};
 use linkwork_compiler::{import, read_source};
 use std::path::Path;
 
@@ -50,7 +50,7 @@ fn facts_text(fields: &str, urdf: Option<&str>) -> String {
             snap: None,
             parameters: Vec::new(),
             contacts: false,
-            close_loops: false,
+            loops: LoopOption::Refuse,
             collisions: false,
             visuals: false,
         };

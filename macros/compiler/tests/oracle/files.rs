@@ -11,7 +11,9 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{self, Base, FileFormat, FileOptions, Inertias, InputOption, Name};
+use linkwork_compiler::syntax::{
+    self, Base, FileFormat, FileOptions, Inertias, InputOption, LoopOption, Name,
+};
 use linkwork_compiler::{derive, import, read_source};
 use std::path::Path;
 
@@ -37,7 +39,7 @@ fn functions_of_file(robot: &Robot, format: FileFormat, text: &str) -> (Vec<Stri
         snap: None,
         parameters: Vec::new(),
         contacts: false,
-        close_loops: false,
+        loops: LoopOption::Refuse,
         collisions: false,
         visuals: false,
     };

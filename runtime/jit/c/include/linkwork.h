@@ -130,6 +130,8 @@ typedef struct {
     void *user;           /* first argument of the controller */
     double period;        /* period of a digital controller, s; 0: it is called whenever inputs are needed */
     int without_contacts; /* bodies pass through each other */
+    int overlaps;         /* surfaces that overlap at the start: 0 is an error, 1 separates them, 2 leaves them, to
+                           * continue a run */
 } lw_simulation;
 
 /* Number of values of a sample: 1 + NQ + NV + NU and the states of first order. */

@@ -1,7 +1,7 @@
 //! Simulations, and states that satisfy the constraints, as functions of C.
 
 use crate::{Failure, LwRobot, raw, run_guarded, value_or_default};
-use linkwork_jit::{Error, Inputs, Method, Robot};
+use linkwork_jit::{Error, Inputs, Method, Overlaps, Robot};
 use std::ffi::{c_char, c_int, c_void};
 
 /// Settings of a simulation, as the header has them.
@@ -16,6 +16,7 @@ pub struct LwSimulation {
     user: *mut c_void,
     period: f64,
     without_contacts: c_int,
+    overlaps: c_int,
 }
 
 #[unsafe(no_mangle)]
@@ -76,6 +77,12 @@ pub unsafe extern "C" fn lw_simulate(
             None => run,
         };
         let run = if settings.without_contacts != 0 { run.without_contacts() } else { run };
+        let run = run.overlaps(match settings.overlaps {
+            0 => Overlaps::Refuse,
+            1 => Overlaps::Part,
+            2 => Overlaps::Keep,
+            other => return Err(Error::Value(format!("`overlaps` is 0, 1 or 2, not {other}")).into()),
+        });
         let mut places = samples.chunks_exact_mut(width);
         let ended = run.each(&mut |sample| {
             *count += 1;

@@ -39,8 +39,6 @@ pub struct BinaryModule {
     imports: Vec<(String, usize)>,
     /// Name, type index and code of each exported function.
     functions: Vec<(String, usize, Vec<u8>)>,
-    /// Number of interpolation tables that the module reads.
-    pub tables: usize,
 }
 
 impl BinaryModule {
@@ -252,7 +250,6 @@ impl BinaryWriter<'_> {
         for (k, variable) in variables.into_iter().enumerate() {
             self.write_operand(if k < count { variable } else { Operand::Const(0.0) })?;
         }
-        self.module.tables = self.module.tables.max(lookup.table_index() + 1);
         let function = self.module.import_function("lookup", vec![I32, I32, F64, F64, F64]);
         self.code.push(CALL);
         write_unsigned(&mut self.code, function);

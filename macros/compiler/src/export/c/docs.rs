@@ -2,6 +2,7 @@
 
 use super::function::{Given, Outline};
 use crate::catalogue::Argument;
+use crate::mechanism::Supplied;
 
 /// Maximum width of comment lines, in characters.
 const WIDTH: usize = 100;
@@ -75,6 +76,7 @@ pub fn argument_description(a: Argument) -> &'static str {
         Argument::Standard(_) => "mass properties",
         Argument::Factors(_) => "factors",
         Argument::Momenta(_) => "generalized momenta, kg m/s for translations, kg m^2/s for rotations",
+        Argument::Given(_, Supplied::Multiplier, _) => "multipliers of the constraints",
         Argument::Given(..) | Argument::Into(..) | Argument::Called(_) => "numbers",
     }
 }

@@ -122,13 +122,14 @@ pub fn is_passed(argument: &Argument) -> bool {
     !matches!(argument, Argument::Into(..) | Argument::Called(_))
 }
 
-/// Returns true if a text contains a word as a whole.
+/// Returns true if a text contains a word as a whole, and not as a member of a struct.
 pub fn contains_word(text: &str, word: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.match_indices(word).any(|(at, _)| {
         let before = text.get(..at).and_then(|t| t.chars().next_back());
         let after = text.get(at + word.len()..).and_then(|t| t.chars().next());
-        !before.is_some_and(is_letter) && !after.is_some_and(is_letter)
+        let is_member = text.get(..at).is_some_and(|before| before.ends_with("->"));
+        !is_member && !before.is_some_and(is_letter) && !after.is_some_and(is_letter)
     })
 }
 
@@ -144,11 +145,22 @@ const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the i
 const CONTACT_LAWS: &str =
     "Coefficients of friction, restitution and static friction of each contact, in the order of the gaps.";
 
+/// Documentation of the function of [`Id::MotionDerivatives`].
+const MOTION_DERIVATIVES: [&str; 2] = [
+    "Derivatives of `M a + h − Jᵀ λ` and of the constraint accelerations `J a + b` by `q` and `v`, at given \
+     accelerations `a` and multipliers `lambda`; derivatives of the constraint rates by `q`; and the \
+     rotation of displacements in rotating axes, the derivative of their rates. Column `i` of a derivative \
+     by `q` is along `q ⊕ ε eᵢ` (see `integrate`).",
+    "The derivatives `dv̇` and `dλ` of a motion solve `M dv̇ − Jᵀ dλ = dτ − forces_by_x`, \
+     `J dv̇ = −bias_by_x`.",
+];
+
 /// Returns the documentation of a generated function in C.
 pub fn function_documentation(f: &Function) -> Vec<String> {
     match f.id {
         Id::InputDerivatives => vec![INPUT_DERIVATIVES.to_string()],
         Id::ContactLaws => vec![CONTACT_LAWS.to_string()],
+        Id::MotionDerivatives => MOTION_DERIVATIVES.map(ToString::to_string).to_vec(),
         _ => f.docs.clone(),
     }
 }
@@ -199,7 +211,7 @@ pub fn function_definition(f: &Function, o: &Outline<'_>, support: &mut Support)
     }
     let given: Vec<&str> = result_arrays(f.shape).iter().map(|(name, ..)| *name).collect();
     let unused = o.silence_unused_arguments(&body, &f.arguments, &given);
-    let is_public = matches!(f.id, Id::InputDerivatives | Id::ContactLaws);
+    let is_public = matches!(f.id, Id::InputDerivatives | Id::ContactLaws | Id::MotionDerivatives);
     let hidden = if f.is_hidden() && !is_public { "static " } else { "" };
     let signature = o.signature_for_shape(&public_name(f), &f.arguments, f.shape);
     format!("{hidden}{signature} {{\n{unused}{body}}}\n")

@@ -291,11 +291,7 @@ impl<'a> Selection<'a> {
                 | Id::ForwardDynamicsDerivativesInto
                 | Id::MassMatrixInto => {}
                 Id::ContactLaws => chosen.public.push(f),
-                Id::ContactDerivatives
-                | Id::Figures
-                | Id::MotionDerivatives
-                | Id::ConstraintCurvature
-                | Id::ConstraintResponse => {}
+                Id::ContactDerivatives | Id::Figures | Id::ConstraintCurvature | Id::ConstraintResponse => {}
                 Id::SlippingResponse => {}
                 Id::ConstrainedDynamics => chosen.left_out.push(
                     "forward_dynamics, assemble and the other functions that solve for constraint forces"
@@ -317,7 +313,7 @@ impl<'a> Selection<'a> {
                     let name = f.name.strip_prefix(TOUCHED).unwrap_or_default();
                     chosen.left_out.push(format!("{name}: forces at contacts"));
                 }
-                Id::InputDerivatives => chosen.public.push(f),
+                Id::InputDerivatives | Id::MotionDerivatives => chosen.public.push(f),
                 _ if f.is_hidden() || matches!(f.shape, Shape::Record(_)) => {}
                 _ => chosen.public.push(f),
             }

@@ -31,7 +31,12 @@ pub fn model_description_text(
     }
     let mut structure = String::new();
     write_structure(&mut structure, variables);
+    let exchange = match variables.has_model_exchange {
+        true => include_str!("templates/model_exchange.xml"),
+        false => "",
+    };
     include_str!("templates/model_description.xml")
+        .replace("@EXCHANGE@", exchange)
         .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
         .replace("@TOKEN@", token)
         .replace("@IDENTIFIER@", identifier)

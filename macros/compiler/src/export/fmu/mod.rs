@@ -4,6 +4,7 @@
 //! and a header that connects the two.
 
 mod description;
+mod library;
 mod model;
 mod units;
 mod values;
@@ -12,13 +13,16 @@ mod variables;
 use super::c::{self, Signatures, Unfit};
 use crate::derive::Output;
 use crate::mechanism::Model;
+pub use library::export_library_fmu;
 pub use values::{StartValues, TableValues};
 use variables::Variables;
 
 /// Handwritten sources, which need no other file than `lw_model.h` and the functions in C. No identifier of a
 /// model begins with `lw_`.
-const SOURCES: [(&str, &str); 7] = [
+const SOURCES: [(&str, &str); 9] = [
     ("lw_fmi3.h", include_str!("templates/lw_fmi3.h")),
+    ("lw_common.h", include_str!("templates/lw_common.h")),
+    ("lw_library.h", include_str!("templates/lw_library.h")),
     ("lw_dynamics.h", include_str!("templates/lw_dynamics.h")),
     ("lw_integration.h", include_str!("templates/lw_integration.h")),
     ("lw_derivatives.h", include_str!("templates/lw_derivatives.h")),
@@ -30,21 +34,24 @@ const SOURCES: [(&str, &str); 7] = [
 /// Name of the C source file that includes all others.
 const MAIN: &str = "lw_fmi3.c";
 
-/// Texts of the files of an FMU, and features that it does not have.
+/// Texts of the files of an FMU.
 #[derive(Clone, Debug)]
 pub struct FmuFiles {
     /// Model identifier of the FMU.
     pub identifier: String,
     /// Paths within the FMU, with the text of each file.
     pub files: Vec<(String, String)>,
-    /// Names of the C source files that an importer compiles.
-    pub sources: [String; 2],
-    /// Functions and features that the FMU does not have, with reasons.
-    pub left_out: Vec<String>,
+    /// Paths of the source files that a compiler is given.
+    pub sources: Vec<String>,
+    /// Whether importers can compile the sources. Otherwise the binary contains the run-time library.
+    pub has_sources: bool,
 }
 
-/// Advice for contacts and constraints that an FMU cannot have.
-const SIMULATE: &str = "compliant contacts (`stiffness = …`) may have friction; `linkwork simulate` has all";
+/// Advice for contacts and constraints that the sources in C cannot have.
+const SIMULATE: &str = "`--library FILE` puts the run-time library into the FMU, which has all contacts: \
+                        `cargo build --release -p linkwork-c` builds it, and FILE is \
+                        `target/release/liblinkwork_c.so`; compliant contacts (`stiffness = …`) need no \
+                        library";
 
 /// Returns the reason why a mechanism cannot be exported as an FMU, and what to do instead.
 pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {
@@ -55,21 +62,23 @@ pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'
         return Some((what.to_string(), "give its bodies masses and joints"));
     }
     if has_function(Id::SlippingResponse) {
-        return Some(("FMUs have no constraints with friction".to_string(), SIMULATE));
+        return Some(("the sources of FMUs have no constraints with friction".to_string(), SIMULATE));
     }
     let contact =
         model.contacts.iter().find(|c| c.rates.len() > 1 || c.pressed_by.is_some() || c.of_impulses)?;
     let what = if contact.of_impulses { "restitution by Poisson's law" } else { "friction" };
     Some((
         format!(
-            "the contact `{}` has {what}: FMUs have contacts without friction, with Newton's restitution",
+            "the contact `{}` has {what}: the sources of FMUs have contacts without friction, with Newton's \
+             restitution",
             contact.name
         ),
         SIMULATE,
     ))
 }
 
-/// Exports a mechanism whose programs have no vector lanes; `tables` are the names of its tables.
+/// Exports a mechanism whose programs have no vector lanes; `tables` are the names of its tables. With
+/// `has_derivatives` the FMU provides directional and adjoint derivatives.
 ///
 /// # Errors
 /// The mechanism is not supported, for the reason in [`Unfit`].
@@ -79,15 +88,16 @@ pub fn export_fmu(
     tables: &[String],
     options: &c::Options,
     start: &StartValues,
+    has_derivatives: bool,
 ) -> Result<FmuFiles, Unfit> {
     let code = c::export_c_source(model, output, tables, options)?;
     let signatures = Signatures::new(model, output, tables, &options.prefix);
-    let variables = Variables::new(model, &signatures, start);
+    let variables = Variables::new(model, &signatures, start, has_derivatives);
     let identifier = code.prefix.clone();
     let model_text = model::model_header(model, output, &signatures, &variables, start);
     let token = instantiation_token(&[&code.source, &code.header, &model_text]);
     let description = description::model_description_text(model, &identifier, &token, &variables);
-    let sources = [format!("sources/{identifier}.c"), format!("sources/{MAIN}")];
+    let sources = vec![format!("sources/{identifier}.c"), format!("sources/{MAIN}")];
     let mut files = vec![
         ("modelDescription.xml".to_string(), description),
         ("sources/buildDescription.xml".to_string(), description::build(&identifier, MAIN)),
@@ -96,14 +106,7 @@ pub fn export_fmu(
         ("sources/lw_model.h".to_string(), model_text.replace("@TOKEN@", &token)),
     ];
     files.extend(SOURCES.map(|(name, text)| (format!("sources/{name}"), text.to_string())));
-    let mut left_out = Vec::new();
-    if !variables.is_differentiable {
-        left_out.push(
-            "directional and adjoint derivatives: they are for trees without contacts and declared speeds"
-                .to_string(),
-        );
-    }
-    Ok(FmuFiles { identifier, files, sources, left_out })
+    Ok(FmuFiles { identifier, files, sources, has_sources: true })
 }
 
 /// Returns a token that identifies the model: a hash of its texts, in the form of a UUID.

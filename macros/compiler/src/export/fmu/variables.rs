@@ -40,7 +40,20 @@ pub struct OutputFunction {
     pub is_differentiable: bool,
 }
 
-/// All variables of an FMU, in the order of their value references.
+impl OutputFunction {
+    /// Finds the functions of an output, with those of its derivatives by parameters if others have them.
+    fn new(name: &str, signatures: &Signatures, has_sensitivities: bool) -> OutputFunction {
+        let find_function = |name: &str| signatures.functions.iter().find(|f| f.name == name);
+        let size = find_function(name).map_or(0, |f| f.results.iter().map(|array| array.length).sum());
+        let has_parameters = signatures.parameters.is_empty()
+            || !has_sensitivities
+            || find_function(&format!("{name}_by_parameters")).is_some();
+        let is_differentiable = find_function(&format!("{name}_derivatives")).is_some() && has_parameters;
+        OutputFunction { name: name.to_string(), size, is_differentiable }
+    }
+}
+
+/// All variables of an FMU.
 pub struct Variables {
     /// All variables, in the order of their value references.
     pub all: Vec<ScalarVariable>,
@@ -52,42 +65,46 @@ pub struct Variables {
     pub parameters: Vec<usize>,
     /// Whether derivatives of rates and outputs are available.
     pub is_differentiable: bool,
-    /// Whether constraints or contacts may change states at events and after initialization.
+    /// Whether generated functions give the derivatives by configuration, velocity and inputs. Otherwise they
+    /// are differences.
+    pub has_generated_derivatives: bool,
+    /// Whether generated functions give the derivatives by states of first order and parameters too.
+    pub has_generated_sensitivities: bool,
+    /// Whether states may change at events and after initialization.
     pub is_projected: bool,
     /// Whether constraints determine some start values.
     pub is_constrained: bool,
+    /// Whether the FMU is for model exchange too, and has rates and event indicators.
+    pub has_model_exchange: bool,
 }
 
 /// Names of the energy variables, which follow the outputs.
 pub const ENERGIES: [&str; 2] = ["kinetic_energy", "potential_energy"];
 
 impl Variables {
-    /// Lists the FMU variables of a mechanism.
-    pub fn new(model: &Model<'_>, signatures: &Signatures, start: &StartValues) -> Variables {
-        let find_function = |name: &str| signatures.functions.iter().find(|f| f.name == name);
-        let is_constrained = find_function("constraint_jacobian").is_some();
-        let output_function = |name: &String| {
-            let size = find_function(name).map_or(0, |f| f.results.iter().map(|array| array.length).sum());
-            let has_parameters =
-                signatures.parameters.is_empty() || find_function(&format!("{name}_by_parameters")).is_some();
-            let is_differentiable = find_function(&format!("{name}_derivatives")).is_some() && has_parameters;
-            OutputFunction { name: name.clone(), size, is_differentiable }
-        };
+    /// Lists the variables of a mechanism, with or without derivatives.
+    pub fn new(
+        model: &Model<'_>,
+        signatures: &Signatures,
+        start: &StartValues,
+        is_differentiable: bool,
+    ) -> Variables {
+        let has_function = |name: &str| signatures.functions.iter().any(|f| f.name == name);
+        let is_constrained = has_function("constraint_jacobian");
+        let has_generated_sensitivities =
+            signatures.parameters.is_empty() || has_function("forward_dynamics_by_parameters");
+        let output_function =
+            |name: &String| OutputFunction::new(name, signatures, has_generated_sensitivities);
         let name_of_state_rate = |k: &usize| format!("{}_rate", signatures.parameters[*k]);
         let rates: Vec<OutputFunction> =
             start.states.iter().map(|k| output_function(&name_of_state_rate(k))).collect();
         let mut outputs: Vec<OutputFunction> = signatures.outputs.iter().map(output_function).collect();
         outputs.retain(|output| rates.iter().all(|rate| rate.name != output.name));
         outputs.sort_by_key(|output| !output.is_differentiable);
-        let needed = [
-            "forward_dynamics_derivatives",
-            "generalized_forces_derivatives",
-            "forward_dynamics_by_parameters",
-        ];
-        let is_needed = [true, model.nu() > 0, !signatures.parameters.is_empty()];
-        let has_derivatives =
-            needed.iter().zip(is_needed).all(|(name, needed)| !needed || find_function(name).is_some());
-        let is_differentiable = has_derivatives
+        let accelerations =
+            if is_constrained { "motion_derivatives" } else { "forward_dynamics_derivatives" };
+        let has_generated_derivatives = has_function(accelerations)
+            && (model.nu() == 0 || has_function("generalized_forces_derivatives"))
             && rates.iter().all(|rate| rate.is_differentiable)
             && model.contacts.is_empty()
             && model.speeds.is_none();
@@ -100,8 +117,30 @@ impl Variables {
             outputs,
             parameters,
             is_differentiable,
+            has_generated_derivatives,
+            has_generated_sensitivities,
             is_projected: has_quaternions || is_constrained || !model.contacts.is_empty(),
             is_constrained,
+            has_model_exchange: true,
+        };
+        variables.list_variables(model, start);
+        variables
+    }
+
+    /// Lists the variables of a mechanism that the run-time library simulates: no rates and event indicators.
+    pub fn of_library(model: &Model<'_>, outputs: Vec<OutputFunction>, start: &StartValues) -> Variables {
+        let parameters = (0..model.parameters.len()).filter(|k| !start.states.contains(k)).collect();
+        let mut variables = Variables {
+            all: Vec::new(),
+            rates: Vec::new(),
+            outputs,
+            parameters,
+            is_differentiable: false,
+            has_generated_derivatives: false,
+            has_generated_sensitivities: false,
+            is_projected: false,
+            is_constrained: !model.constraints.is_empty(),
+            has_model_exchange: false,
         };
         variables.list_variables(model, start);
         variables
@@ -130,7 +169,8 @@ impl Variables {
                 start.parameters[k],
             );
         }
-        for state in 1..self.all.len() {
+        let states = if self.has_model_exchange { self.all.len() } else { 0 };
+        for state in 1..states {
             let ScalarVariable { name, unit, .. } = self.all[state].clone();
             self.add(format!("der({name})"), &units::unit_of_rate(&unit), VariableRole::Rate(state), 0.0);
         }
@@ -158,7 +198,8 @@ impl Variables {
             }
         }
         ENERGIES.iter().for_each(|name| self.add((*name).to_string(), "J", VariableRole::Output, 0.0));
-        for contact in &model.contacts {
+        let contacts = if self.has_model_exchange { &model.contacts[..] } else { &[] };
+        for contact in contacts {
             self.add(format!("event.{}", contact.name), "any", VariableRole::Indicator, 0.0);
         }
     }

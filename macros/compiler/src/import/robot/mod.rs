@@ -20,17 +20,17 @@ mod tree;
 mod visual;
 
 pub(super) use assemble::{assemble_mechanism, plain_joint};
-pub(super) use closing::close_loops;
+pub(super) use closing::{close_loops, open_loops, refuse_declared_loops};
 pub(super) use collision::FileCollision;
 pub(super) use figures::{identifier_of_names, make_value_fields};
 pub(super) use joint::{FileJoint, has_axis, has_coordinate};
 pub(super) use limit::{FileLimits, IGNORE_LIMITS};
 pub(super) use motion::resolve_motions;
 pub(super) use names::{
-    check_joint_ends, check_locked_names, check_names, check_unique, declare_world_link, rename_ground,
-    unused_name,
+    check_joint_ends, check_locked_names, check_names, check_unique, check_unknown_links, declare_world_link,
+    rename_ground, unused_name,
 };
-pub(super) use origin::Origin;
+pub(super) use origin::{Origin, origin_from_pose};
 pub(super) use parts::{MAX_ELEMENTS, Robot, massless_link};
 pub(super) use snap::snap_joint_frame;
 pub(super) use tree::{Order, order_joints};

@@ -5,7 +5,7 @@ use super::joint::FileJoint;
 use super::parts::{Robot, massless_link};
 use crate::import::context::{Cx, format_position, quote_word};
 use crate::syntax::{Base, FileFormat, GROUND, Name};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Reports links that share a name, and joints that share a name.
 pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
@@ -71,18 +71,22 @@ pub(in crate::import) fn check_unique<'a>(
     }
 }
 
-/// Reports joints with unknown links, joints from a link to itself, and links with two parents.
-pub(in crate::import) fn check_joint_ends(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
+/// Reports joints with unknown links.
+pub(in crate::import) fn check_unknown_links(robot: &Robot, cx: &mut Cx<'_>) {
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
-    let known: BTreeMap<&str, ()> = links.iter().map(|link| (*link, ())).collect();
+    let known: BTreeSet<&str> = links.iter().copied().collect();
+    for end in robot.joints.iter().flat_map(|joint| [&joint.parent, &joint.child]) {
+        if !known.contains(end.text.as_str()) {
+            let message = format!("unknown link {}", quote_word(&end.text));
+            cx.report_error(&end.place, message, |d| d.suggest_name(&end.text, links.iter().copied()));
+        }
+    }
+}
+
+/// Reports joints from a link to itself, and links with two parents.
+pub(in crate::import) fn check_joint_ends(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
     let mut parents: BTreeMap<&str, &FileJoint> = BTreeMap::new();
     for joint in &robot.joints {
-        for end in [&joint.parent, &joint.child] {
-            if !known.contains_key(end.text.as_str()) {
-                let message = format!("unknown link {}", quote_word(&end.text));
-                cx.report_error(&end.place, message, |d| d.suggest_name(&end.text, links.iter().copied()));
-            }
-        }
         if joint.parent.text == joint.child.text {
             let message = format!("joint {} connects a link to itself", quote_word(&joint.name.text));
             cx.report_error(&joint.child.place, message, |d| d);

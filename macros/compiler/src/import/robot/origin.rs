@@ -1,6 +1,8 @@
 //! Pose of a frame: a position and roll, pitch and yaw.
 
+use crate::diag::Place;
 use crate::import::imported::Placed;
+use crate::import::pose::{Pose, axis_rotation, matrix_product, roll_pitch_yaw};
 use crate::syntax::Expr;
 
 /// Pose of a frame as a robot file specifies it: position and rotation.
@@ -25,6 +27,14 @@ impl Origin {
         turns.map(|(axis, angle)| rotation_expression(axis, angle, self)).collect()
     }
 
+    /// Returns the pose as position and axes, exact at multiples of a right angle.
+    pub(in crate::import) fn pose(&self) -> Pose {
+        let [roll, pitch, yaw] = self.rpy.value;
+        let tilted =
+            matrix_product(&axis_rotation([0.0, 1.0, 0.0], pitch), &axis_rotation([1.0, 0.0, 0.0], roll));
+        Pose { at: self.xyz.value, axes: matrix_product(&axis_rotation([0.0, 0.0, 1.0], yaw), &tilted) }
+    }
+
     /// Rotates a vector from the axes of this frame to those of its reference frame.
     pub(in crate::import) fn rotate_vector(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.value.map(libm::sincos);
@@ -32,6 +42,12 @@ impl Origin {
         let (x, z) = (cp * x + sp * z, cp * z - sp * x);
         [cy * x - sy * y, sy * x + cy * y, z]
     }
+}
+
+/// Converts a pose to an [`Origin`].
+pub(in crate::import) fn origin_from_pose(pose: &Pose, place: &Place) -> Origin {
+    let value_at_pose = |value| Placed { value, place: place.clone() };
+    Origin { xyz: value_at_pose(pose.at.map(|x| x + 0.0)), rpy: value_at_pose(roll_pitch_yaw(&pose.axes)) }
 }
 
 fn rotation_expression(axis: &str, angle: f64, origin: &Origin) -> Expr {

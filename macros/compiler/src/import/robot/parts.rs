@@ -6,6 +6,7 @@ use super::origin::Origin;
 use super::visual::FileVisual;
 use crate::syntax::file_parameters::FileField;
 use crate::syntax::{Body, Constraint, Contact, Drive, Expr, Joint, Name};
+use std::collections::BTreeSet;
 
 /// Maximum number of links, and of joints, of one file.
 pub(in crate::import) const MAX_ELEMENTS: usize = 1024;
@@ -15,11 +16,13 @@ pub(in crate::import) const MAX_ELEMENTS: usize = 1024;
 pub(in crate::import) struct Robot {
     /// Links of the robot file, as bodies.
     pub(in crate::import) links: Vec<Body>,
-    /// Joints of the robot's kinematic tree.
+    /// Joints of the kinematic tree, and joints that close loops before these are separated.
     pub(in crate::import) joints: Vec<FileJoint>,
     /// Pose of the root relative to the ground; `None` for the identity.
     pub(in crate::import) root: Option<Origin>,
-    /// Joints of the file that close loops.
+    /// Names of the joints that extensions of the format declare to close loops.
+    pub(in crate::import) declared_closing: BTreeSet<String>,
+    /// Joints that close loops.
     pub(in crate::import) closing: Vec<Joint>,
     /// Constraints on joint coordinates of the robot.
     pub(in crate::import) constraints: Vec<Constraint>,

@@ -44,7 +44,14 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
         let names = quote_all(all.map(|link| robot.links[link].name.text.as_str()));
         let message = format!("expected one link that is not the child of a joint, found {names}");
         let help = "every link but one needs a joint that has it as its child";
-        cx.report_error(&robot.links[second].name.place, message, |d| d.add_help(help));
+        let closing = robot.closing.iter().map(|joint| joint.name.text.as_str());
+        cx.report_error(&robot.links[second].name.place, message, |d| {
+            let d = d.add_help(help);
+            match robot.closing.is_empty() {
+                true => d,
+                false => d.add_help(format!("joints that close loops carry no link: {}", quote_all(closing))),
+            }
+        });
         return None;
     }
     Some(root)

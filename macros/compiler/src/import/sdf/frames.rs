@@ -8,11 +8,8 @@ use crate::import::element::{
     Attribute, Node, check_radians, check_value_element, child_elements, element_position,
     read_numbers_content, relevant_contents, report_duplicate,
 };
-use crate::import::imported::Placed;
-use crate::import::pose::{
-    IDENTITY, Pose, axis_rotation, matrix_product, roll_pitch_yaw, rotation_of_quaternion,
-};
-use crate::import::robot::Origin;
+use crate::import::pose::{IDENTITY, Pose, axis_rotation, matrix_product, rotation_of_quaternion};
+use crate::import::robot::{Origin, origin_from_pose};
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
@@ -203,10 +200,4 @@ impl Frames {
         cx.report_error(&at.place, message, |d| d);
         None
     }
-}
-
-/// Converts a numeric pose to an [`Origin`] with a source position.
-pub(super) fn origin_from_pose(pose: &Pose, place: &Place) -> Origin {
-    let value_at_pose = |value| Placed { value, place: place.clone() };
-    Origin { xyz: value_at_pose(pose.at.map(|x| x + 0.0)), rpy: value_at_pose(roll_pitch_yaw(&pose.axes)) }
 }

@@ -1,6 +1,6 @@
 //! `<joint>` → [`FileJoint`]. A joint with two axes becomes two joints with a massless link between them.
 
-use super::frames::{Frames, origin_from_pose};
+use super::frames::Frames;
 use super::scope::Scope;
 use super::version::is_before_version;
 use crate::import::context::{Cx, quote_word};
@@ -13,6 +13,7 @@ use crate::import::misplaced;
 use crate::import::pose::{Pose, Vector, length, matrix_times_vector};
 use crate::import::robot::{
     FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, has_axis, has_coordinate, massless_link,
+    origin_from_pose,
 };
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
 

@@ -12,10 +12,10 @@ use super::misplaced;
 use super::pose::Pose;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
-use crate::import::robot::{self, MAX_ELEMENTS, Robot};
+use crate::import::robot::{self, MAX_ELEMENTS, Robot, origin_from_pose};
 use crate::import::whole::import_composed_text;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
-use frames::{Frame, Frames, name_in_owner, origin_from_pose, own_frames, read_frame};
+use frames::{Frame, Frames, name_in_owner, own_frames, read_frame};
 use scope::{Scope, WORLD, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -151,6 +151,7 @@ fn read_root_element<'a>(
     robot::check_names(&robot, options.format, cx);
     robot::declare_world_link(&mut robot);
     robot::rename_ground(&mut robot, options.base);
+    robot::check_unknown_links(&robot, cx);
     robot::check_joint_ends(&robot, options.format, cx);
     robot::check_locked_names(&robot.joints, &options.lock, cx);
     if let Some(tolerance) = options.snap.filter(|_| !cx.has_errors()) {

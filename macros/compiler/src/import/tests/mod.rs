@@ -4,7 +4,7 @@ use super::{FileOptions, Imported, import_file};
 use crate::diag::Diagnostics;
 use crate::syntax::{
     Base, BinaryOp, Body, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, FileFormat, Inertias,
-    InputOption, Joint, LimitOption, Name,
+    InputOption, Joint, LimitOption, LoopOption, Name,
 };
 use proc_macro2::Span;
 use std::fs;
@@ -16,6 +16,7 @@ mod fuzz;
 mod hulls;
 mod joints;
 mod links;
+mod loops;
 mod malformed;
 mod mjcf;
 mod names;
@@ -72,7 +73,7 @@ fn default_options() -> FileOptions {
         snap: None,
         parameters: Vec::new(),
         contacts: false,
-        close_loops: false,
+        loops: LoopOption::Refuse,
         collisions: false,
         visuals: false,
     }

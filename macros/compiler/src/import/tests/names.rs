@@ -166,7 +166,7 @@ fn link_with_two_parent_joints_is_rejected() {
 /// child.
 #[test]
 fn second_parent_joint_closes_a_loop() {
-    let options = FileOptions { close_loops: true, ..default_options() };
+    let options = FileOptions { loops: LoopOption::Close, ..default_options() };
     let robot_with_joints = |joints: &[String]| {
         format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(massless_link).concat(), joints.concat())
     };

@@ -86,7 +86,8 @@ pub(super) fn read_joint(
     })
 }
 
-fn read_joint_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
+/// Reads the joint type. Reports an unknown type.
+pub(super) fn read_joint_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind)> {
     let found = node.attribute_node("type")?;
     let known = TYPES.iter().find(|(word, _)| *word == found.value());
     if known.is_none() {
@@ -105,7 +106,7 @@ fn read_end_link(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx
 }
 
 /// Reads the axis of a joint; the default of URDF is x.
-fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
+pub(super) fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
     let default_axis = |place: Place| Placed { value: [1.0, 0.0, 0.0], place };
     let Some(axis) = axis else {
         return default_axis(element_position(node, cx));

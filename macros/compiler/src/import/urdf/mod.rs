@@ -9,13 +9,15 @@ use super::element::{Node, check_element_name, child_elements, element_position,
 use super::misplaced;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
-use crate::syntax::FileOptions;
+use crate::syntax::{FileOptions, LoopOption};
 use std::path::Path;
 
 mod collision;
+mod gazebo;
 mod joint;
 mod limit;
 mod link;
+mod loops;
 mod origin;
 mod standing;
 mod visual;
@@ -34,8 +36,13 @@ pub(super) fn read_root_element(
     robot::check_names(&robot, options.format, cx);
     robot::declare_world_link(&mut robot);
     robot::rename_ground(&mut robot, options.base);
-    if options.close_loops && !cx.has_errors() {
-        robot::close_loops(&mut robot, cx);
+    if !cx.has_errors() {
+        robot::check_unknown_links(&robot, cx);
+        match options.loops {
+            LoopOption::Refuse => robot::refuse_declared_loops(&robot, cx),
+            LoopOption::Close => robot::close_loops(&mut robot, cx),
+            LoopOption::Ignore => robot::open_loops(&mut robot),
+        }
     }
     robot::check_joint_ends(&robot, options.format, cx);
     robot::check_locked_names(&robot.joints, &options.lock, cx);
@@ -87,6 +94,7 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
         let kind = match child.tag_name().name() {
             "link" => 0,
             "joint" => 1,
+            loops::LOOP_JOINT => continue,
             _ => {
                 check_element_name(child, &["link", "joint"], cx);
                 continue;
@@ -118,6 +126,7 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
             _ => robot.joints.extend(joint::read_joint(child, options, &mut robot.left_out, cx)),
         }
     }
+    loops::read_declared_loops(node, options, &mut robot, cx);
     if let Some(tolerance) = options.snap.filter(|_| !cx.has_errors()) {
         robot.snapped =
             robot.joints.iter_mut().flat_map(|joint| robot::snap_joint_frame(joint, tolerance)).collect();

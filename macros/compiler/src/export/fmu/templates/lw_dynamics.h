@@ -4,8 +4,6 @@
  * Constraints and contacts have rows: first those of the constraints, then one for each contact, its gap. The matrix
  * of the rows is A = G inverse(M) transpose(G), with their Jacobian G. */
 
-#define LW_AT_LEAST_ONE(n) ((n) > 0 ? (n) : 1)
-#define LW_STATES (LW_NQ + LW_NV + LW_NX)
 #define LW_ROWS (LW_CONSTRAINTS + LW_CONTACTS)
 #define LW_SQUARE (LW_NV * LW_NV)
 
@@ -47,33 +45,6 @@ typedef struct {
     double v[LW_AT_LEAST_ONE(LW_NV)];
     const double *u;
 } lw_point;
-
-static inline bool lw_all_finite(int n, const double *values) {
-    for (int k = 0; k < n; ++k) {
-        if (!isfinite(values[k])) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Normalises the quaternions of a configuration. Returns false if one is zero. */
-static inline bool lw_normalise_all(double *q) {
-    for (int k = 0; k < LW_BALLS; ++k) {
-        double *quaternion = q + lw_balls[k][0], square = 0.0;
-        for (int i = 0; i < 4; ++i) {
-            square += quaternion[i] * quaternion[i];
-        }
-        if (!(square > 1e-18)) {
-            return false;
-        }
-        const double factor = 1.0 / sqrt(square);
-        for (int i = 0; i < 4; ++i) {
-            quaternion[i] *= factor;
-        }
-    }
-    return true;
-}
 
 /* Writes the arguments of functions at a state, with normalised quaternions. */
 static inline void lw_point_at(const lw_state *s, lw_point *p) {

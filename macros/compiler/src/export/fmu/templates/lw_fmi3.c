@@ -21,16 +21,26 @@ static inline void lw_put_rows(int total, int first, int rows, int columns, cons
 
 #include "lw_model.h"
 
+#include "lw_common.h"
+
+#if LW_LIBRARY
+
+#include "lw_library.h"
+
+#else
+
 #include "lw_dynamics.h"
 
 #include "lw_integration.h"
 
 #include "lw_derivatives.h"
 
+#endif
+
 enum {
     LW_FIRST_STATE = 1,
     LW_FIRST_RATE = LW_FIRST_STATE + LW_STATES,
-    LW_FIRST_INPUT = LW_FIRST_RATE + LW_STATES,
+    LW_FIRST_INPUT = LW_FIRST_RATE + (LW_LIBRARY ? 0 : LW_STATES),
     LW_FIRST_PARAMETER = LW_FIRST_INPUT + LW_NU,
     LW_FIRST_OUTPUT = LW_FIRST_PARAMETER + LW_NP,
     LW_FIRST_INDICATOR = LW_FIRST_OUTPUT + LW_NY,
@@ -115,11 +125,15 @@ static bool lw_may(const lw_instance *s, int modes, const char *function) {
         return lw_fail(s, fmi3Error, function, message);    \
     }
 
+/* Decay rate of violated constraints in the present mode. */
+static double lw_decay(const lw_instance *s) {
+    return !s->is_co_simulation && s->state.mode == LW_CONTINUOUS ? LW_STABILISATION : 0.0;
+}
+
 /* Computes the values of the state unless they are known. */
 static fmi3Status lw_update(lw_instance *s, const char *function, fmi3Status status) {
     if (!s->is_current) {
-        const bool decays = !s->is_co_simulation && s->state.mode == LW_CONTINUOUS;
-        const char *problem = lw_evaluate(&s->state, decays ? LW_STABILISATION : 0.0, &s->values);
+        const char *problem = lw_evaluate(&s->state, lw_decay(s), &s->values);
         if (problem) {
             return lw_fail(s, status, function, problem);
         }
@@ -128,8 +142,21 @@ static fmi3Status lw_update(lw_instance *s, const char *function, fmi3Status sta
     return fmi3OK;
 }
 
+/* Replaces the state by another one, which keeps the mechanism of the instance in the library. */
+static void lw_replace(lw_instance *s, const lw_state *state) {
+#if LW_LIBRARY
+    lw_robot *robot = s->state.robot;
+    s->state = *state;
+    s->state.robot = robot;
+#else
+    s->state = *state;
+#endif
+    s->is_current = false;
+}
+
 static void lw_reset(lw_instance *s) {
-    memset(&s->state, 0, sizeof s->state);
+    static const lw_state zero;
+    lw_replace(s, &zero);
     s->state.mode = LW_INSTANTIATED;
     s->state.step = 1e-3;
     memcpy(s->state.states, lw_start, LW_STATES * sizeof(double));
@@ -154,8 +181,25 @@ static fmi3Instance lw_instantiate(const char *token, bool is_co_simulation, fmi
         free(s);
         return NULL;
     }
+#if LW_LIBRARY
+    const char *problem = is_co_simulation ? lw_open(&s->state) : "the model is for co-simulation";
+    if (problem) {
+        lw_fail(s, fmi3Error, "fmi3Instantiate", problem);
+        free(s);
+        return NULL;
+    }
+#endif
     lw_reset(s);
     return s;
+}
+
+LW_EXPORT void LW_FMI(fmi3FreeInstance)(fmi3Instance instance) {
+#if LW_LIBRARY
+    if (instance) {
+        lw_free(((lw_instance *)instance)->state.robot);
+    }
+#endif
+    free(instance);
 }
 
 LW_EXPORT const char *LW_FMI(fmi3GetVersion)(void) {
@@ -189,7 +233,7 @@ LW_EXPORT fmi3Instance LW_FMI(fmi3InstantiateCoSimulation)(fmi3String name, fmi3
     lw_instance *s = (lw_instance *)lw_instantiate(token, true, environment, log);
     if (s && (uses_events || count > 0)) {
         lw_fail(s, fmi3Error, "fmi3InstantiateCoSimulation", "there is no Event Mode and no intermediate update");
-        free(s);
+        LW_FMI(fmi3FreeInstance)(s);
         return NULL;
     }
     return s;
@@ -204,10 +248,6 @@ LW_EXPORT fmi3Instance LW_FMI(fmi3InstantiateScheduledExecution)(fmi3String name
         log(environment, fmi3Error, "logStatusError", "fmi3InstantiateScheduledExecution: not supported");
     }
     return NULL;
-}
-
-LW_EXPORT void LW_FMI(fmi3FreeInstance)(fmi3Instance instance) {
-    free(instance);
 }
 
 LW_EXPORT fmi3Status LW_FMI(fmi3EnterInitializationMode)(fmi3Instance instance, fmi3Boolean has_tolerance,
@@ -229,15 +269,17 @@ LW_EXPORT fmi3Status LW_FMI(fmi3EnterInitializationMode)(fmi3Instance instance, 
 LW_EXPORT fmi3Status LW_FMI(fmi3ExitInitializationMode)(fmi3Instance instance) {
     static const char function[] = "fmi3ExitInitializationMode";
     LW_BEGIN(LW_INITIALISING, function)
+    const lw_state before = s->state;
     const char *problem = lw_check_parameters(&s->state);
     problem = problem ? problem : lw_make_consistent(&s->state, 1e-12);
-    LW_REQUIRE(!problem, function, problem)
     s->is_current = false;
-    const fmi3Status status = lw_update(s, function, fmi3Error);
-    if (status == fmi3OK) {
-        s->state.mode = s->is_co_simulation ? LW_STEPPING : LW_EVENT;
+    problem = problem ? problem : lw_evaluate(&s->state, 0.0, &s->values);
+    if (problem) {
+        s->state = before;
+        return lw_fail(s, fmi3Error, function, problem);
     }
-    return status;
+    s->state.mode = s->is_co_simulation ? LW_STEPPING : LW_EVENT;
+    return fmi3OK;
 }
 
 LW_EXPORT fmi3Status LW_FMI(fmi3EnterEventMode)(fmi3Instance instance) {
@@ -339,8 +381,7 @@ LW_EXPORT fmi3Status LW_FMI(fmi3GetFMUState)(fmi3Instance instance, fmi3FMUState
 LW_EXPORT fmi3Status LW_FMI(fmi3SetFMUState)(fmi3Instance instance, fmi3FMUState state) {
     LW_BEGIN(LW_ANY, "fmi3SetFMUState")
     LW_REQUIRE(state, "fmi3SetFMUState", "the state is NULL")
-    memcpy(&s->state, state, sizeof s->state);
-    s->is_current = false;
+    lw_replace(s, (const lw_state *)state);
     return fmi3OK;
 }
 
@@ -430,19 +471,19 @@ static fmi3Status lw_derivative(lw_instance *s, const char *function, bool is_ad
     }
     lw_derivatives *d = (lw_derivatives *)malloc(sizeof *d);
     LW_REQUIRE(d, function, "there is no memory left")
-    const char *problem = lw_differentiate(&s->state, d);
+    const char *problem = lw_differentiate(&s->state, lw_decay(s), d);
     if (problem) {
         free(d);
         return lw_fail(s, fmi3Error, function, problem);
     }
     const size_t rounds = is_adjoint ? known_count : 1;
-    for (size_t round = 0; round < rounds; ++round) {
+    for (size_t round = 0; round < rounds && !problem; ++round) {
         double sum = 0.0;
         memset(change, 0, sizeof change);
         for (size_t k = 0; k < known_count; ++k) {
             change[lw_known(knowns[k])] += is_adjoint ? (k == round ? 1.0 : 0.0) : seed[k];
         }
-        lw_apply(&s->state, d, change, changes);
+        problem = lw_apply(&s->state, lw_decay(s), d, change, changes);
         for (size_t k = 0; k < unknown_count; ++k) {
             /* A state that is an output depends on itself. */
             const int at = lw_unknown(unknowns[k]);
@@ -458,7 +499,7 @@ static fmi3Status lw_derivative(lw_instance *s, const char *function, bool is_ad
         }
     }
     free(d);
-    return fmi3OK;
+    return problem ? lw_fail(s, fmi3Error, function, problem) : fmi3OK;
 }
 
 #else

@@ -9,8 +9,11 @@ LW_EXPORT fmi3Status LW_FMI(fmi3UpdateDiscreteStates)(fmi3Instance instance, fmi
         "an argument is NULL")
     const lw_state before = s->state;
     const char *problem = lw_make_consistent(&s->state, 1e-9);
-    LW_REQUIRE(!problem, function, problem)
     s->is_current = false;
+    if (problem) {
+        s->state = before;
+        return lw_fail(s, fmi3Error, function, problem);
+    }
     *need_update = false;
     *terminates = false;
     *nominals_changed = false;
