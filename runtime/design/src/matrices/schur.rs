@@ -21,7 +21,7 @@ struct GivensRotation {
 }
 
 impl GivensRotation {
-    fn givens_rotation(x: C, y: C) -> Self {
+    fn zeroing_second(x: C, y: C) -> Self {
         let (a, b) = (x.norm(), y.norm());
         if b == 0.0 {
             return Self { c: 1.0, s: C::new(0.0, 0.0) };
@@ -132,7 +132,7 @@ impl Schur {
     fn swap_eigenvalues(&mut self, k: usize) {
         let n = self.t.nrows();
         let (first, second) = (self.t[(k, k)], self.t[(k + 1, k + 1)]);
-        let rotation = GivensRotation::givens_rotation(self.t[(k, k + 1)], second - first);
+        let rotation = GivensRotation::zeroing_second(self.t[(k, k + 1)], second - first);
         rotation.rotate_rows(&mut self.t, k, k..n);
         rotation.rotate_columns(&mut self.t, k, 0..k + 2);
         rotation.rotate_columns(&mut self.q, k, 0..n);
@@ -213,7 +213,7 @@ fn single_qr_step(t: &mut CMatrix, q: &mut CMatrix, low: usize, high: usize, shi
     let n = t.nrows();
     let (mut x, mut y) = (t[(low, low)] - shift, t[(low + 1, low)]);
     for k in low..high {
-        let rotation = GivensRotation::givens_rotation(x, y);
+        let rotation = GivensRotation::zeroing_second(x, y);
         rotation.rotate_rows(t, k, k.saturating_sub(1).max(low)..n);
         rotation.rotate_columns(t, k, 0..(k + 3).min(high + 1));
         rotation.rotate_columns(q, k, 0..n);
