@@ -164,7 +164,7 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
         let now = at(m, t);
         let (qq, qv, vv, qu, vu, uu) = now.second_order_motion(&q, &v, &u, &lambda);
         let linear_motion_at = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
-        let motion_at_input_step = |d: &SVector<f64, NU>| linear_motion_at(&q, &v, &(u + d));
+        let linear_motion_at_input_step = |d: &SVector<f64, NU>| linear_motion_at(&q, &v, &(u + d));
         let states = [
             (
                 qq,
@@ -189,9 +189,24 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
         for (k, (found, expected)) in states.iter().enumerate() {
             assert_block(&format!("{name}, {seed}: motion, block {k}"), found, expected, size);
         }
-        assert_block("qu", &qu, &contracted_derivatives(&lambda, |d| motion_at_input_step(d).by_q), size);
-        assert_block("vu", &vu, &contracted_derivatives(&lambda, |d| motion_at_input_step(d).by_v), size);
-        assert_block("uu", &uu, &contracted_derivatives(&lambda, |d| motion_at_input_step(d).by_u), size);
+        assert_block(
+            "qu",
+            &qu,
+            &contracted_derivatives(&lambda, |d| linear_motion_at_input_step(d).by_q),
+            size,
+        );
+        assert_block(
+            "vu",
+            &vu,
+            &contracted_derivatives(&lambda, |d| linear_motion_at_input_step(d).by_v),
+            size,
+        );
+        assert_block(
+            "uu",
+            &uu,
+            &contracted_derivatives(&lambda, |d| linear_motion_at_input_step(d).by_u),
+            size,
+        );
     }
 }
 

@@ -200,12 +200,12 @@ struct Cables {
 /// contact with the cylinder that are visible from the ends.
 fn shortest_path_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
     let length_of_path = |[alpha, beta, za, zb]: [f64; 4]| {
-        let point_on_cylinder = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
+        let point_at_angle_and_height = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
         let distance_between =
             |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
-        distance_between(a, point_on_cylinder(alpha, za))
+        distance_between(a, point_at_angle_and_height(alpha, za))
             + (radius * (beta - alpha)).hypot(zb - za)
-            + distance_between(point_on_cylinder(beta, zb), b)
+            + distance_between(point_at_angle_and_height(beta, zb), b)
     };
     let (from, to) = (a[1].atan2(a[0]), b[1].atan2(b[0]));
     let to = if to < from { to + 2.0 * PI } else { to };

@@ -365,7 +365,7 @@ fn derive_functions<'g>(
     let passes = Passes { free_parameters: specialisation == Specialisation::ByParameters, ..passes };
     let derivation = Derivation::new(model, joints, speeds, passes, specialisation, &facts);
     let functions = derivation.derive_declared(catalogue::functions_before_outputs(&facts), Vec::new());
-    let functions = derivation.derive_declared(outputs::declared_output_functions(model, &facts), functions);
+    let functions = derivation.derive_declared(outputs::signatures_of_outputs(model, &facts), functions);
     let by_variants = facts.requests.derivatives && speeds.is_none();
     let variants = if by_variants { derivatives::model_variants(model, passes) } else { Vec::new() };
     let derivatives = Derivatives::new(model, &variants, passes, specialisation);

@@ -84,7 +84,7 @@ impl PolynomialTerms {
         self.combine_terms(other, ErrorBoundedCoefficient::plus_coefficient)
     }
 
-    fn minus_polynomial(&self, other: &Self) -> Self {
+    fn subtract_polynomial(&self, other: &Self) -> Self {
         self.combine_terms(other, ErrorBoundedCoefficient::minus_coefficient)
     }
 
@@ -405,7 +405,7 @@ impl LoopPolynomials {
         let (n, d) = (&self.numerator, &self.denominator);
         n.odd
             .times_polynomial(&d.even)
-            .minus_polynomial(&n.even.times_polynomial(&d.odd))
+            .subtract_polynomial(&n.even.times_polynomial(&d.odd))
             .without_rounding_errors()
     }
 
@@ -414,7 +414,7 @@ impl LoopPolynomials {
     fn magnitude_difference_terms(&self) -> PolynomialTerms {
         self.numerator
             .squared_magnitude()
-            .minus_polynomial(&self.denominator.squared_magnitude())
+            .subtract_polynomial(&self.denominator.squared_magnitude())
             .without_rounding_errors()
     }
 
@@ -427,7 +427,7 @@ impl LoopPolynomials {
         );
         p.derivative_of_polynomial()
             .times_polynomial(&r)
-            .minus_polynomial(&p.times_polynomial(&r.derivative_of_polynomial()))
+            .subtract_polynomial(&p.times_polynomial(&r.derivative_of_polynomial()))
             .without_rounding_errors()
     }
 

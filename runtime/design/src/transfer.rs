@@ -84,7 +84,8 @@ impl TransferFunction {
         Self { numerator, denominator: Polynomial::constant(1.0), period: None }
     }
 
-    /// Makes the transfer function discrete with a period in s: a ratio of polynomials in `z`.
+    /// Declares the transfer function to be discrete, with a period in s. Its polynomials, which do not
+    /// change, are then in `z`: it is not discretised.
     ///
     /// # Errors
     ///

@@ -78,7 +78,8 @@ pub struct EventMemory<T, const NV: usize> {
     /// Number of consecutive time-stepping steps among the very short steps; each is twice as long as the
     /// previous one.
     stretch: u32,
-    /// Number of further steps for which the forces of sliding contacts are assumed to be indeterminate.
+    /// Number of further steps that count as steps in which contacts slide and the contact forces are not
+    /// unique, such as forces shared by redundant contacts.
     shared: u32,
     /// Whether the previous step was an impact.
     has_struck: bool,

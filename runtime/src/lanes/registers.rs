@@ -58,8 +58,8 @@ pub trait Registers: Copy + 'static {
     /// Whether all angles are within the range of the fast argument reduction.
     #[cfg(feature = "std")]
     fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool;
-    /// Returns sines and cosines of angles, rad, of which some are outside the range of the fast argument
-    /// reduction.
+    /// Returns the sines and cosines of the angles `x`, rad. This is the slow path, called if at least one
+    /// angle is outside the range of the fast argument reduction.
     fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]);
 }
 

@@ -92,7 +92,7 @@ struct Flight {
 }
 
 /// Whether all integrators compute the same flight of a body.
-fn agrees_on_flight(mass: f64) -> bool {
+fn integrators_agree_on_flight(mass: f64) -> bool {
     let flight = Flight { mass };
     let v = SVector::from([1.0, 0.0, 3.0, 0.1, 0.2, 0.3, -0.5, 0.4, 0.3]);
     let simulate_flight = || simulate(&flight).from(flight.neutral(), v).duration(0.1);
@@ -190,7 +190,7 @@ extern "C" fn main(_: i32, _: *const *const u8) -> i32 {
         remaining -= 1;
     }
     let arrived = (q - target).norm() < 1e-3;
-    let alone = agrees_on_flight(black_box(0.5))
+    let alone = integrators_agree_on_flight(black_box(0.5))
         && keeps_loop_closed(black_box(0.13))
         && comes_to_rest(black_box(0.4));
     i32::from(!(sound && arrived && side_by_side(&q, &v) && alone))

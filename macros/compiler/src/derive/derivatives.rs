@@ -327,7 +327,7 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
         let r = accelerated.then(|| self.unbalanced_forces());
         let program = self.specialisation.lower_to_program(&bordered_inverse_outputs(
             r,
-            divided_inverse_terms(&self.mass, &self.trunk_or_all()),
+            divided_inverse_terms(&self.mass, &self.trunk_or_whole_mechanism()),
         ));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let parts = divided_inverse_terms(&lanes.mass, lanes.trunk.as_ref()?);
@@ -350,7 +350,7 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
     }
 
     /// Returns the trunk, or a trunk of all velocities for a mechanism that does not branch.
-    fn trunk_or_all(&self) -> Trunk {
+    fn trunk_or_whole_mechanism(&self) -> Trunk {
         self.trunk.clone().unwrap_or_else(|| Trunk::whole_trunk(&self.joints, self.model.nv()))
     }
 
@@ -429,7 +429,7 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
     fn inverse_function(&self, accelerated: bool) -> (Program, Structure) {
         let (program, inverse) = match self.inverts_in_runtime_loops() {
             true => {
-                let trunk = self.trunk_or_all();
+                let trunk = self.trunk_or_whole_mechanism();
                 let parted = InverseForm::BlockArrow {
                     trunk: trunk.velocities.clone(),
                     limbs: trunk.velocities_of_limbs(),

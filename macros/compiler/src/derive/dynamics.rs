@@ -246,7 +246,7 @@ fn mass_matrices_in_lanes<'g>(
     };
     let column_mass_matrices = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
-            let all = variants.general_variants();
+            let all = variants.variants_for_all_functions();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
         };
         in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))

@@ -9,7 +9,7 @@ use crate::mechanics::reactions;
 use crate::mechanism::{Model, OutputValue, Quantity, Uses};
 
 /// Returns the functions of all outputs, in order. Mechanisms without dynamics have no reactions.
-pub fn declared_output_functions(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
+pub fn signatures_of_outputs(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
     let functions_of_output = |output: &OutputValue<'_>| {
         let size = output.values.len();
         let depends_on_quantity = |f: fn(&Quantity) -> bool| {

@@ -186,7 +186,8 @@ impl TrailingRows<'_> {
     fn trunk_completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
         let used: Vec<(usize, Span)> =
             (0..self.rows).filter_map(|k| Some((k, self.nonzero_range(k)?))).collect();
-        let runs = factor_runs(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
+        let runs =
+            column_runs_of_factors(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
         if runs.is_empty() {
             return String::new();
         }
@@ -223,9 +224,10 @@ impl TrailingRows<'_> {
             let all = ends.reduce(|(a, b), (from, to)| (a.min(from), b.max(to)));
             limb.iter().for_each(|k| used[*k] = all);
         }
-        let runs = factor_runs(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
+        let runs =
+            column_runs_of_factors(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
         let format_runs_of_limb = |limb: &Vec<usize>| {
-            let runs = factor_runs(limb.iter().map(|k| (*k, Span::default(), *k)));
+            let runs = column_runs_of_factors(limb.iter().map(|k| (*k, Span::default(), *k)));
             format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
         };
         let limbs: Vec<String> = limbs.iter().map(format_runs_of_limb).collect();
@@ -246,7 +248,7 @@ impl TrailingRows<'_> {
 
 /// Groups neighbouring columns whose factors have the same range of trunk rows and consecutive indices.
 /// `columns` holds, in ascending order, the index of each column, the range and the index of the factors.
-fn factor_runs(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
+fn column_runs_of_factors(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
     let mut runs: Vec<(Span, Span, usize)> = Vec::new();
     for (k, used, place) in columns {
         match runs.last_mut() {

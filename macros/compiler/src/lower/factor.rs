@@ -128,13 +128,13 @@ impl Program {
     /// Returns the other factor of a term that is a product with this factor.
     fn cofactor_of_term(&self, term: Term, factor: Operand) -> Option<Term> {
         let (a, b) = self.single_use_product(term.operand)?;
-        let sign_of_cofactor = |x: Operand| match (x, factor) {
+        let is_opposite_of_factor = |x: Operand| match (x, factor) {
             (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
             (x, f) if x == f => Some(false),
             _ => None,
         };
         let (other, opposite) =
-            sign_of_cofactor(a).map(|o| (b, o)).or_else(|| sign_of_cofactor(b).map(|o| (a, o)))?;
+            is_opposite_of_factor(a).map(|o| (b, o)).or_else(|| is_opposite_of_factor(b).map(|o| (a, o)))?;
         Some(Term { operand: other, negative: term.negative != opposite })
     }
 

@@ -36,9 +36,9 @@ pub fn replace_reactions<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -
             return multiplier_of_symbol(s, &multipliers);
         }
         let (joint, component) = (k / SIX, k % SIX);
-        let released_index = || released.joints.iter().position(|j| *j == joint);
+        let index_among_released_joints = || released.joints.iter().position(|j| *j == joint);
         reaction_of_multipliers(model, released, &multipliers, joint, component)
-            .or_else(|| Some(held[SIX * released_index()? + component]))
+            .or_else(|| Some(held[SIX * index_among_released_joints()? + component]))
     };
     replace_all(e, &reaction_of_symbol)
 }

@@ -70,7 +70,8 @@ impl<'a, 'g> Paths<'a, 'g> {
         &self.links
     }
 
-    /// Divides the runs into groups of at most `max_lanes` lanes.
+    /// Divides the runs of degrees of freedom between branches into groups that are propagated together, in
+    /// at most `max_lanes` SIMD lanes.
     fn lane_groups(&self, max_lanes: usize) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
         for run in self.runs_between_branches().iter().filter(|run| !run.is_empty()) {

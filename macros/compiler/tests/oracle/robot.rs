@@ -172,7 +172,7 @@ impl Robot {
     }
 
     /// Returns a random robot with the joint types of MJCF.
-    pub fn random_mjcf(random: &mut Random) -> Robot {
+    pub fn random_robot_for_mjcf(random: &mut Random) -> Robot {
         let mut robot = Robot::random_robot(&[0, 1, 2, 3, 6, 6, 6], random);
         for joint in robot.links.iter_mut().filter_map(|link| link.joint.as_mut()) {
             // A body without a joint cannot be locked.

@@ -125,7 +125,7 @@ impl Motor {
 fn random_site_motors_do_the_work_of_their_forces() {
     for seed in test_seeds(60) {
         let mut random = Random::new(6_000_000 + seed);
-        let robot = Robot::random_mjcf(&mut random);
+        let robot = Robot::random_robot_for_mjcf(&mut random);
         let links = robot.links.len();
         let mut sites = vec![Site::random_site(None, &mut random)];
         sites.extend((0..links).map(|link| Site::random_site(Some(link), &mut random)));

@@ -262,7 +262,7 @@ impl BinaryWriter<'_> {
                 self.code.push(NUMBER);
                 self.code.extend(x.to_le_bytes());
             }
-            Operand::Symbol(symbol) => self.write_symbol(symbol)?,
+            Operand::Symbol(symbol) => self.write_load_of_symbol(symbol)?,
             Operand::Value(k) => match self.values[k] {
                 Value::Local(local) => {
                     self.code.push(GET);
@@ -277,7 +277,7 @@ impl BinaryWriter<'_> {
         Ok(())
     }
 
-    fn write_symbol(&mut self, symbol: Symbol) -> Result<(), String> {
+    fn write_load_of_symbol(&mut self, symbol: Symbol) -> Result<(), String> {
         let (slot, index) = self.layout.locate(symbol).ok_or("a program reads what it is not given")?;
         self.code.push(GET);
         write_unsigned(&mut self.code, slot);

@@ -26,12 +26,15 @@ const LARGEST: f64 = 0.125;
 /// Rows of contact velocities.
 pub(in super::super) type ChosenRows<const NR: usize> = TotalArray<bool, NR>;
 
-/// Derivatives of the friction impulses that a rotation of the slip direction adds, with respect to the
+/// Friction impulses that a rotation of the slip direction adds, with their derivatives with respect to the
 /// impulses at the start and to the slip velocities.
 pub(in super::super) struct RotatedFriction<T, const NR: usize> {
-    /// The impulses.
+    /// Half of the difference of the friction impulses from those against the slip velocities, for contacts
+    /// that slide throughout the step; zero in the other rows.
     pub(in super::super) impulses: SVector<T, NR>,
+    /// Derivatives with respect to the impulses at the start.
     pub(in super::super) by_impulses: SMatrix<T, NR, NR>,
+    /// Derivatives with respect to the slip velocities.
     pub(in super::super) by_slip: SMatrix<T, NR, NR>,
 }
 

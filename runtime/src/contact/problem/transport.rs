@@ -13,8 +13,8 @@ use nalgebra::SVector;
 const LARGEST: f64 = 0.125;
 
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
-    /// Corrects the velocity without impulses, so that impulses `Λ` at the end of a step act as in the mean
-    /// of the step.
+    /// Corrects the velocity without impulses, so that adding impulses `Λ` at the end of the step gives the
+    /// trapezoidal rule: half of the impulses act in the configuration at the start, half in that at the end.
     ///
     /// The impulses `Λ₀` at its start have added `given` to the velocity, and `rates` to the rates. Contact
     /// forces rotate with the surfaces and with the slip; their impulse is

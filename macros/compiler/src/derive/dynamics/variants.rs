@@ -79,7 +79,7 @@ impl<'g> Variants<'g> {
     }
 
     /// Returns the variants of the model that serve all functions.
-    pub fn general_variants(&self) -> impl Iterator<Item = &Model<'g>> {
+    pub fn variants_for_all_functions(&self) -> impl Iterator<Item = &Model<'g>> {
         self.all.iter().filter(|variant| !variant.for_inverse_dynamics).map(|variant| &variant.model)
     }
 
@@ -95,7 +95,7 @@ impl<'g> Variants<'g> {
         role: Role,
         outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
     ) -> impl Iterator<Item = Candidate<'g>> {
-        self.general_variants().map(outputs).map(move |list| self.candidate_in_speeds(role, list))
+        self.variants_for_all_functions().map(outputs).map(move |list| self.candidate_in_speeds(role, list))
     }
 
     /// Returns outputs as a candidate, transformed to generalized speeds if there are any.
@@ -161,7 +161,7 @@ impl<'g> Variants<'g> {
         let v = mechanics::velocity_symbols(bias);
         let wrenches = rnea::link_wrenches(bias, &self.joints, &v, None);
         let tau = mechanics::generalized_force_symbols(bias);
-        let all = self.general_variants().filter_map(|model| {
+        let all = self.variants_for_all_functions().filter_map(|model| {
             let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
             Some(self.candidate_in_speeds(Role::Accelerations(0), list))
         });
@@ -243,20 +243,20 @@ impl<'g> Variants<'g> {
                 let mass = crba::mass_matrix(model, &self.joints);
                 return constraints::minimum_norm_terms(&mass, &rows, force.to_vec(), bias, &self.joints);
             }
-            let (mass, force) = self.compensated_mass_and_forces(model, force, bias);
+            let (mass, force) = self.mass_and_forces_with_massless_terms(model, force, bias);
             constraints::solve_constrained(&mass, &rows, force, bias.to_vec())
         })
     }
 
     fn slipping_contacts_program(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
         self.cheapest_program(role, |model| {
-            let (mass, force) = self.compensated_mass_and_forces(model, force, bias);
+            let (mass, force) = self.mass_and_forces_with_massless_terms(model, force, bias);
             friction::solve_with_friction(model, &mass, force, bias.to_vec())
         })
     }
 
     /// Returns mass matrix and forces with the terms that compensate for coordinates without inertia.
-    fn compensated_mass_and_forces(
+    fn mass_and_forces_with_massless_terms(
         &self,
         model: &Model<'g>,
         force: &[Expr<'g>],

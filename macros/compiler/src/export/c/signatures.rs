@@ -22,7 +22,7 @@ pub struct CodeParts {
     pub types: String,
     /// C definitions of the helper functions, followed by those of all exported functions.
     pub definitions: String,
-    /// C functions that a program can call.
+    /// Signatures of the exported C functions.
     pub functions: Vec<Batch>,
     /// Members of the C parameter struct.
     pub parameters: Vec<String>,

@@ -67,7 +67,7 @@ fn linear_and_polynomial_couplings_become_constraints() {
              <fixed name='t'><joint joint='k' coef='3'/></fixed></tendon><equality>{equality}</equality>"
         )
     };
-    let expected_start = |follows: &str| {
+    let expected_bodies_and_joints = |follows: &str| {
         format!(
             "the root is the ground
          body b
@@ -79,26 +79,29 @@ fn linear_and_polynomial_couplings_become_constraints() {
     // 2 (j − 1) + 4 (k − 2) = 6
     check_mjcf_elements(
         &model_with_equality("<tendon tendon1='s' polycoef='6'/>"),
-        &expected_start(" = -0.5 j + 4"),
+        &expected_bodies_and_joints(" = -0.5 j + 4"),
     );
     check_mjcf_elements(
         &model_with_equality("<tendon name='w' tendon1='s' tendon2='t' polycoef='5 6 7'/>"),
         &format!(
             "{}\nw: ((-10 + (2 * j)) + (4 * k)) = (5 + ((6 + (7 * (-6 + (3 * k)))) * (-6 + (3 * k))))",
-            expected_start("")
+            expected_bodies_and_joints("")
         ),
     );
     check_mjcf_elements(
         &model_with_equality("<joint joint1='j' joint2='k' polycoef='0 0 1'/>"),
         &format!(
             "{}\njoint_coupling: (-1 + (1 * j)) = (0 + ((0 + (1 * (-2 + (1 * k)))) * (-2 + (1 * k))))",
-            expected_start("")
+            expected_bodies_and_joints("")
         ),
     );
     // Two constraints on one joint.
     check_mjcf_elements(
         &model_with_equality("<joint joint1='k' joint2='j'/><tendon tendon1='s'/>"),
-        &format!("{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0", expected_start(" = 1 j + 1")),
+        &format!(
+            "{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0",
+            expected_bodies_and_joints(" = 1 j + 1")
+        ),
     );
     let help = "= help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`";
     for (equality, expected) in [

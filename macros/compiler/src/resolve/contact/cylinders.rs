@@ -227,8 +227,9 @@ impl<'g> Drum<'g> {
         let rim = directions[1..].iter().map(|direction| {
             let point = lower + *direction * self.radius;
             let at = face.components(c + point);
-            let excess = |k: usize| at[k].apply_function(Function::Abs) - face.half[k];
-            let outside = excess(1).minimum_or_maximum(Extreme::Max, excess(2));
+            let distance_beyond_half_width = |k: usize| at[k].apply_function(Function::Abs) - face.half[k];
+            let outside =
+                distance_beyond_half_width(1).minimum_or_maximum(Extreme::Max, distance_beyond_half_width(2));
             face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, outside), point)
         });
         line.into_iter().chain(rim).collect()

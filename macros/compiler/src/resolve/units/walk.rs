@@ -67,7 +67,7 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// Returns the common value of several expressions.
+    /// Equates the units of several expressions and returns the common unit.
     fn common_value(&mut self, items: &'a [Expr], reason: Reason<'a>) -> UnitValue {
         let mut first: Option<&Expr> = None;
         let mut common = UnitValue::Number(0.0);
