@@ -96,6 +96,9 @@ mod tests {
                 mass: f64,
             }
         };
-        assert_eq!(field_notes(&item), [("length".to_string(), "The length, of the rod.".to_string())]);
+        assert_eq!(
+            field_notes(&item),
+            [("length".to_string(), "Length of the rod in the test struct.".to_string())]
+        );
     }
 }

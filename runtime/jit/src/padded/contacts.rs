@@ -126,6 +126,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         acceleration_derivatives(t: f64, q: &Vector<NQ>, v: &Vector<NV>, u: &Vector<NU>)
             -> Option<ByMotion<f64, NV, NU>>;
         carry(t: f64, q: &Vector<NQ>, dv: &Vector<NV>, v: &Vector<NV>) -> Vector<NV>;
+        carry_rate(t: f64, dv: &Vector<NV>, v: &Vector<NV>) -> Option<Vector<NV>>;
+        translation(t: f64, dv: &Vector<NV>) -> Vector<NV>;
     }
 
     fn contact_start(&self, t: f64, q: &Vector<NQ>, parts: bool) -> Result<Vector<NQ>, ConstraintError> {
