@@ -38,6 +38,8 @@ const ENOUGH: f64 = 1e-8;
 pub(super) const PATIENCE: usize = 16;
 const PER_DECADE: usize = 8;
 const MAX_DECADES: usize = 3;
+/// Violation, relative to the largest contact velocity, of impulses that are worse than none.
+const NONSENSE: f64 = 1e3;
 /// Number of rows up to which impulses of the least norm come first, and the violation of impulses of the
 /// previous step, relative to the largest contact velocity, below which they come first otherwise.
 const FEW: usize = 12;
@@ -208,7 +210,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             self.contacts_where(|k| self.free[self.rows_of_contact(k).0] < self.least[self.pressed_by[k]]);
         let stuck = self.tried_impulses(self.impulses_closing_with(&approach, equations));
         // Nearly dependent rows may have impulses that are worse than none.
-        let stuck = match stuck.worst.0 <= self.largest_rate() {
+        let stuck = match stuck.worst.0 <= self.largest_rate() * constant(NONSENSE) {
             true => stuck,
             false => self.tried_impulses(RowList::repeat_entry(T::zero())),
         };
