@@ -372,7 +372,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>;
 
-    /// Computes [`differentiate`](Self::differentiate) in place; called by [`transition_into`].
+    /// Computes [`differentiate_step`](Self::differentiate_step) in place; called by [`transition_into`].
     ///
     /// # Errors
     ///
