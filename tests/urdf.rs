@@ -370,15 +370,15 @@ fn link_named_ground_is_the_fixed_root() {
 #[mechanism(urdf = "data/urdf/parallelogram.urdf", loops = close)]
 struct Parallelogram;
 
-/// The same linkage, whose loop is closed by an element of Isaac Sim.
+/// Parallelogram linkage whose loop is closed by an element of Isaac Sim.
 #[mechanism(urdf = "data/urdf/parallelogram_loop_joint.urdf", loops = close)]
 struct LoopJoint;
 
-/// The same linkage, whose loop is closed by a joint in a `<gazebo>` element.
+/// Parallelogram linkage whose loop is closed by a joint in a `<gazebo>` element.
 #[mechanism(urdf = "data/urdf/parallelogram_gazebo.urdf", loops = close)]
 struct GazeboJoint;
 
-/// The same linkage, whose loop is closed by a ball constraint of Drake.
+/// Parallelogram linkage whose loop is closed by a ball constraint of Drake.
 #[mechanism(urdf = "data/urdf/parallelogram_drake.urdf", loops = close)]
 struct BallConstraint;
 

@@ -82,7 +82,7 @@ macro_rules! each_function {
             is_nearly_singular(q: NQ, dv: NV) -> bool;
             acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<$scalar, NV, NU>>;
             carry(q: NQ, dv: NV, v: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
-            carry_rate(dv: NV, v: NV) -> Option<$crate::nalgebra::SVector<$scalar, NV>>;
+            carry_rate(dv: NV, v: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
             translation(dv: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
             contact_start(q: NQ, parts: truth) -> Result<$crate::nalgebra::SVector<$scalar, NQ>, $crate::ConstraintError>;
             contact_step(start: state, end: state, given: assumed, h: scalar) -> Result<$crate::contact::Touched<$scalar, NQ, NV>, $crate::ConstraintError>;

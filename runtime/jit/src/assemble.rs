@@ -105,7 +105,7 @@ impl Robot {
     }
 
     /// Returns the configuration of least constraint violation near `q`, which steps of bounded length reach.
-    /// It need not satisfy the constraints; see [`assemble`](Self::assemble).
+    /// The configuration need not satisfy the constraints; see [`assemble`](Self::assemble).
     ///
     /// # Errors
     ///

@@ -82,7 +82,7 @@ impl Robot {
 
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
     /// Returns the robot padded to constant dimensions, or an error if it is too large or has no dynamics.
-    /// Its contacts have no effect.
+    /// Contacts of the robot have no effect.
     pub(crate) fn new(robot: R) -> Result<Self, Error> {
         let own: &Robot = robot.borrow();
         let velocities = own.nv() + own.shared.states.len();
@@ -303,18 +303,13 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         self.fill_vector(Internal::SpeedsOfRates, State { v: self.velocity_entries(&out), ..at }, n, out)
     }
 
-    fn carry_rate(&self, _t: f64, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> Option<SVector<f64, NV>> {
-        if self.robot().shared.has_speeds {
-            return None;
-        }
+    fn carry_rate(&self, _t: f64, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         let mut out = SVector::<f64, NV>::zeros();
-        crate::space::transport_rate(
-            &self.robot().shared.charts,
-            dv.as_slice(),
-            v.as_slice(),
-            out.as_mut_slice(),
-        );
-        Some(out)
+        if !self.robot().shared.has_speeds {
+            let charts = &self.robot().shared.charts;
+            crate::space::transport_rate(charts, dv.as_slice(), v.as_slice(), out.as_mut_slice());
+        }
+        out
     }
 
     fn translation(&self, _t: f64, dv: &SVector<f64, NV>) -> SVector<f64, NV> {

@@ -188,15 +188,8 @@ impl<'a, 'i> Simulation<'a, 'i> {
         last.ok_or_else(|| Error::Internal("a run without samples".to_string()))
     }
 
-    /// Runs the simulation and passes its samples to a function. Returns the time from which the motion is
-    /// stiff, as [`Run`] has it.
-    ///
-    /// # Errors
-    ///
-    /// As [`run`](Self::run).
-    pub fn each(self, sample: &mut (dyn FnMut(Sample) + Send)) -> Result<Option<f64>, Error> {
-        let robot = self.robot;
-        let (n, states) = (robot.nv(), &robot.shared.states);
+    /// Checks the start, the duration and the interval between samples.
+    fn check_times(&self) -> Result<(), Error> {
         let invalid_value_error = |name: &str, value: f64| {
             Error::Value(format!("{name} must be finite and not negative, but it is {value}"))
         };
@@ -223,14 +216,12 @@ impl<'a, 'i> Simulation<'a, 'i> {
             );
             return Err(Error::Value(message));
         }
-        let q = self.q.map_or_else(|| robot.neutral().map(|q| q.as_slice().to_vec()), |q| Ok(q.to_vec()))?;
-        let mut v = self.v.map_or_else(|| vec![0.0; n], <[f64]>::to_vec);
-        if v.len() == n {
-            v.extend(states.iter().map(|one| robot.parameter_values()[one.parameter]));
-        }
-        robot.validate()?;
-        robot.check_length("q", robot.nq(), q.len())?;
-        robot.check_length("v", n + states.len(), v.len())?;
+        Ok(())
+    }
+
+    /// Checks the lengths and values of the inputs.
+    fn check_inputs(&self) -> Result<(), Error> {
+        let robot = self.robot;
         match &self.inputs {
             Inputs::Constant(u) => robot.check_length("u", robot.nu(), u.len())?,
             Inputs::Samples { times, values } => {
@@ -244,6 +235,28 @@ impl<'a, 'i> Simulation<'a, 'i> {
             }
             _ => {}
         }
+        Ok(())
+    }
+
+    /// Runs the simulation and passes its samples to a function. Returns the time from which the motion is
+    /// stiff, as [`Run`] has it.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn each(self, sample: &mut (dyn FnMut(Sample) + Send)) -> Result<Option<f64>, Error> {
+        self.check_times()?;
+        let robot = self.robot;
+        let (n, states) = (robot.nv(), &robot.shared.states);
+        let q = self.q.map_or_else(|| robot.neutral().map(|q| q.as_slice().to_vec()), |q| Ok(q.to_vec()))?;
+        let mut v = self.v.map_or_else(|| vec![0.0; n], <[f64]>::to_vec);
+        if v.len() == n {
+            v.extend(states.iter().map(|one| robot.parameter_values()[one.parameter]));
+        }
+        robot.validate()?;
+        robot.check_length("q", robot.nq(), q.len())?;
+        robot.check_length("v", n + states.len(), v.len())?;
+        self.check_inputs()?;
         let with_contacts = self.contacts && !robot.shared.contacts.is_empty();
         let method = match self.method {
             Method::Automatic(_) if with_contacts => Method::TimeStepping(STEP),

@@ -171,10 +171,8 @@ where
         t: Lanes<M::Scalar, L>,
         dv: &LaneColumn<M::Scalar, L, NV>,
         v: &LaneColumn<M::Scalar, L, NV>,
-    ) -> Option<LaneColumn<M::Scalar, L, NV>> {
-        let rate = |k: usize| self.mechanism.carry_rate(t.0[k], &lane(dv, k), &lane(v, k));
-        let is_known = L > 0 && rate(0).is_some();
-        is_known.then(|| lane_by_lane(|k| rate(k).unwrap_or_else(SVector::zeros)))
+    ) -> LaneColumn<M::Scalar, L, NV> {
+        lane_by_lane(|k| self.mechanism.carry_rate(t.0[k], &lane(dv, k), &lane(v, k)))
     }
 
     fn translation(

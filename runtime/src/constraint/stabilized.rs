@@ -259,7 +259,7 @@ where
         t: M::Scalar,
         dv: &SVector<M::Scalar, NV>,
         v: &SVector<M::Scalar, NV>,
-    ) -> Option<SVector<M::Scalar, NV>> {
+    ) -> SVector<M::Scalar, NV> {
         self.mechanism.carry_rate(t, dv, v)
     }
 

@@ -269,7 +269,7 @@ where
         self.mechanism.carry(t, q, dv, v)
     }
 
-    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>> {
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.mechanism.carry_rate(t, dv, v)
     }
 

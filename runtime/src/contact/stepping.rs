@@ -213,42 +213,26 @@ where
     let run = (&came, (start, v), (q, free), (given, impulses));
     let at_end = (t, &velocities);
     // Matrices of few closed contacts are small, however many contacts a mechanism has.
+    macro_rules! act_in_arrays {
+        ($contacts:ident, $rows:ident) => {
+            act_in_step::<M, T, NQ, NV, NU, NK, NR, $contacts, $rows>(
+                mechanism,
+                at_end,
+                run,
+                &closed,
+                state_after_impulses,
+                observer,
+            )
+        };
+    }
     if const { NR > SMALL } && rows <= SMALL {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(
-            mechanism,
-            at_end,
-            run,
-            &closed,
-            state_after_impulses,
-            observer,
-        )
+        act_in_arrays!(SMALL, SMALL)
     } else if const { NR > MEDIUM } && rows <= MEDIUM {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, MEDIUM, MEDIUM>(
-            mechanism,
-            at_end,
-            run,
-            &closed,
-            state_after_impulses,
-            observer,
-        )
+        act_in_arrays!(MEDIUM, MEDIUM)
     } else if const { NR > LARGE } && rows <= LARGE {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(
-            mechanism,
-            at_end,
-            run,
-            &closed,
-            state_after_impulses,
-            observer,
-        )
+        act_in_arrays!(LARGE, LARGE)
     } else {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(
-            mechanism,
-            at_end,
-            run,
-            &closed,
-            state_after_impulses,
-            observer,
-        )
+        act_in_arrays!(NK, NR)
     }
 }
 
@@ -348,24 +332,34 @@ where
         }
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
-    let own = selection.selected_gaps(&gaps);
-    let mut closing = GapClosing { gaps: own, reach: touching_distance(), pushes: None, part: T::one() };
-    if !problem.are_gaps_closed(&own, touching_distance()) {
-        let speed = own_velocities().iter().fold(problem.largest_rate(), |most, rate| most.max(rate.abs()));
-        closing.reach += speed * h;
-        closing.pushes = problem.gap_closing_impulses(impulses, &own, (touching_distance(), closing.reach));
-    }
+    let fastest = || {
+        let velocities = own_velocities();
+        velocities.iter().fold(problem.largest_rate(), |most, rate| most.max(rate.abs()))
+    };
+    let mut closing = gap_closing(&acted, selection.selected_gaps(&gaps), (h, fastest));
     if let Some(pushes) = &closing.pushes {
-        (touched, closing.part) = displaced_within_energy(
-            mechanism,
-            t,
-            (&touched, &gaps),
-            &acted.velocity_change(pushes),
-            allowed_energy,
-        );
+        let push = acted.velocity_change(pushes);
+        (touched, closing.part) =
+            displaced_within_energy(mechanism, t, (&touched, &gaps), &push, allowed_energy);
     }
     observer.observe(&acted, Some(&closing));
     Ok(touched)
+}
+
+/// Returns the displacement that closes the gaps of the selected contacts at the end of a step of `h` seconds,
+/// whose contact velocities are at most `fastest` in magnitude.
+fn gap_closing<T: Real, const NV: usize, const CK: usize, const CR: usize>(
+    acted: &ActedContacts<T, NV, CK, CR>,
+    gaps: SVector<T, CK>,
+    (h, fastest): (T, impl FnOnce() -> T),
+) -> GapClosing<T, CK, CR> {
+    let (problem, impulses) = (&acted.problem, &acted.impulses);
+    let mut closing = GapClosing { gaps, reach: touching_distance(), pushes: None, part: T::one() };
+    if !problem.are_gaps_closed(&gaps, touching_distance()) {
+        closing.reach += fastest() * h;
+        closing.pushes = problem.gap_closing_impulses(impulses, &gaps, (touching_distance(), closing.reach));
+    }
+    closing
 }
 
 /// Returns impulses that, applied as displacements, reverse the creep of sticking contacts in a step, if the

@@ -136,7 +136,8 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         self.transport_to_end(t, q, (&by.value, &end), v)
     }
 
-    /// Returns [`transported_velocity`](Self::transported_velocity), or with declared generalized speeds the same speeds.
+    /// Returns [`transported_velocity`](Self::transported_velocity), or with declared generalized speeds the
+    /// same speeds.
     fn transported_or_same_speeds<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
@@ -147,14 +148,11 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        match self.mechanism.carry_rate(t, &v.value, &v.value) {
-            Some(_) => self.transported_velocity(t, q, by, v),
-            None => *v,
-        }
+        if self.mechanism.features().speeds { *v } else { self.transported_velocity(t, q, by, v) }
     }
 
-    /// Returns an acceleration at the velocity `v` without the rotation of the axes of ball and free joints.
-    /// Its derivatives are those with respect to the state.
+    /// Returns an acceleration at the velocity `v`, with its derivatives with respect to the state, without
+    /// the rotation of the axes of ball and free joints.
     fn in_space<T: Real, const NQ: usize, const NU: usize>(
         &self,
         mut acceleration: VectorWithDerivatives<T, NV, NU>,
@@ -164,17 +162,13 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let m = self.mechanism;
-        let Some(rate) = m.carry_rate(t, v, v) else { return acceleration };
-        acceleration.value -= rate;
+        acceleration.value -= m.carry_rate(t, v, v);
         for k in self.rotating_indices() {
             let unit = SVector::<T, NV>::from_fn(|i, _| if i == *k { T::one() } else { T::zero() });
-            let (Some(by_axis), Some(by_vector)) = (m.carry_rate(t, &unit, v), m.carry_rate(t, v, &unit))
-            else {
-                continue;
-            };
+            // The rate is bilinear.
+            let change = m.carry_rate(t, &unit, v) + m.carry_rate(t, v, &unit);
             if let Some(column) = acceleration.by_v.data.0.get_mut(*k) {
-                let terms = by_axis.iter().zip(&by_vector);
-                column.iter_mut().zip(terms).for_each(|(entry, (one, other))| *entry -= *one + *other);
+                column.iter_mut().zip(&change).for_each(|(entry, change)| *entry -= *change);
             }
         }
         acceleration

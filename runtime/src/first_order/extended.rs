@@ -315,9 +315,9 @@ where
         t: M::Scalar,
         dv: &SVector<M::Scalar, NE>,
         v: &SVector<M::Scalar, NE>,
-    ) -> Option<SVector<M::Scalar, NE>> {
+    ) -> SVector<M::Scalar, NE> {
         let (dv, v) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v).0);
-        self.mechanism.carry_rate(t, &dv, &v).map(|rate| join(&rate, &SVector::<_, NX>::zeros()))
+        join(&self.mechanism.carry_rate(t, &dv, &v), &SVector::<_, NX>::zeros())
     }
 
     fn translation(&self, t: M::Scalar, dv: &SVector<M::Scalar, NE>) -> SVector<M::Scalar, NE> {

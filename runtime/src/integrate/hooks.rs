@@ -149,9 +149,9 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
 
     /// Returns the rate of [`carry`](Self::carry) for a displacement that begins at zero and grows at the
     /// rate `dv`: the rate of the components of a velocity `v` that is constant in space, during a motion
-    /// with velocity `dv`. `None` with declared generalized speeds, whose transport has no simple rate.
-    fn carry_rate(&self, _t: T, _dv: &SVector<T, NV>, _v: &SVector<T, NV>) -> Option<SVector<T, NV>> {
-        Some(SVector::zeros())
+    /// with velocity `dv`. Zero for mechanisms without contacts and with declared generalized speeds.
+    fn carry_rate(&self, _t: T, _dv: &SVector<T, NV>, _v: &SVector<T, NV>) -> SVector<T, NV> {
+        SVector::zeros()
     }
 
     /// Returns the part of the displacement `dv` that is linear velocities of free joints. A displacement by

@@ -67,7 +67,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.carry(self.origin + t, q, dv, v)
     }
 
-    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>> {
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.system.carry_rate(self.origin + t, dv, v)
     }
 

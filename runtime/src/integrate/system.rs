@@ -186,7 +186,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
 
     /// Returns the rate of [`carry`](Self::carry) for a displacement that grows at the rate `dv`
     /// ([`Hooks::carry_rate`](super::Hooks::carry_rate)).
-    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>>;
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// Returns the part of a displacement that is linear velocities of free joints
     /// ([`Hooks::translation`](super::Hooks::translation)).
@@ -434,7 +434,7 @@ where
         self.mechanism.carry(t, q, dv, v)
     }
 
-    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>> {
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.mechanism.carry_rate(t, dv, v)
     }
 

@@ -364,10 +364,7 @@ fn transported<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize
     displacement: &SVector<T, NV>,
     v: &SVector<T, NV>,
 ) -> SVector<T, NV> {
-    match system.carry_rate(t, v, v) {
-        Some(_) => system.carry(t, q, displacement, v),
-        None => *v,
-    }
+    if system.has_speeds() { *v } else { system.carry(t, q, displacement, v) }
 }
 
 /// Returns the rate of a velocity without the rotation of the axes of ball and free joints.
@@ -376,5 +373,5 @@ fn acceleration_in_space<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     (t, v): (T, &SVector<T, NV>),
     acceleration: SVector<T, NV>,
 ) -> SVector<T, NV> {
-    system.carry_rate(t, v, v).map_or(acceleration, |rate| acceleration - rate)
+    acceleration - system.carry_rate(t, v, v)
 }

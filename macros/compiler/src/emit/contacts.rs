@@ -243,9 +243,6 @@ fn velocity_transport_hooks(i: &Interface<'_>, s: &Signature<'_>) -> String {
                 let way = self.rates_of_speeds(q, dv);
                 let there = self.__integrate(q, &way);
                 self.speeds_of_rates(&there, &self.__carry(&way, &self.rates_of_speeds(q, v)))
-            }}
-            fn carry_rate(&self, t: {scalar}, _dv: &{v}, _v: &{v}) -> ::core::option::Option<{v}> {{
-                ::core::option::Option::None
             }}"
         );
     }
@@ -253,9 +250,7 @@ fn velocity_transport_hooks(i: &Interface<'_>, s: &Signature<'_>) -> String {
         "#[inline]
         fn carry(&self, t: {scalar}, _q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ self.__carry(dv, v) }}
         #[inline]
-        fn carry_rate(&self, t: {scalar}, dv: &{v}, v: &{v}) -> ::core::option::Option<{v}> {{
-            ::core::option::Option::Some(self.__carry_rate(dv, v))
-        }}
+        fn carry_rate(&self, t: {scalar}, dv: &{v}, v: &{v}) -> {v} {{ self.__carry_rate(dv, v) }}
         #[inline]
         fn translation(&self, t: {scalar}, dv: &{v}) -> {v} {{ self.__translation(dv) }}"
     )

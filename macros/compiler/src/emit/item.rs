@@ -9,7 +9,7 @@ use super::frames::{write_frames, write_trait as write_frames_by_number};
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
-use super::manifold::{write_carry, write_manifold};
+use super::manifold::{write_manifold, write_transport};
 use super::prepared::{Content, write_prepared};
 use super::scalar::ScalarSpelling;
 use super::signature::Signature;
@@ -71,7 +71,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     }
     write_manifold(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
-        write_carry(&mut methods, Some(&output.charts), &s);
+        write_transport(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
     }
     differentiable::write_methods(&mut methods, Some(&output.charts), &output.functions, interface, &s);
     differentiable::write_second(&mut methods, Some(&output.charts), interface, &s);
@@ -145,7 +145,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     }
     write_manifold(&mut methods, None, interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
-        write_carry(&mut methods, None, &s);
+        write_transport(&mut methods, None, interface.facts.speeds, &s);
     }
     differentiable::write_methods(&mut methods, None, functions, interface, &s);
     differentiable::write_second(&mut methods, None, interface, &s);

@@ -48,18 +48,11 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
     }
 }
 
-/// Writes the hidden functions that transport velocities, which contacts need.
-pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+/// Writes the hidden functions that transport velocities, which contacts need. With generalized speeds there
+/// is only `carry`.
+pub fn write_transport(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
     let v = s.vector_type(s.nv);
-    let functions = [
-        ("carry", "The velocity `v` in the axes that ball and free joints have after the displacement `dv`."),
-        (
-            "carry_rate",
-            "The rate of the components of a velocity that is `v`, and constant in space, during a motion \
-             with velocity `dv`.",
-        ),
-    ];
-    for (name, about) in functions {
+    let mut write_function = |name, about| {
         let function = ManifoldFunction {
             name,
             about,
@@ -68,8 +61,19 @@ pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>
             result: s.nv,
         };
         function.write_manifold_function(out, "__", charts, s);
+    };
+    write_function(
+        "carry",
+        "The velocity `v` in the axes that ball and free joints have after the displacement `dv`.",
+    );
+    if !speeds {
+        write_function(
+            "carry_rate",
+            "The rate of the components of a velocity that is `v`, and constant in space, during a motion \
+             with velocity `dv`.",
+        );
+        write_translation(out, charts, s);
     }
-    write_translation(out, charts, s);
 }
 
 /// Writes the hidden function that selects the linear velocities of free joints.

@@ -5,6 +5,7 @@ mod absent;
 mod angles;
 mod body;
 mod constants;
+mod constraint_data;
 mod constraints;
 mod contacts;
 mod derived;

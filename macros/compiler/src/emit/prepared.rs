@@ -8,7 +8,7 @@ use super::docs::operation_count_table;
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
-use super::manifold::{write_carry, write_manifold};
+use super::manifold::{write_manifold, write_transport};
 use super::signature::Signature;
 use super::{constraints, contacts, differentiable, lanes, measurements, reactions};
 use crate::derive::Function;
@@ -60,7 +60,7 @@ pub fn write_prepared(
     }
     write_manifold(&mut methods, content.charts, i.facts.speeds, s);
     if !i.contacts.is_empty() {
-        write_carry(&mut methods, content.charts, s);
+        write_transport(&mut methods, content.charts, i.facts.speeds, s);
     }
     differentiable::write_methods(&mut methods, content.charts, functions, i, s);
     differentiable::write_second(&mut methods, content.charts, i, s);

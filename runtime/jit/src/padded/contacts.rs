@@ -112,6 +112,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
     }
 }
 
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize, R: Borrow<Robot>>
     Hooks<f64, NQ, NV, NU> for PaddedContacts<NQ, NV, NU, NK, NR, R>
 {
@@ -126,7 +127,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         acceleration_derivatives(t: f64, q: &Vector<NQ>, v: &Vector<NV>, u: &Vector<NU>)
             -> Option<ByMotion<f64, NV, NU>>;
         carry(t: f64, q: &Vector<NQ>, dv: &Vector<NV>, v: &Vector<NV>) -> Vector<NV>;
-        carry_rate(t: f64, dv: &Vector<NV>, v: &Vector<NV>) -> Option<Vector<NV>>;
+        carry_rate(t: f64, dv: &Vector<NV>, v: &Vector<NV>) -> Vector<NV>;
         translation(t: f64, dv: &Vector<NV>) -> Vector<NV>;
     }
 
