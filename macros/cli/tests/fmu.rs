@@ -159,6 +159,14 @@ fn check_both_modes(name: &str, arguments: &[&str], stop: f64, steps: f64) -> Op
     Some(fmu)
 }
 
+/// Values of the four-bar linkage.
+const FOUR_BAR: &[&str] =
+    &["g=9.81", "density=1", "a=0.3", "b=1", "c=0.8", "d=0.9", "q.input=1", "v.input=2", "u.motor=0.3"];
+
+/// Values of the heavy top.
+const TOP: &[&str] =
+    &["g=9.81", "mass=1", "height=0.2", "axial=0.02", "transverse=0.03", "q.tip.qx=0.2", "v.tip.wz=20"];
+
 /// Joins names and values to options of the command.
 fn set_options(values: &'static [&'static str]) -> Vec<&'static str> {
     values.iter().flat_map(|value| ["--set", value]).collect()
@@ -192,15 +200,7 @@ fn cart_pole_fmu_agrees_with_rust_including_derivatives() {
 #[test]
 fn arm_and_top_fmus_agree_with_rust() {
     check_both_modes("ur5", &["../../models/urdf/ur5.urdf", "--set", "q.elbow_joint=0.4"], 0.5, 200.0);
-    let values = set_options(&[
-        "g=9.81",
-        "mass=1",
-        "height=0.2",
-        "axial=0.02",
-        "transverse=0.03",
-        "q.tip.qx=0.2",
-        "v.tip.wz=20",
-    ]);
+    let values = set_options(TOP);
     let top =
         check_both_modes("top", &[&["../../models/src/heavy_top.rs"], &values[..]].concat(), 1.0, 400.0);
     // A ball joint: four entries of a quaternion, three velocities, five parameters, two energies.
@@ -231,17 +231,7 @@ fn fmu_sources_contain_first_order_states_and_tables() {
 
 #[test]
 fn four_bar_fmu_keeps_its_loop_closed() {
-    let values = set_options(&[
-        "g=9.81",
-        "density=1",
-        "a=0.3",
-        "b=1",
-        "c=0.8",
-        "d=0.9",
-        "q.input=1",
-        "v.input=2",
-        "u.motor=0.3",
-    ]);
+    let values = set_options(FOUR_BAR);
     check_both_modes("four_bar", &[&["../../models/src/four_bar.rs"], &values[..]].concat(), 1.0, 100.0);
 }
 

@@ -4,55 +4,12 @@
  * Every call returns a status other than fmi3Fatal, errors have a message, a failed call changes no value, and functions
  * without an instance fail. */
 
-#include "lw_fmi3.h"
+#include "calls.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef fmi3Instance instance;
-typedef const fmi3ValueReference references[];
-
-#define DECLARE(name, ...) extern fmi3Status name(__VA_ARGS__);
-extern fmi3Instance fmi3InstantiateModelExchange(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
-    fmi3InstanceEnvironment, fmi3LogMessageCallback);
-extern fmi3Instance fmi3InstantiateCoSimulation(fmi3String, fmi3String, fmi3String, fmi3Boolean, fmi3Boolean,
-    fmi3Boolean, fmi3Boolean, references, size_t, fmi3InstanceEnvironment, fmi3LogMessageCallback,
-    fmi3IntermediateUpdateCallback);
-extern void fmi3FreeInstance(instance);
-DECLARE(fmi3SetDebugLogging, instance, fmi3Boolean, size_t, const fmi3String[])
-DECLARE(fmi3EnterInitializationMode, instance, fmi3Boolean, fmi3Float64, fmi3Float64, fmi3Boolean, fmi3Float64)
-DECLARE(fmi3ExitInitializationMode, instance)
-DECLARE(fmi3EnterEventMode, instance)
-DECLARE(fmi3EnterContinuousTimeMode, instance)
-DECLARE(fmi3EnterStepMode, instance)
-DECLARE(fmi3Terminate, instance)
-DECLARE(fmi3Reset, instance)
-DECLARE(fmi3GetFloat64, instance, references, size_t, double[], size_t)
-DECLARE(fmi3SetFloat64, instance, references, size_t, const double[], size_t)
-DECLARE(fmi3GetInt32, instance, references, size_t, int32_t[], size_t)
-DECLARE(fmi3GetFMUState, instance, fmi3FMUState *)
-DECLARE(fmi3SetFMUState, instance, fmi3FMUState)
-DECLARE(fmi3FreeFMUState, instance, fmi3FMUState *)
-DECLARE(fmi3SerializedFMUStateSize, instance, fmi3FMUState, size_t *)
-DECLARE(fmi3SerializeFMUState, instance, fmi3FMUState, fmi3Byte[], size_t)
-DECLARE(fmi3DeserializeFMUState, instance, const fmi3Byte[], size_t, fmi3FMUState *)
-DECLARE(fmi3GetDirectionalDerivative, instance, references, size_t, references, size_t, const double[], size_t,
-    double[], size_t)
-DECLARE(fmi3GetAdjointDerivative, instance, references, size_t, references, size_t, const double[], size_t, double[],
-    size_t)
-DECLARE(fmi3UpdateDiscreteStates, instance, bool *, bool *, bool *, bool *, bool *, double *)
-DECLARE(fmi3CompletedIntegratorStep, instance, fmi3Boolean, bool *, bool *)
-DECLARE(fmi3SetTime, instance, double)
-DECLARE(fmi3SetContinuousStates, instance, const double[], size_t)
-DECLARE(fmi3GetContinuousStates, instance, double[], size_t)
-DECLARE(fmi3GetContinuousStateDerivatives, instance, double[], size_t)
-DECLARE(fmi3GetEventIndicators, instance, double[], size_t)
-DECLARE(fmi3GetNominalsOfContinuousStates, instance, double[], size_t)
-DECLARE(fmi3GetNumberOfContinuousStates, instance, size_t *)
-DECLARE(fmi3GetNumberOfEventIndicators, instance, size_t *)
-DECLARE(fmi3DoStep, instance, double, double, fmi3Boolean, bool *, bool *, bool *, double *)
 
 enum { CAPACITY = 64, CALLS = 28 };
 

@@ -1,6 +1,6 @@
 //! Directional and adjoint derivatives against central differences that an importer computes from values.
 
-use super::{Fmu, set_options};
+use super::{FOUR_BAR, Fmu, set_options};
 
 /// Checks that directional and adjoint derivatives are equal, and equal to central differences.
 pub fn check_derivatives(fmu: &Fmu, numbers: [f64; 3], count: usize) {
@@ -23,17 +23,7 @@ fn check_rate_derivatives(fmu: &Fmu, states: usize) {
 
 #[test]
 fn four_bar_has_derivatives() {
-    let values = set_options(&[
-        "g=9.81",
-        "density=1",
-        "a=0.3",
-        "b=1",
-        "c=0.8",
-        "d=0.9",
-        "q.input=1",
-        "v.input=2",
-        "u.motor=0.3",
-    ]);
+    let values = set_options(FOUR_BAR);
     let Some(fmu) =
         Fmu::new("four_bar_derivatives", &[&["../../models/src/four_bar.rs"], &values[..]].concat())
     else {

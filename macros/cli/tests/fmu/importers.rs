@@ -1,7 +1,7 @@
 //! Importers of others: FMPy, and `fmi-sim`, which is written in Rust. Both read the descriptions and
 //! simulate six mechanisms in both modes.
 
-use super::{c_compiler, run_linkwork, set_options, simulate_states};
+use super::{TOP, c_compiler, run_linkwork, set_options, simulate_states};
 use linkwork::Table;
 use linkwork_models::Fighter;
 use std::fs;
@@ -131,20 +131,7 @@ fn six_cases(folder: &Path) -> Vec<Case> {
         ),
         Case::new("ur5", &["../../models/urdf/ur5.urdf"], &[], 1e-2),
         fighter(folder),
-        Case::new(
-            "top",
-            &["../../models/src/heavy_top.rs"],
-            &[
-                "g=9.81",
-                "mass=1",
-                "height=0.2",
-                "axial=0.02",
-                "transverse=0.03",
-                "q.tip.qx=0.2",
-                "v.tip.wz=20",
-            ],
-            5e-2,
-        ),
+        Case::new("top", &["../../models/src/heavy_top.rs"], TOP, 5e-2),
     ]
 }
 
