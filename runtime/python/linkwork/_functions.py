@@ -101,7 +101,7 @@ def _placed(name: str, out: Any, stored: list[tuple[int, ...]], function: Functi
     given = out if isinstance(out, tuple) else (out,)
     if len(given) != len(stored):
         raise ValueError(f"{name}: `out` has {len(given)} arrays for {len(stored)} results")
-    arrays = []
+    arrays: list[NDArray[Any]] = []
     for array, shape, (result, own) in zip(given, stored, function.results):
         kept = array.swapaxes(-1, -2) if len(own) > 1 and isinstance(array, np.ndarray) and array.ndim > 1 else array
         fits = isinstance(kept, np.ndarray) and kept.shape == shape and kept.dtype == np.float64
