@@ -96,6 +96,9 @@ impl Margins {
 /// (Dekker, 1969).
 pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut at_low, mut at_high) = (f(low), f(high));
+    if at_low == 0.0 || at_high == 0.0 {
+        return if at_low == 0.0 { low } else { high };
+    }
     for k in 0..200 {
         let secant = high - at_high * (high - low) / (at_high - at_low);
         let middle = 0.5 * (low + high);

@@ -145,6 +145,31 @@ fn gain_margins_of_loops_with_an_integrator() {
     }
 }
 
+/// Checks `k / (s⁵ + a s⁴ + b s³ + c s² + d s)`, which is real where `ω⁴ − b ω² + d = 0`, and there has the
+/// value `k / (a ω⁴ − c ω²)`. In many of these loops a bisection meets the root of a derivative exactly.
+#[test]
+fn loops_with_two_real_crossings_have_margins_at_the_negative_ones() {
+    let mut random = Random(5);
+    for _ in 0..1000 {
+        let [a, c, d, k] = [0; 4].map(|_| random.log_uniform_number(0.1, 1e6));
+        let b = 2.0 * d.sqrt() * (1.0 + random.log_uniform_number(1e-3, 1e3));
+        let larger_square = b / 2.0 + (b * b / 4.0 - d).sqrt();
+        let expected: Vec<[f64; 2]> = [d / larger_square, larger_square]
+            .into_iter()
+            .filter(|square| a * square < c)
+            .map(|square| [square.sqrt(), square * (c - a * square) / k])
+            .collect();
+        let found = transfer_function(&[k], &[1.0, a, b, c, d, 0.0]).margins().unwrap();
+        assert_eq!(found.gain.len(), expected.len(), "{a} {b} {c} {d} {k}: {found:?}");
+        for (margin, [frequency, factor]) in found.gain.iter().zip(expected) {
+            assert_relatively_close("frequency", margin.frequency, frequency, 1e-9);
+            // The difference of the two terms of the real part may have few digits.
+            let terms = (c + a * frequency * frequency) * frequency * frequency / k;
+            assert!((margin.factor - factor).abs() < 1e-9 * terms, "{margin:?} {factor}");
+        }
+    }
+}
+
 /// Checks the stability margins of an integrator with a zero-order hold, `h / (z − 1)`: it is real at the
 /// Nyquist frequency only, with magnitude `h / 2`, and has magnitude one at `sin(ω h / 2) = h / 2`. A double
 /// integrator discretised by Tustin's rule is real at all frequencies.
