@@ -26,5 +26,6 @@ mod soft;
 mod starts;
 mod steps;
 mod stiction;
+mod stopping;
 mod terrain;
 mod turning;

@@ -29,9 +29,11 @@ use nalgebra::SVector;
 /// sticking contacts have no slip velocity, and bodies at rest do not creep under any load that friction
 /// supports. Impact impulses add no energy. Under sustained contact the energy is accurate to order 2: for a
 /// bob of 1 kg in a frictionless bowl of 1 m, its relative error is `3e-6` after 2 s in steps of 1 ms. The
-/// order is 1 through steps in which the slip velocity reverses, since its zero is not located. A motion that
-/// depends on indeterminate forces, such as that of a table with four legs that rotates while it slides, is
-/// one of several that satisfy the laws; it may change with the length of the steps.
+/// order is 1 through steps in which the slip velocity reverses, since its zero is not located. If slip stops
+/// within a step, the velocity is exact and the position is off by at most `a h² / 8`, where `a` is the
+/// deceleration. A motion that depends on indeterminate forces, such as that of a table with four legs that
+/// rotates while it slides, is one of several that satisfy the laws; it may change with the length of the
+/// steps.
 ///
 /// When surfaces collide, their penetration is at most their approach in one step. In sustained contact, the
 /// penetration is removed by displacements of the bodies weighted with the inverse inertia (Acary, *Projected
