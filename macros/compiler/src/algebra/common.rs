@@ -1,6 +1,6 @@
 //! Extraction of common factors from the items of a sum, as long as it reduces the number of printed symbols.
 
-use super::item::{Item, Order, Sum, common_number_factor, is_close};
+use super::item::{Item, Order, SumFactor, common_number_factor, is_close};
 use super::polynomial::Monomial;
 
 /// Maximum number of items of a sum that are searched for common factors: longer sums are not readable
@@ -112,7 +112,7 @@ fn factor_sum(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
 /// Repeatedly takes out the common factor that saves the most symbols.
 fn factor_greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
     while items.len() <= MOST {
-        let mut best: Option<FactorGroup> = None;
+        let mut best: Option<CommonFactorGroup> = None;
         for group in shortening_groups(rules, &items) {
             if best.as_ref().is_none_or(|best| group.saved > best.saved) {
                 best = Some(group);
@@ -125,7 +125,7 @@ fn factor_greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
 }
 
 /// Group of items of a sum that have a common factor.
-struct FactorGroup {
+struct CommonFactorGroup {
     members: Vec<usize>,
     /// The sum of the members, with the common factor taken out.
     whole: Item,
@@ -134,8 +134,8 @@ struct FactorGroup {
 }
 
 /// Replaces the members of a group by the factored item.
-fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: FactorGroup) -> Vec<Item> {
-    let FactorGroup { members, mut whole, .. } = group;
+fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: CommonFactorGroup) -> Vec<Item> {
+    let CommonFactorGroup { members, mut whole, .. } = group;
     if let Some(last) = whole.sums.last_mut() {
         last.items = factor_greedily(&rules.rules_in_parentheses(), std::mem::take(&mut last.items));
     }
@@ -153,13 +153,17 @@ fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: FactorGroup) ->
 
 /// Returns the groups of items whose factored form is shorter than their sum, within the allowed nesting
 /// depth.
-fn shortening_groups(rules: &Rules<'_>, items: &[Item]) -> Vec<FactorGroup> {
+fn shortening_groups(rules: &Rules<'_>, items: &[Item]) -> Vec<CommonFactorGroup> {
     let size_of_items = |items: &[Item]| rules.order.printed_length(items);
     let group_of_members = |members: Vec<usize>| {
         let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
         let whole = combine_items(rules, &before, members.len() == items.len())?;
         let saved = size_of_items(&before).checked_sub(size_of_items(std::slice::from_ref(&whole)))?;
-        (saved > 0 && nesting_depth(&whole) <= rules.room).then_some(FactorGroup { members, whole, saved })
+        (saved > 0 && nesting_depth(&whole) <= rules.room).then_some(CommonFactorGroup {
+            members,
+            whole,
+            saved,
+        })
     };
     candidate_item_sets(rules, items).into_iter().filter_map(group_of_members).collect()
 }
@@ -193,7 +197,7 @@ fn combine_items(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item>
         .iter()
         .fold(first.factor, |m, item| m.greatest_common_divisor(item.factor))
         .clear_mask(rules.kept);
-    let mut sums: Vec<Sum> = Vec::new();
+    let mut sums: Vec<SumFactor> = Vec::new();
     let mut left: Vec<Item> = items
         .iter()
         .map(|item| Item {
@@ -228,7 +232,7 @@ fn combine_items(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item>
     if let Some(positive) = inner.iter().position(|item| item.coefficient > 0.0) {
         inner[..=positive].rotate_right(1);
     }
-    sums.push(Sum { items: inner, power: 1 });
+    sums.push(SumFactor { items: inner, power: 1 });
     Some(Item { coefficient: number, factor, sums })
 }
 
@@ -251,7 +255,7 @@ fn nesting_depth(item: &Item) -> usize {
 }
 
 /// Returns one if two sums are equal, minus one if they are opposite, regardless of the order of their items.
-fn sign_ratio_of_sums(a: &Sum, b: &Sum) -> Option<f64> {
+fn sign_ratio_of_sums(a: &SumFactor, b: &SumFactor) -> Option<f64> {
     if a.power != b.power || a.items.len() != b.items.len() {
         return None;
     }

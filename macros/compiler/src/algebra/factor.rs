@@ -2,8 +2,8 @@
 //! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
 use super::common::{FactorScope, factor_sum_and_items};
-use super::item::{Item, Order, Sum, common_number_factor, is_close};
-use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
+use super::item::{Item, Order, SumFactor, common_number_factor, is_close};
+use super::polynomial::{AtomRank, Monomial, Polynomial, Ring, Term};
 
 /// Relative magnitude below which a coefficient counts as rounding error among similar terms.
 const NOISE: f64 = 1e-11;
@@ -11,9 +11,9 @@ const NOISE: f64 = 1e-11;
 /// Removes terms that are rounding error: their coefficients are small relative to other terms with the same
 /// parameters and the same degrees in velocities and accelerations.
 pub fn remove_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
-    let parameters = ring.mask_of_atoms(|_, rank| rank == Rank::Parameter);
-    let rates = ring.mask_of_atoms(|_, rank| rank >= Rank::Rate);
-    let accelerations = ring.mask_of_atoms(|_, rank| rank == Rank::Acceleration);
+    let parameters = ring.mask_of_atoms(|_, rank| rank == AtomRank::Parameter);
+    let rates = ring.mask_of_atoms(|_, rank| rank >= AtomRank::Rate);
+    let accelerations = ring.mask_of_atoms(|_, rank| rank == AtomRank::Acceleration);
     let kind_of_term = |t: &Term| {
         let rates = t.monomial.restrict_to_mask(rates);
         (t.monomial.restrict_to_mask(parameters), rates.degree(), rates.intersects_mask(accelerations))
@@ -111,7 +111,7 @@ fn find_squared_sum(order: &Order, leading: &Term, terms: &[Term]) -> Option<Ite
         sum.push(Item::item_without_sums(coefficient, t.monomial.quotient(rest)));
     }
     let factor = rest.quotient(Monomial::first_power_of_atom(x));
-    let sums = vec![Sum { items: sum, power: 2 }];
+    let sums = vec![SumFactor { items: sum, power: 2 }];
     let square = Item { coefficient: leading.coefficient, factor, sums };
     let is_term_of_sum =
         |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && is_close(t.coefficient, s.coefficient));
@@ -162,5 +162,5 @@ fn factored_item(order: &Order, terms: &[Term]) -> Item {
     if let Some(positive) = sum.iter().position(|t| t.coefficient > 0.0) {
         sum[..=positive].rotate_right(1);
     }
-    Item { coefficient, factor, sums: vec![Sum { items: sum, power: 1 }] }
+    Item { coefficient, factor, sums: vec![SumFactor { items: sum, power: 1 }] }
 }

@@ -1,6 +1,6 @@
 //! Representation of printed sums of products, and the order of their terms and factors.
 
-use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term, Wave};
+use super::polynomial::{Atom, AtomRank, Monomial, Polynomial, Ring, Term, Wave};
 use std::cmp::Reverse;
 
 /// Relative difference below which coefficients count as equal.
@@ -14,12 +14,12 @@ pub struct Item {
     /// Product of the factors that are atoms.
     pub factor: Monomial,
     /// Factors of a product that are sums in parentheses.
-    pub sums: Vec<Sum>,
+    pub sums: Vec<SumFactor>,
 }
 
 /// A sum in parentheses that is a factor of an item.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sum {
+pub struct SumFactor {
     /// Summands of a sum in parentheses, at least two.
     pub items: Vec<Item>,
     /// Exponent of the sum in parentheses: one, or two for a square.
@@ -52,7 +52,7 @@ pub struct Order {
 
 /// Returns the sort key of an atom: first its rank; then symbols before waves, which are sorted by angle,
 /// before all other atoms. The inverse of a single atom has the key of that atom.
-fn sort_key_of_atom(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
+fn sort_key_of_atom(ring: &Ring, atom: usize) -> (AtomRank, u8, Vec<usize>) {
     let rank = ring.ranks[atom];
     match &ring.atoms[atom] {
         Atom::Symbol(s) => (rank, 0, vec![s.0 as usize]),
@@ -81,11 +81,11 @@ impl Order {
         atoms.sort_by_cached_key(|k| sort_key_of_atom(ring, *k));
         Order {
             atoms,
-            rates: ring.mask_of_atoms(|_, rank| rank >= Rank::Rate),
-            accelerations: ring.mask_of_atoms(|_, rank| rank == Rank::Acceleration),
-            functions: ring.mask_of_atoms(|_, rank| rank == Rank::Function),
-            positions: ring.mask_of_atoms(|_, rank| rank == Rank::Position),
-            parameters: ring.mask_of_atoms(|_, rank| rank == Rank::Parameter),
+            rates: ring.mask_of_atoms(|_, rank| rank >= AtomRank::Rate),
+            accelerations: ring.mask_of_atoms(|_, rank| rank == AtomRank::Acceleration),
+            functions: ring.mask_of_atoms(|_, rank| rank == AtomRank::Function),
+            positions: ring.mask_of_atoms(|_, rank| rank == AtomRank::Position),
+            parameters: ring.mask_of_atoms(|_, rank| rank == AtomRank::Parameter),
             sizes: atom_lengths(ring),
         }
     }

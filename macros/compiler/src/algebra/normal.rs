@@ -1,7 +1,7 @@
 //! Conversion of expressions to polynomials in normal form. Products are expanded; sines and cosines of sums
 //! are expressed in those of the summands.
 
-use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
+use super::polynomial::{Atom, AtomRank, Monomial, Polynomial, Ring, Term};
 use crate::expr::diff::TINY;
 use crate::expr::node::{Function, Id, Node, Symbol};
 use crate::expr::{Expr, Graph};
@@ -22,7 +22,7 @@ pub struct Normal<'g> {
 
 impl<'g> Normal<'g> {
     /// Creates an empty cache. `rank` returns the rank of a symbol.
-    pub fn new(graph: &'g Graph, rank: fn(Symbol) -> Rank) -> Normal<'g> {
+    pub fn new(graph: &'g Graph, rank: fn(Symbol) -> AtomRank) -> Normal<'g> {
         Normal { graph, ring: Ring::new(rank), known: Vec::new(), polynomials: Vec::new() }
     }
 

@@ -66,7 +66,7 @@ pub enum Atom {
 
 /// Position of an atom in a printed product, in ascending order from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rank {
+pub enum AtomRank {
     /// Constant in time: a parameter, or a function of parameters.
     Parameter,
     /// A position, or another symbol that varies in time.
@@ -86,12 +86,12 @@ pub struct Ring {
     /// The atoms. The arguments of an atom contain earlier atoms only.
     pub atoms: Vec<Atom>,
     /// Printing rank of each atom.
-    pub ranks: Vec<Rank>,
+    pub ranks: Vec<AtomRank>,
     /// For each atom, the number of terms written in its arguments.
     written: Vec<usize>,
     /// The angles whose sines and cosines occur: a coefficient times a monomial each.
     pub angles: Vec<Term>,
-    rank: fn(Symbol) -> Rank,
+    rank: fn(Symbol) -> AtomRank,
     /// Atoms whose squares are replaced, with the polynomial that replaces the square.
     squares: Vec<(usize, Polynomial)>,
     /// Mask of all powers above one of the atoms in `squares`: a monomial that intersects the mask contains
@@ -186,7 +186,7 @@ fn add(a: f64, b: f64) -> f64 {
 
 impl Ring {
     /// Creates a ring without atoms. `rank` returns the rank of a symbol.
-    pub fn new(rank: fn(Symbol) -> Rank) -> Ring {
+    pub fn new(rank: fn(Symbol) -> AtomRank) -> Ring {
         Ring {
             atoms: Vec::new(),
             ranks: Vec::new(),
@@ -273,13 +273,13 @@ impl Ring {
         }
     }
 
-    fn rank_of_atom(&self, atom: &Atom) -> Rank {
+    fn rank_of_atom(&self, atom: &Atom) -> AtomRank {
         let highest_rank_of_monomial = |m: Monomial| m.atoms_with_powers().map(|(k, _)| self.ranks[k]).max();
         let rank_of_polynomial =
             |p: &Polynomial| p.terms.iter().filter_map(|t| highest_rank_of_monomial(t.monomial)).max();
         let argument = match atom {
             Atom::Symbol(s) => return (self.rank)(*s),
-            Atom::Inverse(p) => return rank_of_polynomial(p).unwrap_or(Rank::Parameter),
+            Atom::Inverse(p) => return rank_of_polynomial(p).unwrap_or(AtomRank::Parameter),
             Atom::Wave(w) => {
                 let angles = self.angles.iter().zip(w.angle).filter(|(_, n)| *n != 0);
                 angles.filter_map(|(a, _)| highest_rank_of_monomial(a.monomial)).max()
@@ -291,9 +291,9 @@ impl Ring {
             }
         };
         match argument {
-            None | Some(Rank::Parameter) => Rank::Parameter,
-            Some(Rank::Position | Rank::Function) => Rank::Function,
-            Some(_) => Rank::Rate,
+            None | Some(AtomRank::Parameter) => AtomRank::Parameter,
+            Some(AtomRank::Position | AtomRank::Function) => AtomRank::Function,
+            Some(_) => AtomRank::Rate,
         }
     }
 
@@ -413,7 +413,7 @@ impl Ring {
     }
 
     /// Returns a mask with all bits of the powers of the atoms for which `holds` is true.
-    pub fn mask_of_atoms(&self, holds: impl Fn(&Atom, Rank) -> bool) -> Monomial {
+    pub fn mask_of_atoms(&self, holds: impl Fn(&Atom, AtomRank) -> bool) -> Monomial {
         let atoms = self.atoms.iter().zip(&self.ranks).enumerate();
         atoms
             .filter(|(_, (a, r))| holds(a, **r))

@@ -65,12 +65,12 @@ fn shorten_by_unit_norm(terms: &[Term], head: Monomial, squares: &[Monomial]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::polynomial::Rank;
+    use crate::algebra::polynomial::AtomRank;
 
     /// Checks simplifications of polynomials in the four components of a unit quaternion.
     #[test]
     fn unit_quaternion_norm_simplifies_polynomials() {
-        let mut ring = Ring::new(|_| Rank::Position);
+        let mut ring = Ring::new(|_| AtomRank::Position);
         let symbols = [0, 1, 2, 3].map(Symbol);
         let q = symbols.map(|s| ring.monomial_of_atom(Atom::Symbol(s)).unwrap());
         let quaternion_monomial =

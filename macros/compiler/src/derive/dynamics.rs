@@ -9,7 +9,7 @@ use crate::lower::Program;
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
 use crate::mechanics::derivatives::Factor;
 use crate::mechanics::limb_contacts::LimbContacts;
-use crate::mechanics::speeds::{InSpeeds, Role};
+use crate::mechanics::speeds::{InSpeeds, ResultKind};
 use crate::mechanics::{self, crba, energy, frames, limb_responses, momentum};
 use crate::mechanism::Model;
 use crate::passes::Passes;
@@ -101,19 +101,19 @@ impl<'g> Dynamics<'g> {
     }
 
     pub(super) fn kinetic_energy(&self) -> Program {
-        self.smallest_program(Role::Scalars, |m, j, v| vec![energy::kinetic_energy(m, j, v)])
+        self.smallest_program(ResultKind::Scalars, |m, j, v| vec![energy::kinetic_energy(m, j, v)])
     }
 
     pub(super) fn potential_energy(&self) -> Program {
-        self.smallest_program(Role::Scalars, |m, j, _| vec![energy::potential_energy(m, j)])
+        self.smallest_program(ResultKind::Scalars, |m, j, _| vec![energy::potential_energy(m, j)])
     }
 
     pub(super) fn generalized_momentum(&self) -> Program {
-        self.smallest_program(Role::Forces, momentum::generalized_momentum)
+        self.smallest_program(ResultKind::Forces, momentum::generalized_momentum)
     }
 
     pub(super) fn momentum_rate(&self) -> Program {
-        self.smallest_program(Role::MomentumRate, |m, j, v| {
+        self.smallest_program(ResultKind::MomentumRate, |m, j, v| {
             let mut rate = momentum::momentum_rate(m, j, v);
             if self.in_speeds {
                 rate.extend(momentum::generalized_momentum(m, j, v));
@@ -123,21 +123,21 @@ impl<'g> Dynamics<'g> {
     }
 
     pub(super) fn center_of_mass(&self) -> Program {
-        self.smallest_program(Role::Scalars, |m, j, _| energy::center_of_mass(m, j).0.to_vec())
+        self.smallest_program(ResultKind::Scalars, |m, j, _| energy::center_of_mass(m, j).0.to_vec())
     }
 
     pub(super) fn momentum_program(&self) -> Program {
-        self.smallest_program(Role::Scalars, |m, j, v| {
+        self.smallest_program(ResultKind::Scalars, |m, j, v| {
             frames::spatial_components(&momentum::centroidal_momentum(m, j, v))
         })
     }
 
     pub(super) fn centroidal_momentum_matrix(&self) -> Program {
-        self.smallest_program(Role::Columns(6), |m, j, _| momentum::centroidal_momentum_matrix(m, j))
+        self.smallest_program(ResultKind::Columns(6), |m, j, _| momentum::centroidal_momentum_matrix(m, j))
     }
 
     pub(super) fn centroidal_momentum_bias(&self) -> Program {
-        self.smallest_program(Role::Bias(6), |m, j, v| {
+        self.smallest_program(ResultKind::Bias(6), |m, j, v| {
             let mut bias = frames::spatial_components(&momentum::centroidal_bias(m, j, v)).to_vec();
             if self.in_speeds {
                 bias.extend(momentum::centroidal_momentum_matrix(m, j));
@@ -162,7 +162,7 @@ impl<'g> Dynamics<'g> {
     /// impulses.
     pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
         self.best_variant_program(|variants| {
-            let plain = variants.cheapest_program(Role::Responses(rows.len()), |model| {
+            let plain = variants.cheapest_program(ResultKind::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
                 Factor::new(&mass, &variants.joints).constraint_responses(rows)
             });
@@ -195,7 +195,7 @@ impl<'g> Dynamics<'g> {
     /// smallest.
     fn smallest_program(
         &self,
-        role: Role,
+        role: ResultKind,
         expressions: impl Fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>>,
     ) -> Program {
         self.best_variant_program(|variants| {

@@ -5,9 +5,9 @@ use super::output::Constant;
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::mechanics;
-use crate::mechanics::independence::{Part, classify_columns};
+use crate::mechanics::independence::{ColumnTest, classify_columns};
 use crate::mechanics::regressor::{
-    COUNT, NAMES, Site, inertia_from_parameters, inertial_parameters, regressor_columns,
+    COUNT, NAMES, RegressorFrame, inertia_from_parameters, inertial_parameters, regressor_columns,
 };
 use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity, Supplied};
 use crate::passes::{Gauge, Regroup, regroup_inertias};
@@ -60,7 +60,8 @@ impl<'a, 'g> Identification<'a, 'g> {
 
     pub(super) fn joint_torque_regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
         let (v, a) = (mechanics::velocity_symbols(self.model), mechanics::acceleration_symbols(self.model));
-        let sites: Vec<Site<'g>> = self.bodies.iter().filter_map(|body| site_of_body(body)).collect();
+        let sites: Vec<RegressorFrame<'g>> =
+            self.bodies.iter().filter_map(|body| site_of_body(body)).collect();
         let all: Vec<(usize, usize)> =
             (0..sites.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p))).collect();
         regressor_columns(self.model, joints, &v, &a, &sites, &all).concat()
@@ -88,8 +89,8 @@ impl<'a, 'g> Identification<'a, 'g> {
     }
 }
 
-fn site_of_body<'g>(body: &NamedFrame<'g>) -> Option<Site<'g>> {
-    Some(Site { link: body.link?, pose: body.pose.clone() })
+fn site_of_body<'g>(body: &NamedFrame<'g>) -> Option<RegressorFrame<'g>> {
+    Some(RegressorFrame { link: body.link?, pose: body.pose.clone() })
 }
 
 /// Derives the base parameters of the bodies' parameters. Parameters are regrouped towards the base as far as
@@ -115,15 +116,15 @@ fn derive_base_parameters<'g>(
         given.links.iter().map(|link| inertial_parameters(&link.inertia)).collect();
     let all = (0..left.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p)));
     let entries: Vec<(usize, usize)> = all.filter(|(k, p)| !left[*k][*p].is_zero()).collect();
-    let sites: Vec<Site<'g>> =
-        (0..left.len()).map(|k| Site { link: LinkId(k), pose: Pose::identity(g) }).collect();
+    let sites: Vec<RegressorFrame<'g>> =
+        (0..left.len()).map(|k| RegressorFrame { link: LinkId(k), pose: Pose::identity(g) }).collect();
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let columns = regressor_columns(model, joints, &v, &a, &sites, &entries);
 
     let parts = classify_columns(model, &columns);
     let mut values: Vec<Expr<'g>> = entries.iter().map(|(k, p)| left[*k][*p]).collect();
     for (k, part) in parts.iter().enumerate() {
-        if let Part::Combined(list) = part {
+        if let ColumnTest::Combined(list) = part {
             let dependent = values[k];
             list.iter().for_each(|(i, factor)| values[*i] += dependent * *factor);
         }
@@ -135,7 +136,7 @@ fn derive_base_parameters<'g>(
     let alone: Vec<Vec<Expr<'g>>> = base.values.iter().map(|value| vec![*value]).collect();
     let parts = classify_columns(model, &alone);
     for (k, part) in parts.iter().enumerate() {
-        let Part::Combined(list) = part else { continue };
+        let ColumnTest::Combined(list) = part else { continue };
         let dependent = base.columns[k].clone();
         for (i, factor) in list {
             for (entry, other) in base.columns[*i].iter_mut().zip(&dependent) {
@@ -149,14 +150,14 @@ fn derive_base_parameters<'g>(
 
 impl BaseParameters<'_> {
     /// Removes the inertial parameters that are combinations of other ones.
-    fn keep_independent_parameters(&mut self, parts: &[Part]) {
+    fn keep_independent_parameters(&mut self, parts: &[ColumnTest]) {
         retain_independent(&mut self.entries, parts);
         retain_independent(&mut self.values, parts);
         retain_independent(&mut self.columns, parts);
     }
 }
 
-fn retain_independent<T>(list: &mut Vec<T>, parts: &[Part]) {
+fn retain_independent<T>(list: &mut Vec<T>, parts: &[ColumnTest]) {
     let mut parts = parts.iter();
-    list.retain(|_| parts.next() == Some(&Part::Own));
+    list.retain(|_| parts.next() == Some(&ColumnTest::Own));
 }

@@ -11,7 +11,7 @@ use crate::expr::replace::replace_all;
 use crate::kinematics::symbols_in;
 use crate::mechanics::derivatives::second::{self as hessian, Hessian, InputHessian};
 use crate::mechanics::derivatives::{Factor, ForceDerivatives, analytic, subtract_matrix, symbolic};
-use crate::mechanics::speeds::{InSpeeds, Role};
+use crate::mechanics::speeds::{InSpeeds, ResultKind};
 use crate::mechanics::{
     self, added_mass, constraints, crba, energy, forces, momentum, power, reactions, rnea,
 };
@@ -164,7 +164,7 @@ impl<'g> Derivation<'_, 'g> {
             .map(|(tau, h)| tau - h)
             .collect();
         speeds.transform_results(
-            Role::Accelerations(0),
+            ResultKind::Accelerations(0),
             &self.mass_factor(speeds, true).solve_factored(lacking),
         )
     }

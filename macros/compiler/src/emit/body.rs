@@ -3,7 +3,7 @@
 //! block.
 
 use super::angles::{Calls, WIDTH};
-use super::instruction::{Build, Writer};
+use super::instruction::{BodyWriter, Build};
 use super::pieces::{Outputs, Piece, Statement, storage_constructor};
 use super::signature::{Signature, filled_matrix_count, matrix_arguments};
 use super::statements::{BLOCK, write_let, write_statements};
@@ -29,7 +29,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     // Functions of several states already fill the lanes.
     let in_lanes = f.program.simd.as_deref().filter(|_| build == Build::Optimised && !s.scalar.is_in_lanes());
     let program = in_lanes.unwrap_or(&f.program);
-    let mut w = Writer {
+    let mut w = BodyWriter {
         build,
         program,
         lanes: program.lane_counts(),
@@ -74,7 +74,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     write_result(out, f, &results, s);
 }
 
-impl Writer<'_> {
+impl BodyWriter<'_> {
     fn write_instructions(&mut self) {
         let angles = Angles::find_angles(self.program);
         for k in 0..self.program.instructions.len() {
@@ -187,7 +187,7 @@ impl Writer<'_> {
 
 /// Writes the bindings of the used entries of arguments and of results of called functions, and of their
 /// gathers.
-fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &Writer<'_>) {
+fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &BodyWriter<'_>) {
     let in_lanes = s.scalar.is_in_lanes();
     let used = w.program.used_symbols();
     for argument in arguments {

@@ -20,11 +20,11 @@ pub struct Bodies {
     /// True if functions may select their arithmetic at run time.
     wanted: bool,
     /// Function bodies that have been added so far.
-    list: Vec<Body>,
+    list: Vec<GenericBody>,
 }
 
 /// Body of a large function, generic over the arithmetic.
-struct Body {
+struct GenericBody {
     /// Types of the arguments, as the text of a tuple.
     types: String,
     /// Names of the arguments, as the text of a tuple.
@@ -83,7 +83,7 @@ impl Bodies {
                 Some(text)
             }
         };
-        self.list.push(Body {
+        self.list.push(GenericBody {
             types,
             names,
             result: s.result_type(f),
@@ -97,7 +97,7 @@ impl Bodies {
     pub fn write_function_bodies(&self, out: &mut String, name: &str, head: &Head) {
         let Head { generics, arguments, bounds } = head;
         for (k, body) in self.list.iter().enumerate() {
-            let Body { types, names, result, text, debug, .. } = body;
+            let GenericBody { types, names, result, text, debug, .. } = body;
             let own =
                 generics.trim().trim_start_matches('<').trim_end_matches('>').trim().trim_end_matches(',');
             let lanes = if body.simd { "const LANES: usize" } else { "" };

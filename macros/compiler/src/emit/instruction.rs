@@ -21,7 +21,7 @@ pub enum Build {
 }
 
 /// State of the writer of one function body.
-pub struct Writer<'a> {
+pub struct BodyWriter<'a> {
     /// Build (debug, release or both) for which the body is written.
     pub build: Build,
     /// Program whose instructions are written.
@@ -45,7 +45,7 @@ pub struct Writer<'a> {
     pub named: Option<BTreeSet<(&'static str, usize)>>,
 }
 
-impl Writer<'_> {
+impl BodyWriter<'_> {
     /// Returns the expression of a SIMD vector that is gathered from inputs.
     pub fn gathered_vector(&self, gather: &[Symbol]) -> String {
         let symbols: Vec<String> = gather.iter().map(|s| self.symbol_text(*s)).collect();

@@ -10,12 +10,12 @@ use std::fmt::Write;
 /// With generalized speeds these functions are hidden, and the public functions call them.
 pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
-    let on_manifold = |name, about, signature: String, arguments: [(&'static str, usize); 2], result| {
-        ManifoldFunction { name, about, signature, arguments, result }
+    let on_manifold = |kind, about, signature: String, arguments: [(&'static str, usize); 2], result| {
+        ManifoldFunction { kind, about, signature, arguments, result }
     };
     let functions = [
         on_manifold(
-            "integrate",
+            ManifoldFunctionKind::Integrate,
             "Returns `q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one \
              unit of time, with normalised quaternions.",
             format!("q: &{q}, dv: &{v}) -> {q}"),
@@ -23,7 +23,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
             s.nq,
         ),
         on_manifold(
-            "difference",
+            ManifoldFunctionKind::Difference,
             "Returns `to ⊖ from`: the constant velocity that leads from one configuration to another in one \
              unit of time, so that `integrate(from, difference(from, to))` is `to`.",
             format!("from: &{q}, to: &{q}) -> {v}"),
@@ -31,7 +31,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
             s.nv,
         ),
         on_manifold(
-            "tangent_rate",
+            ManifoldFunctionKind::TangentRate,
             "Returns the rate of `dv` for which `q ⊕ dv` moves with velocity `v` (inverse of the derivative \
              of the exponential map).",
             format!("dv: &{v}, v: &{v}) -> {v}"),
@@ -52,9 +52,9 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
 /// is only `carry`.
 pub fn write_transport(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
     let v = s.vector_type(s.nv);
-    let mut write_function = |name, about| {
+    let mut write_function = |kind, about| {
         let function = ManifoldFunction {
-            name,
+            kind,
             about,
             signature: format!("dv: &{v}, v: &{v}) -> {v}"),
             arguments: [("dv", s.nv), ("v", s.nv)],
@@ -63,12 +63,12 @@ pub fn write_transport(out: &mut String, charts: Option<&[Chart]>, speeds: bool,
         function.write_manifold_function(out, "__", charts, s);
     };
     write_function(
-        "carry",
+        ManifoldFunctionKind::Carry,
         "The velocity `v` in the axes that ball and free joints have after the displacement `dv`.",
     );
     if !speeds {
         write_function(
-            "carry_rate",
+            ManifoldFunctionKind::CarryRate,
             "The rate of the components of a velocity that is `v`, and constant in space, during a motion \
              with velocity `dv`.",
         );
@@ -106,10 +106,32 @@ fn write_translation(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'
     out.push_str("}\n");
 }
 
+/// Functions on the configuration manifold that treat each joint's coordinate chart separately.
+#[derive(Clone, Copy)]
+enum ManifoldFunctionKind {
+    Integrate,
+    Difference,
+    TangentRate,
+    Carry,
+    CarryRate,
+}
+
+impl ManifoldFunctionKind {
+    /// Returns the name of the generated function.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Integrate => "integrate",
+            Self::Difference => "difference",
+            Self::TangentRate => "tangent_rate",
+            Self::Carry => "carry",
+            Self::CarryRate => "carry_rate",
+        }
+    }
+}
+
 /// Function on the configuration manifold, as data for code generation.
 struct ManifoldFunction {
-    /// Name of the function.
-    name: &'static str,
+    kind: ManifoldFunctionKind,
     /// Documentation of the generated function.
     about: &'static str,
     /// Parameters of the function after `&self`, and its result type.
@@ -133,7 +155,7 @@ impl ManifoldFunction {
             out,
             "{hidden}/// {}\n#[inline]\n#[must_use]\npub fn {prefix}{}{}(&self, {} {{",
             self.about,
-            self.name,
+            self.kind.name(),
             s.generics_text(),
             self.signature
         );
@@ -156,11 +178,13 @@ impl ManifoldFunction {
         for chart in charts {
             let (kind, (q, nq), (v, nv)) = match *chart {
                 Chart::Plain(q, v) => {
-                    let _ = match self.name {
-                        "integrate" => writeln!(out, "let r{q} = q{q} + dv{v};"),
-                        "difference" => writeln!(out, "let r{v} = to{q} - from{q};"),
-                        "carry_rate" => writeln!(out, "let r{v} = 0.0;"),
-                        _ => writeln!(out, "let r{v} = v{v};"),
+                    let _ = match self.kind {
+                        ManifoldFunctionKind::Integrate => writeln!(out, "let r{q} = q{q} + dv{v};"),
+                        ManifoldFunctionKind::Difference => writeln!(out, "let r{v} = to{q} - from{q};"),
+                        ManifoldFunctionKind::CarryRate => writeln!(out, "let r{v} = 0.0;"),
+                        ManifoldFunctionKind::TangentRate | ManifoldFunctionKind::Carry => {
+                            writeln!(out, "let r{v} = v{v};")
+                        }
                     };
                     continue;
                 }
@@ -169,16 +193,16 @@ impl ManifoldFunction {
             };
             // Entries of the result and of the two arguments: configurations or velocities.
             let (on_q, on_v) = ((q, nq), (v, nv));
-            let (r, a, b) = match self.name {
-                "integrate" => (on_q, on_q, on_v),
-                "difference" => (on_v, on_q, on_q),
+            let (r, a, b) = match self.kind {
+                ManifoldFunctionKind::Integrate => (on_q, on_q, on_v),
+                ManifoldFunctionKind::Difference => (on_v, on_q, on_q),
                 _ => (on_v, on_v, on_v),
             };
             let _ = writeln!(
                 out,
                 "let {} = ::linkwork::__private::{kind}_{}({}, {});",
                 format_name_range(r.0, r.1, "r"),
-                self.name,
+                self.kind.name(),
                 format_name_range(a.0, a.1, first),
                 format_name_range(b.0, b.1, second)
             );

@@ -19,7 +19,7 @@ use crate::diag::{Diagnostics, all_of};
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::name_with_primes;
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
 use crate::expr::eval::Tape;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
@@ -325,7 +325,7 @@ struct KaneLines {
 
 impl KaneLines {
     fn new<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> KaneLines {
-        let writer = Writer::with_style(&kane.ring, style);
+        let writer = PolynomialWriter::with_style(&kane.ring, style);
         let of_speeds =
             kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.format_polynomial(p)));
         let dependent = kane.dependent.iter().map(|(k, p)| {

@@ -4,7 +4,7 @@
 
 use crate::algebra::factor::remove_noise;
 use crate::algebra::normal::Normal;
-use crate::algebra::polynomial::{Atom, Polynomial, Rank, Ring};
+use crate::algebra::polynomial::{Atom, AtomRank, Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::algebra::unit::on_unit_sphere;
 use crate::expr::eval::Tape;
@@ -292,12 +292,12 @@ fn simplify_equations(mut short: Simplifier, found: Equations) -> Option<Equatio
     Some(Equations { ring: short.ring, lagrangian, motion, forces, rates, without_forces })
 }
 
-fn rank_of_symbol(symbol: Symbol) -> Rank {
+fn rank_of_symbol(symbol: Symbol) -> AtomRank {
     match Quantity::from_symbol(symbol) {
-        Quantity::Configuration(_) | Quantity::Time => Rank::Position,
-        Quantity::Velocity(_) => Rank::Rate,
-        Quantity::Acceleration(_) => Rank::Acceleration,
-        Quantity::Input(_) => Rank::Input,
-        _ => Rank::Parameter,
+        Quantity::Configuration(_) | Quantity::Time => AtomRank::Position,
+        Quantity::Velocity(_) => AtomRank::Rate,
+        Quantity::Acceleration(_) => AtomRank::Acceleration,
+        Quantity::Input(_) => AtomRank::Input,
+        _ => AtomRank::Parameter,
     }
 }

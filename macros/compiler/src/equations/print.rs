@@ -17,10 +17,10 @@ pub mod style;
 
 pub use latex::Latex;
 pub use mathml::MathMl;
-pub use names::Name;
+pub use names::SymbolName;
 pub use style::{Plain, Style, Written};
 
-use style::{Argument, Factor, Number};
+use style::{Argument, Number, PrintedFactor};
 
 impl fmt::Debug for Expr<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -74,23 +74,23 @@ fn format_node(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u
 
 /// Formatter of polynomials as in textbooks: `1/3 m l² cos(theta)`. The writer decides the order of terms and
 /// factors; the style decides their appearance.
-pub struct Writer<'a, S = Plain<'a>> {
+pub struct PolynomialWriter<'a, S = Plain<'a>> {
     ring: &'a Ring,
     order: Order,
     style: S,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> PolynomialWriter<'a> {
     /// Creates a writer of plain text for the polynomials of a ring, with names for its symbols.
-    pub fn new(ring: &'a Ring, name: &'a dyn Fn(Symbol) -> String) -> Writer<'a> {
-        Writer::with_style(ring, Plain { name })
+    pub fn new(ring: &'a Ring, name: &'a dyn Fn(Symbol) -> String) -> PolynomialWriter<'a> {
+        PolynomialWriter::with_style(ring, Plain { name })
     }
 }
 
-impl<'a, S: Style> Writer<'a, S> {
+impl<'a, S: Style> PolynomialWriter<'a, S> {
     /// Creates a writer for the polynomials of a ring in the given style.
-    pub fn with_style(ring: &'a Ring, style: S) -> Writer<'a, S> {
-        Writer { ring, order: Order::new(ring), style }
+    pub fn with_style(ring: &'a Ring, style: S) -> PolynomialWriter<'a, S> {
+        PolynomialWriter { ring, order: Order::new(ring), style }
     }
 
     /// Formats a polynomial with grouped terms and extracted common factors.
@@ -129,13 +129,23 @@ impl<'a, S: Style> Writer<'a, S> {
     }
 
     /// Returns a sum, raised to a power, as a factor of a product.
-    fn sum_as_factor(&self, sum: String, power: u8) -> Factor {
-        if power == 1 { Factor::Sum(sum) } else { Factor::Single(self.style.power(&sum, power)) }
+    fn sum_as_factor(&self, sum: String, power: u8) -> PrintedFactor {
+        if power == 1 {
+            PrintedFactor::Sum(sum)
+        } else {
+            PrintedFactor::Single(self.style.power(&sum, power))
+        }
     }
 
     /// Formats a product without its sign. The order is: number, parameters, positions (before sums that are
     /// not constant), sums, all other factors, divisors.
-    fn format_product(&self, coefficient: f64, m: Monomial, sums: Vec<Factor>, constant: bool) -> String {
+    fn format_product(
+        &self,
+        coefficient: f64,
+        m: Monomial,
+        sums: Vec<PrintedFactor>,
+        constant: bool,
+    ) -> String {
         let positions = if constant { Monomial::ONE } else { m.restrict_to_mask(self.order.positions) };
         let front = self.order.parameters_of_monomial(m).union_of_bits(positions);
         let (mut factors, mut divisors) = (Vec::new(), Vec::new());
@@ -147,20 +157,25 @@ impl<'a, S: Style> Writer<'a, S> {
         self.style.product(number, &factors, &divisors)
     }
 
-    fn format_factors(&self, m: Monomial, factors: &mut Vec<Factor>, divisors: &mut Vec<Factor>) {
+    fn format_factors(
+        &self,
+        m: Monomial,
+        factors: &mut Vec<PrintedFactor>,
+        divisors: &mut Vec<PrintedFactor>,
+    ) {
         for (atom, power) in self.order.factors_in_order(m) {
             match &self.ring.atoms[atom] {
                 Atom::Inverse(p) => divisors.push(self.format_divisor(p, power)),
-                atom => factors.push(Factor::Single(self.format_atom(atom, power))),
+                atom => factors.push(PrintedFactor::Single(self.format_atom(atom, power))),
             }
         }
     }
 
-    fn format_divisor(&self, p: &Polynomial, power: u8) -> Factor {
+    fn format_divisor(&self, p: &Polynomial, power: u8) -> PrintedFactor {
         if let [t] = p.terms.as_slice()
             && let Some((atom, 1)) = t.monomial.atoms_with_powers().next()
         {
-            return Factor::Single(self.format_atom(&self.ring.atoms[atom], power));
+            return PrintedFactor::Single(self.format_atom(&self.ring.atoms[atom], power));
         }
         self.sum_as_factor(self.format_polynomial(p), power)
     }
@@ -180,7 +195,7 @@ impl<'a, S: Style> Writer<'a, S> {
                 format_call(name, &x.iter().map(|x| self.format_argument(x)).collect::<Vec<_>>())
             }
             Atom::Inverse(p) => {
-                let divisor = Factor::Sum(self.format_polynomial(p));
+                let divisor = PrintedFactor::Sum(self.format_polynomial(p));
                 self.style.power(&self.style.product(Some(Number::ONE), &[], &[divisor]), power)
             }
         }

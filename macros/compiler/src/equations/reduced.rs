@@ -13,7 +13,7 @@ use crate::diag::all_of;
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::name_with_primes;
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
@@ -166,7 +166,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
 /// Returns the right side of the Routhian, then the equations of motion, the velocities of cyclic
 /// coordinates, their momenta and inertias.
 fn routh_equation_lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
-    let writer = Writer::with_style(&reduced.ring, style);
+    let writer = PolynomialWriter::with_style(&reduced.ring, style);
     let mut lines = vec![writer.format_energy(&reduced.routhian)];
     let sides = reduced.motion.iter().zip(&reduced.forces);
     lines.extend(

@@ -5,7 +5,7 @@ use crate::diag::all_of;
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::{Names, name_with_primes};
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Model, Quantity, Supplied};
 
@@ -31,7 +31,7 @@ struct LagrangeLines {
 
 impl LagrangeLines {
     fn new<S: Style>(equations: &Equations, style: S) -> LagrangeLines {
-        let writer = Writer::with_style(&equations.ring, style);
+        let writer = PolynomialWriter::with_style(&equations.ring, style);
         let sides = equations.motion.iter().zip(&equations.forces);
         LagrangeLines {
             rates: equations.rates.iter().map(|(k, p)| (*k, writer.format_polynomial(p))).collect(),
@@ -140,7 +140,7 @@ pub(super) fn inertias_sentence(determinants: &[String]) -> String {
 /// Returns the right side of the Hamiltonian, then equations for the rates of coordinates and of momenta,
 /// then for determinants.
 fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<String> {
-    let writer = Writer::with_style(&canonical.ring, style);
+    let writer = PolynomialWriter::with_style(&canonical.ring, style);
     let mut lines = vec![writer.format_energy(&canonical.hamiltonian)];
     let velocities = (0..).map(Quantity::Velocity).zip(&canonical.velocity);
     let momenta = (0..).map(Quantity::Acceleration).zip(&canonical.momentum_rate);

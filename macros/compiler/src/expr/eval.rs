@@ -62,7 +62,7 @@ impl<'g> Tape<'g> {
         self.run_with(&|s| Rounded::from_number(symbol(s)))
     }
 
-    fn run_with<V: Value>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
+    fn run_with<V: TapeNumber>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
         match self.graph {
             None => Vec::new(),
             Some(graph) if self.in_lanes => self.evaluate_in_lanes::<V, MAX_LANES>(graph, symbol),
@@ -71,7 +71,7 @@ impl<'g> Tape<'g> {
     }
 
     /// Evaluates all nodes in `N` lanes and returns the first lane of each expression.
-    fn evaluate_in_lanes<V: Value, const N: usize>(
+    fn evaluate_in_lanes<V: TapeNumber, const N: usize>(
         &self,
         graph: &Graph,
         symbol: &dyn Fn(Symbol) -> V,
@@ -104,7 +104,7 @@ impl<'g> Tape<'g> {
 }
 
 /// Number type in which a tape is evaluated.
-trait Value: Copy {
+trait TapeNumber: Copy {
     /// Converts a constant to this number type.
     fn from_number(number: f64) -> Self;
     fn sum(lanes: &[Self]) -> Self;
@@ -112,7 +112,7 @@ trait Value: Copy {
     fn step(node: Node, operands: [Self; 3]) -> Self;
 }
 
-impl Value for f64 {
+impl TapeNumber for f64 {
     fn from_number(number: f64) -> f64 {
         number
     }
@@ -150,7 +150,7 @@ impl Rounded {
     }
 }
 
-impl Value for Rounded {
+impl TapeNumber for Rounded {
     fn from_number(number: f64) -> Rounded {
         Rounded { value: number, error: f64::EPSILON * number.abs() }
     }

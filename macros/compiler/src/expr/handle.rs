@@ -118,38 +118,24 @@ impl<'g> Expr<'g> {
     }
 }
 
-impl<'g> Add for Expr<'g> {
-    type Output = Expr<'g>;
-    fn add(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.add(self.id, b.id))
-    }
+/// Implements arithmetic operators by the functions of the graph.
+macro_rules! operators {
+    ($($operator:ident $function:ident),+) => {$(
+        impl<'g> $operator for Expr<'g> {
+            type Output = Expr<'g>;
+            fn $function(self, b: Expr<'g>) -> Expr<'g> {
+                self.graph.expr(self.graph.$function(self.id, b.id))
+            }
+        }
+    )+};
 }
 
-impl<'g> Sub for Expr<'g> {
-    type Output = Expr<'g>;
-    fn sub(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.sub(self.id, b.id))
-    }
-}
-
-impl<'g> Mul for Expr<'g> {
-    type Output = Expr<'g>;
-    fn mul(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.mul(self.id, b.id))
-    }
-}
+operators!(Add add, Sub sub, Mul mul, Div div);
 
 impl<'g> Mul<f64> for Expr<'g> {
     type Output = Expr<'g>;
     fn mul(self, b: f64) -> Expr<'g> {
         self * self.num(b)
-    }
-}
-
-impl<'g> Div for Expr<'g> {
-    type Output = Expr<'g>;
-    fn div(self, b: Expr<'g>) -> Expr<'g> {
-        self.graph.expr(self.graph.div(self.id, b.id))
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::context::{Cx, format_position, quote_all, quote_word};
 use crate::diag::{Place, nearest_candidate};
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::syntax::Name;
 
 /// XML element of a robot file.
@@ -186,9 +186,13 @@ pub(super) fn read_name_attribute(node: Node<'_>, attribute: &str, cx: &mut Cx<'
 }
 
 /// Returns the finite number in an attribute, if the attribute is present and valid. Reports invalid values.
-pub(super) fn read_number_attribute(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-    let Placed { value: [value], place } = read_numbers_attribute(node, attribute, cx)?;
-    Some(Placed { value, place })
+pub(super) fn read_number_attribute(
+    node: Node<'_>,
+    attribute: &str,
+    cx: &mut Cx<'_>,
+) -> Option<Located<f64>> {
+    let Located { value: [value], place } = read_numbers_attribute(node, attribute, cx)?;
+    Some(Located { value, place })
 }
 
 /// Returns the `N` finite numbers in an attribute, separated by spaces, if the attribute is present and
@@ -197,7 +201,7 @@ pub(super) fn read_numbers_attribute<const N: usize>(
     node: Node<'_>,
     attribute: &str,
     cx: &mut Cx<'_>,
-) -> Option<Placed<[f64; N]>> {
+) -> Option<Located<[f64; N]>> {
     let found = node.attribute_node(attribute)?;
     read_numbers(found.value(), found.range_value(), attribute, cx)
 }
@@ -207,7 +211,7 @@ pub(super) fn read_numbers_attribute<const N: usize>(
 pub(super) fn read_numbers_content<const N: usize>(
     node: Node<'_>,
     cx: &mut Cx<'_>,
-) -> Option<Placed<[f64; N]>> {
+) -> Option<Located<[f64; N]>> {
     let mut all = relevant_contents(node);
     let text = all.next().filter(Node::is_text);
     if let Some(other) = relevant_contents(node).find(Node::is_element).or(all.next()) {
@@ -234,7 +238,7 @@ fn read_numbers<const N: usize>(
     range: std::ops::Range<usize>,
     attribute: &str,
     cx: &mut Cx<'_>,
-) -> Option<Placed<[f64; N]>> {
+) -> Option<Located<[f64; N]>> {
     let start = range.start;
     let place = cx.source_position(start + text.len() - text.trim_start().len());
     if text.contains(',') {
@@ -273,7 +277,7 @@ fn read_numbers<const N: usize>(
             }
         }
     }
-    good.then_some(Placed { value, place })
+    good.then_some(Located { value, place })
 }
 
 /// Largest angle, rad, that is accepted as radians in any notation: a full revolution with a margin for

@@ -45,7 +45,7 @@ pub struct Imported {
 
 /// Value read from a file, with its source position.
 #[derive(Clone, Debug)]
-pub struct Placed<T> {
+pub struct Located<T> {
     /// Value as written in the file, in the file's units.
     pub value: T,
     /// Source position of the value in the file.

@@ -16,26 +16,26 @@ const ROUNDING: f64 = 1e-15;
 
 /// Pose of a frame relative to a reference frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::import) struct Pose {
+pub(in crate::import) struct FilePose {
     /// Origin of the frame, in the axes of the reference frame.
     pub(in crate::import) at: Vector,
     /// Rotation matrix; its columns are the axes of the frame.
     pub(in crate::import) axes: Matrix,
 }
 
-impl Pose {
+impl FilePose {
     /// Pose of a frame that coincides with its reference frame.
-    pub(in crate::import) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
+    pub(in crate::import) const ZERO: FilePose = FilePose { at: [0.0; 3], axes: IDENTITY };
 
     /// Returns the inverse: the pose of the reference frame relative to this frame.
-    pub(in crate::import) fn inverse_pose(&self) -> Pose {
+    pub(in crate::import) fn inverse_pose(&self) -> FilePose {
         let axes = transpose(&self.axes);
-        Pose { at: scale_vector(matrix_times_vector(&axes, self.at), -1.0), axes }
+        FilePose { at: scale_vector(matrix_times_vector(&axes, self.at), -1.0), axes }
     }
 
     /// Composes two poses. `inner` is relative to this frame, the result to the reference frame.
-    pub(in crate::import) fn compose_with(&self, inner: &Pose) -> Pose {
-        Pose {
+    pub(in crate::import) fn compose_with(&self, inner: &FilePose) -> FilePose {
+        FilePose {
             at: add(self.at, matrix_times_vector(&self.axes, inner.at)),
             axes: matrix_product(&self.axes, &inner.axes),
         }

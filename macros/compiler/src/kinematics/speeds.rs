@@ -3,7 +3,7 @@
 use super::redundancy::Basis;
 use super::rows::{random_configuration, sampled_value};
 use crate::algebra::normal::Normal;
-use crate::algebra::polynomial::{Rank, polynomial_to_expression};
+use crate::algebra::polynomial::{AtomRank, polynomial_to_expression};
 use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::algebra::unit::on_unit_sphere;
 use crate::expr::eval::Tape;
@@ -156,7 +156,7 @@ pub fn shorten_expression<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
 }
 
 fn shorter_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
-    let mut normal = Normal::new(model.graph, |_: Symbol| Rank::Position);
+    let mut normal = Normal::new(model.graph, |_: Symbol| AtomRank::Position);
     let p = normal.normal_form(e)?;
     let mut p = simplify_trigonometry(&mut normal.ring, &p)?;
     for quaternion in quaternion_symbols(model) {

@@ -42,12 +42,12 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
     }
     let candidates = candidate_quantities(model, joints);
     let values: Vec<Expr<'g>> = candidates.iter().map(|c| c.value).collect();
-    let (tape, motion) = (Tape::new(&values), Motion::new(model, joints));
+    let (tape, motion) = (Tape::new(&values), NumericMotion::new(model, joints));
     let mut kept = vec![true; values.len()];
     let mut gradients: Vec<Vec<Vec<f64>>> = Vec::new();
     let places = consistent_configurations(model);
     for (k, (q, seed)) in places.iter().enumerate() {
-        let state = State::random_state(model, &motion, q, *seed, k as u64);
+        let state = SampledState::random_state(model, &motion, q, *seed, k as u64);
         let Some(rates) = state.and_then(|state| {
             gradients.push(state.value_gradients(&tape));
             state.values_are_constant(&motion, &tape)
@@ -109,7 +109,7 @@ fn consistent_configurations(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
 }
 
 /// Equations of motion from which the accelerations are computed numerically.
-struct Motion<'g> {
+struct NumericMotion<'g> {
     nv: usize,
     nc: usize,
     /// Mass matrix, bias forces, Jacobian by rows, then velocities and biases of the constraints.
@@ -118,35 +118,42 @@ struct Motion<'g> {
     rates: Tape<'g>,
 }
 
-impl<'g> Motion<'g> {
-    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> Motion<'g> {
+impl<'g> NumericMotion<'g> {
+    fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> NumericMotion<'g> {
         let mut all = added_mass::effective_mass_matrix(model, &crba::mass_matrix(model, joints)).concat();
         all.extend(rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None));
         all.extend(constraints::jacobian(model).concat());
         all.extend(constraints::constraint_velocities(model));
         all.extend(constraints::constraint_biases(model));
         let (equations, rates) = (Tape::new(&all), Tape::new(&lagrange::configuration_rates(model)));
-        Motion { nv: model.nv(), nc: model.constraints.len(), equations, rates }
+        NumericMotion { nv: model.nv(), nc: model.constraints.len(), equations, rates }
     }
 }
 
 /// Numeric state at which conservation is tested: time, configuration and velocity.
 #[derive(Clone)]
-struct State {
+struct SampledState {
     t: f64,
     q: Vec<f64>,
     v: Vec<f64>,
     seed: u64,
 }
 
-impl State {
+impl SampledState {
     /// Returns a state with the configuration `q` and a random velocity that satisfies the constraints, or
     /// `None` if the velocity is not finite. `at` is the seed of the velocity, `seed` that of the parameters.
-    fn random_state(model: &Model<'_>, motion: &Motion<'_>, q: &[f64], seed: u64, at: u64) -> Option<State> {
+    fn random_state(
+        model: &Model<'_>,
+        motion: &NumericMotion<'_>,
+        q: &[f64],
+        seed: u64,
+        at: u64,
+    ) -> Option<SampledState> {
         let random_velocity =
             |k: usize| 4.0 * sample_of_symbol(Quantity::Velocity(k).symbol(), 100 + at) - 4.0;
         let t = sample_of_symbol(Quantity::Time.symbol(), seed);
-        let mut state = State { t, q: q.to_vec(), v: (0..model.nv()).map(random_velocity).collect(), seed };
+        let mut state =
+            SampledState { t, q: q.to_vec(), v: (0..model.nv()).map(random_velocity).collect(), seed };
         if motion.nc > 0 {
             let values = motion.equations.evaluate_at(&|s| state.value_of_symbol(s));
             let (nv, nc) = (motion.nv, motion.nc);
@@ -179,7 +186,7 @@ impl State {
     }
 
     /// Returns the time derivatives of the configuration, and the accelerations, without inputs.
-    fn state_derivatives(&self, motion: &Motion<'_>) -> (Vec<f64>, Vec<f64>) {
+    fn state_derivatives(&self, motion: &NumericMotion<'_>) -> (Vec<f64>, Vec<f64>) {
         let (nv, nc) = (motion.nv, motion.nc);
         let values = self.tape_values(&motion.equations);
         let (mass, rest) = values.split_at(nv * nv);
@@ -199,10 +206,10 @@ impl State {
     }
 
     /// Returns the state displaced by `h` times constant time derivatives `t`, `q` and `v`.
-    fn displaced_state(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
+    fn displaced_state(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> SampledState {
         let displaced_by_rate =
             |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
-        State {
+        SampledState {
             t: self.t + h * t,
             q: displaced_by_rate(&self.q, q),
             v: displaced_by_rate(&self.v, v),
@@ -226,7 +233,7 @@ impl State {
     }
 
     /// Returns for each value whether it is constant along the motion, or `None` if the motion is not finite.
-    fn values_are_constant(&self, motion: &Motion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
+    fn values_are_constant(&self, motion: &NumericMotion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
         let (q, v) = self.state_derivatives(motion);
         let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
         let whole = self.directional_derivatives(tape, 1.0, &q, &v);

@@ -11,6 +11,21 @@ use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
+/// Implements `Propagated` for a struct whose listed fields are propagated.
+macro_rules! impl_propagated {
+    ($name:ident { $($field:ident),+ }) => {
+        impl<'g> Propagated<'g> for $name<'g> {
+            fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+                $name { $($field: self.$field.zip_with(&other.$field, f)),+ }
+            }
+
+            fn to_parent(&self, joint: &Joint<'g>) -> Self {
+                $name { $($field: self.$field.to_parent(joint)),+ }
+            }
+        }
+    };
+}
+
 pub mod analytic;
 mod columns;
 mod factor;

@@ -15,7 +15,7 @@ pub type Combination = Vec<(usize, f64)>;
 
 /// Result of the test of one column for linear independence.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Part {
+pub enum ColumnTest {
     /// Column that is linearly independent of its predecessors.
     Own,
     /// This combination of independent predecessors; empty if the column is zero.
@@ -23,14 +23,14 @@ pub enum Part {
 }
 
 /// Classifies columns of equal length. A column whose factors depend on the parameters counts as independent.
-pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<Part> {
+pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<ColumnTest> {
     let one = orthogonalise_columns(&column_values(model, columns, 0));
     if model.parameters.is_empty() {
         return one;
     }
     let other = orthogonalise_columns(&column_values(model, columns, 1));
-    let part_if_agreed = |(one, other): (Part, Part)| match (&one, &other) {
-        (Part::Combined(a), Part::Combined(b)) if !has_same_combination(a, b) => Part::Own,
+    let part_if_agreed = |(one, other): (ColumnTest, ColumnTest)| match (&one, &other) {
+        (ColumnTest::Combined(a), ColumnTest::Combined(b)) if !has_same_combination(a, b) => ColumnTest::Own,
         _ => one,
     };
     one.into_iter().zip(other).map(part_if_agreed).collect()
@@ -69,7 +69,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Orthogonalises the columns one after another (Gram–Schmidt, applied twice against rounding errors), and
 /// returns which columns are independent.
-fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<Part> {
+fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<ColumnTest> {
     let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
     // Orthonormal vectors, each with its combination of independent columns.
     let mut base: Vec<(Vec<f64>, Combination)> = Vec::new();
@@ -77,7 +77,7 @@ fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<Part> {
     for (k, column) in columns.iter().enumerate() {
         let size = dot(column, column).sqrt();
         if size <= TOLERANCE * largest {
-            parts.push(Part::Combined(Vec::new()));
+            parts.push(ColumnTest::Combined(Vec::new()));
             continue;
         }
         let mut rest = column.clone();
@@ -99,12 +99,12 @@ fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<Part> {
                 (0..k).filter(|i| combination[*i] != 0.0).map(|i| (i, -combination[i] / left)).collect();
             of.push((k, 1.0 / left));
             base.push((rest.iter().map(|r| r / left).collect(), of));
-            parts.push(Part::Own);
+            parts.push(ColumnTest::Own);
         } else {
             let norm_of_column = |i: usize| dot(&columns[i], &columns[i]).sqrt();
             let is_significant_coefficient =
                 |i: &usize| (combination[*i] * norm_of_column(*i)).abs() > 1e-7 * size;
-            parts.push(Part::Combined(
+            parts.push(ColumnTest::Combined(
                 (0..k).filter(is_significant_coefficient).map(|i| (i, combination[i])).collect(),
             ));
         }
@@ -114,7 +114,7 @@ fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<Part> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Part, orthogonalise_columns};
+    use super::{ColumnTest, orthogonalise_columns};
 
     #[test]
     fn linear_combinations_are_detected() {
@@ -123,9 +123,9 @@ mod tests {
         let c: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - 0.5 * b).collect();
         let d = vec![1.0, 0.0, 0.0, 0.0];
         let found = orthogonalise_columns(&[a, zero, b, c, d]);
-        assert_eq!((&found[0], &found[2], &found[4]), (&Part::Own, &Part::Own, &Part::Own));
-        assert_eq!(found[1], Part::Combined(Vec::new()));
-        let Part::Combined(list) = &found[3] else { panic!("{found:?}") };
+        assert_eq!((&found[0], &found[2], &found[4]), (&ColumnTest::Own, &ColumnTest::Own, &ColumnTest::Own));
+        assert_eq!(found[1], ColumnTest::Combined(Vec::new()));
+        let ColumnTest::Combined(list) = &found[3] else { panic!("{found:?}") };
         let [(0, x), (2, y)] = list[..] else { panic!("{list:?}") };
         assert!((x - 2.0).abs() < 1e-12 && (y + 0.5).abs() < 1e-12);
     }

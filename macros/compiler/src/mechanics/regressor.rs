@@ -19,7 +19,7 @@ const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2
 
 /// Frame fixed in a link, whose inertial parameters are identified.
 #[derive(Clone)]
-pub struct Site<'g> {
+pub struct RegressorFrame<'g> {
     /// Link in which the parameter frame is fixed.
     pub link: LinkId,
     /// Pose of the parameter frame relative to the link's frame.
@@ -49,7 +49,7 @@ pub fn regressor_columns<'g>(
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
     a: &[Expr<'g>],
-    sites: &[Site<'g>],
+    sites: &[RegressorFrame<'g>],
     wanted: &[(usize, usize)],
 ) -> Vec<Vec<Expr<'g>>> {
     let g = model.graph;

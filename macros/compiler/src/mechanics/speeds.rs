@@ -19,7 +19,7 @@ use std::rc::Rc;
 
 /// Kind of a function's results, which determines their transformation to generalized speeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum ResultKind {
     /// Results that are invariant under the choice of velocities.
     Scalars,
     /// Results that are generalized forces or momenta, one for each velocity.
@@ -163,28 +163,28 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Transforms the results of a function in joint velocities to generalized speeds.
-    pub fn transform_results(&self, role: Role, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn transform_results(&self, role: ResultKind, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let n = self.model.nv();
         match role {
-            Role::Scalars => self.express_in_speeds(e),
-            Role::Forces => self.transform_forces(e),
-            Role::MomentumRate => {
+            ResultKind::Scalars => self.express_in_speeds(e),
+            ResultKind::Forces => self.transform_forces(e),
+            ResultKind::MomentumRate => {
                 let (rate, momentum) = e.split_at(n.min(e.len()));
                 self.momentum_rate(rate, momentum)
             }
-            Role::Bias(rows) => {
+            ResultKind::Bias(rows) => {
                 let (bias, matrix) = e.split_at(rows.min(e.len()));
                 self.bias_in_speeds(bias, matrix)
             }
-            Role::Accelerations(answers) | Role::Answers(answers) => {
+            ResultKind::Accelerations(answers) | ResultKind::Answers(answers) => {
                 let (solution, added) = e.split_at(e.len().saturating_sub(n * answers));
                 let (first, rest) = solution.split_at(n.min(solution.len()));
                 let mut out = match role {
-                    Role::Answers(_) => self.speeds_of_velocities(&self.with_given_forces(first)),
+                    ResultKind::Answers(_) => self.speeds_of_velocities(&self.with_given_forces(first)),
                     _ => self.rates_of_speeds(first),
                 };
                 out.extend(match role {
-                    Role::Answers(_) => self.with_given_forces(rest),
+                    ResultKind::Answers(_) => self.with_given_forces(rest),
                     _ => self.express_in_speeds(rest),
                 });
                 self.express_in_speeds(added)
@@ -192,10 +192,12 @@ impl<'g> InSpeeds<'g> {
                     .for_each(|part| out.extend(self.speeds_of_velocities(part)));
                 out
             }
-            Role::Metric => entries_by_column(&self.transform_mass_matrix(&square_from_columns(e, n))),
-            Role::InverseMetric => entries_by_column(&self.inverse_mass_matrix(&square_from_columns(e, n))),
-            Role::Columns(rows) => self.columns_by_speed(e, rows),
-            Role::Responses(impulses) => {
+            ResultKind::Metric => entries_by_column(&self.transform_mass_matrix(&square_from_columns(e, n))),
+            ResultKind::InverseMetric => {
+                entries_by_column(&self.inverse_mass_matrix(&square_from_columns(e, n)))
+            }
+            ResultKind::Columns(rows) => self.columns_by_speed(e, rows),
+            ResultKind::Responses(impulses) => {
                 let (added, rest) = e.split_at((n * impulses).min(e.len()));
                 let added = self.express_in_speeds(added);
                 let mut out: Vec<Expr<'g>> =

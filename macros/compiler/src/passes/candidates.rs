@@ -1,8 +1,8 @@
 //! Candidates for the frame of a link, among which a pass chooses.
 
-use super::motions::{Freedom, frame_freedom};
+use super::motions::{FrameFreedom, frame_freedom};
 use super::number::{
-    Frame, IDENTITY, Mass, Vector, axis_rotation, column, cross, dot, matrix_times_vector,
+    IDENTITY, Mass, NumericFrame, Vector, axis_rotation, column, cross, dot, matrix_times_vector,
     multiply_transposed, norm, round_noise_to_zero, transpose, unit_axis,
 };
 use crate::mechanism::{Link, Motion};
@@ -13,9 +13,9 @@ pub struct Site {
     /// Index of the parent link; `None` for the ground.
     pub parent: Option<usize>,
     /// Frame of the joint on the parent link, if its numbers are constant.
-    pub place: Option<Frame>,
+    pub place: Option<NumericFrame>,
     /// Freedom to choose the frame of the link.
-    pub freedom: Freedom,
+    pub freedom: FrameFreedom,
     /// Mass properties of the link, if they are constant numbers.
     pub mass: Option<Mass>,
     /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size.
@@ -28,14 +28,14 @@ impl Site {
     /// Returns the site of a link of a given size. With `free_parameters`, its mass properties need not be
     /// numeric.
     pub fn from_link(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
-        let (place, mass) = (Frame::from_pose(&link.placement), Mass::from_inertia(&link.inertia));
+        let (place, mass) = (NumericFrame::from_pose(&link.placement), Mass::from_inertia(&link.inertia));
         let free = frame_freedom(&link.motion);
         let numeric = place.is_some() && (mass.is_some() || free_parameters);
         let place = place.filter(|_| !matches!(link.motion, Motion::Placed));
         Site {
             parent: link.parent.map(|p| p.0),
             place,
-            freedom: free.filter(|_| numeric).unwrap_or(Freedom::None),
+            freedom: free.filter(|_| numeric).unwrap_or(FrameFreedom::None),
             mass,
             reach: REACH * size,
         }
@@ -45,9 +45,9 @@ impl Site {
     fn joint_axis(&self) -> Option<Vector> {
         let place = self.place.as_ref()?;
         match self.freedom {
-            Freedom::Turn { k, .. } => Some(column(&place.rotation, k)),
-            Freedom::Slide { along } => Some(matrix_times_vector(&place.rotation, along)),
-            Freedom::None => None,
+            FrameFreedom::Turn { k, .. } => Some(column(&place.rotation, k)),
+            FrameFreedom::Slide { along } => Some(matrix_times_vector(&place.rotation, along)),
+            FrameFreedom::None => None,
         }
     }
 }
@@ -66,21 +66,23 @@ const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Returns candidate frames of link `k`, relative to its present frame, which comes first. `chosen` holds the
 /// candidates of later links.
-pub fn candidate_frames(sites: &[Site], k: usize, chosen: &[Vec<Frame>]) -> Vec<Frame> {
+pub fn candidate_frames(sites: &[Site], k: usize, chosen: &[Vec<NumericFrame>]) -> Vec<NumericFrame> {
     match sites[k].freedom {
-        Freedom::None => vec![Frame::IDENTITY],
-        Freedom::Turn { k: a, .. } => {
+        FrameFreedom::None => vec![NumericFrame::IDENTITY],
+        FrameFreedom::Turn { k: a, .. } => {
             let list = choices_of_revolute(sites, k, a, chosen);
             let mut places = Vec::new();
             for angle in &list.angles {
                 let rotation = axis_rotation(a, *angle);
                 places.extend(
-                    list.shifts.iter().map(|s| Frame { rotation, translation: unit_axis(a).map(|c| c * s) }),
+                    list.shifts
+                        .iter()
+                        .map(|s| NumericFrame { rotation, translation: unit_axis(a).map(|c| c * s) }),
                 );
             }
             places
         }
-        Freedom::Slide { along } => candidates_of_sliding_link(sites, k, along),
+        FrameFreedom::Slide { along } => candidates_of_sliding_link(sites, k, along),
     }
 }
 
@@ -128,7 +130,7 @@ fn push_distinct(list: &mut Vec<f64>, x: f64, scale: f64) {
     }
 }
 
-fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices {
+fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<NumericFrame>]) -> Choices {
     let mut list = Choices { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
     for c in child_sites(sites, k) {
         if let Some(place) = &sites[c].place {
@@ -160,7 +162,7 @@ fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]
 }
 
 /// Adds the shift to the common normal with a child's axis, and the angle that points along it.
-fn align_with_child(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
+fn align_with_child(list: &mut Choices, child: &Site, place: &NumericFrame, chosen: &[NumericFrame]) {
     let (a, p) = (list.a, place.translation);
     let scale = norm(p);
     let direction = child.joint_axis();
@@ -192,7 +194,7 @@ fn align_with_child(list: &mut Choices, child: &Site, place: &Frame, chosen: &[F
 
 /// Returns candidate frames of a sliding link: oriented like itself, its parent or a child, and at their
 /// positions.
-fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
+fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<NumericFrame> {
     let mut rotations = vec![IDENTITY];
     let mut points = vec![[0.0; 3]];
     if let Some(place) = &sites[k].place {
@@ -211,6 +213,7 @@ fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<Fr
     });
     rotations.truncate(MAX_CANDIDATES);
     points.truncate(MAX_CANDIDATES);
-    let all = rotations.iter().flat_map(|r| points.iter().map(|p| Frame { rotation: *r, translation: *p }));
+    let all =
+        rotations.iter().flat_map(|r| points.iter().map(|p| NumericFrame { rotation: *r, translation: *p }));
     all.collect()
 }

@@ -2,10 +2,10 @@
 //! dynamics together, for a link in the middle of an arm.
 
 use super::candidates::Site;
-use super::motions::Freedom;
+use super::motions::FrameFreedom;
 use super::number::{
-    Frame, Matrix, Vector, clean_rotation, column, cross, dot, matrix_times_vector, multiply_transposed,
-    norm, round_noise_to_zero, unit_axis,
+    Matrix, NumericFrame, Vector, clean_rotation, column, cross, dot, matrix_times_vector,
+    multiply_transposed, norm, round_noise_to_zero, unit_axis,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -24,12 +24,16 @@ const GROUND: f64 = 0.02;
 
 /// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost,
 /// placement, and the angle to be added to the joint. Returns `None` if the placement is not numeric.
-pub fn cheapest_joint_placement(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, f64)> {
+pub fn cheapest_joint_placement(
+    site: &Site,
+    parent: &NumericFrame,
+    frame: &NumericFrame,
+) -> Option<(f64, NumericFrame, f64)> {
     let plain = site.place.as_ref()?.transform_between(parent, frame);
     let mut best = (placement_cost(site, &plain, frame), plain, 0.0);
-    if let Freedom::Turn { k, offset: true } = site.freedom {
+    if let FrameFreedom::Turn { k, offset: true } = site.freedom {
         for (rotation, angle) in sparse_alignments(&plain.rotation, k) {
-            let place = Frame { rotation, ..plain };
+            let place = NumericFrame { rotation, ..plain };
             let angle = round_noise_to_zero(angle, 1.0);
             let cost = placement_cost(site, &place, frame) + if angle == 0.0 { 0.0 } else { OFFSET };
             if cost < best.0 - 1e-9 {
@@ -40,9 +44,9 @@ pub fn cheapest_joint_placement(site: &Site, parent: &Frame, frame: &Frame) -> O
     Some(best)
 }
 
-fn placement_cost(site: &Site, place: &Frame, frame: &Frame) -> f64 {
+fn placement_cost(site: &Site, place: &NumericFrame, frame: &NumericFrame) -> f64 {
     let mut lengths = place.translation;
-    if let Freedom::Slide { along } = site.freedom {
+    if let FrameFreedom::Slide { along } = site.freedom {
         // The displacement has all components of the sliding axis.
         let turned = multiply_transposed(&frame.rotation, along);
         let way = matrix_times_vector(&place.rotation, turned);
@@ -97,11 +101,11 @@ fn sparse_alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
 }
 
 /// Returns the cost of the mass properties resolved in a frame.
-pub fn mass_cost(site: &Site, frame: &Frame) -> f64 {
+pub fn mass_cost(site: &Site, frame: &NumericFrame) -> f64 {
     let Some(mass) = &site.mass else { return 0.0 };
     let seen = mass.mass_in_frame(frame);
     let along = match site.freedom {
-        Freedom::Turn { k, .. } => k,
+        FrameFreedom::Turn { k, .. } => k,
         _ => 3,
     };
     let moments = (0..3).filter(|k| *k != along && seen.moment[*k] != 0.0).count() as f64;

@@ -8,17 +8,17 @@
 
 use super::candidates::{Site, candidate_frames};
 use super::cost;
-use super::motions::{Freedom, motion_in_frame};
-use super::number::{Frame, Mass, norm};
+use super::motions::{FrameFreedom, motion_in_frame};
+use super::number::{Mass, NumericFrame, norm};
 use crate::mechanism::{Direction, Inertia, Input, Link, Model, Pose};
 
 /// New frame that was chosen for one link.
 #[derive(Clone, Copy)]
 struct ChosenFrame {
     /// New frame of the link relative to the old one.
-    frame: Frame,
+    frame: NumericFrame,
     /// The joint's frame relative to the parent's new frame.
-    placement: Frame,
+    placement: NumericFrame,
     /// Offset of the joint coordinate that a rotation of the frame about its axis adds.
     offset: f64,
 }
@@ -29,7 +29,7 @@ pub fn choose_link_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters:
     let Some(frames) = choose_frames(&sites) else { return };
     let steps: Vec<Option<ChosenFrame>> = (0..sites.len())
         .map(|k| {
-            let parent = sites[k].parent.map_or(Frame::IDENTITY, |p| frames[p]);
+            let parent = sites[k].parent.map_or(NumericFrame::IDENTITY, |p| frames[p]);
             let (_, placement, offset) = cost::cheapest_joint_placement(&sites[k], &parent, &frames[k])?;
             Some(ChosenFrame { frame: frames[k], placement, offset })
         })
@@ -40,8 +40,8 @@ pub fn choose_link_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters:
 /// Returns the size of every link: the maximum of the distances of its joint from the parent's origin plus
 /// its radius of gyration, and of its children's joints, as far as these are numeric.
 pub fn link_sizes(model: &Model<'_>) -> Vec<f64> {
-    let places: Vec<Option<Frame>> =
-        model.links.iter().map(|link| Frame::from_pose(&link.placement)).collect();
+    let places: Vec<Option<NumericFrame>> =
+        model.links.iter().map(|link| NumericFrame::from_pose(&link.placement)).collect();
     let distance_to_link = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
     let size_of_link = |(k, link): (usize, &Link<'_>)| {
         let children =
@@ -59,7 +59,7 @@ fn sites_of_links(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Ve
     for k in 0..sites.len() {
         // A placement that is not numeric fixes the frames on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {
-            sites[p].freedom = Freedom::None;
+            sites[p].freedom = FrameFreedom::None;
         }
     }
     sites
@@ -67,11 +67,11 @@ fn sites_of_links(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Ve
 
 /// Returns the cheapest frame of every link relative to its present frame, or `None` if no frame can be
 /// chosen.
-fn choose_frames(sites: &[Site]) -> Option<Vec<Frame>> {
-    if sites.iter().all(|site| matches!(site.freedom, Freedom::None)) {
+fn choose_frames(sites: &[Site]) -> Option<Vec<NumericFrame>> {
+    if sites.iter().all(|site| matches!(site.freedom, FrameFreedom::None)) {
         return None;
     }
-    let mut choices: Vec<Vec<Frame>> = vec![Vec::new(); sites.len()];
+    let mut choices: Vec<Vec<NumericFrame>> = vec![Vec::new(); sites.len()];
     let mut costs: Vec<Vec<f64>> = vec![Vec::new(); sites.len()];
     for k in (0..sites.len()).rev() {
         choices[k] = candidate_frames(sites, k, &choices);
@@ -82,9 +82,9 @@ fn choose_frames(sites: &[Site]) -> Option<Vec<Frame>> {
             }
         }
     }
-    let mut frames: Vec<Frame> = Vec::with_capacity(sites.len());
+    let mut frames: Vec<NumericFrame> = Vec::with_capacity(sites.len());
     for k in 0..sites.len() {
-        let parent = sites[k].parent.map_or(Frame::IDENTITY, |p| frames[p]);
+        let parent = sites[k].parent.map_or(NumericFrame::IDENTITY, |p| frames[p]);
         frames.push(choices[k][best_candidate(&sites[k], &parent, &choices[k], &costs[k]).0]);
     }
     Some(frames)
@@ -92,7 +92,12 @@ fn choose_frames(sites: &[Site]) -> Option<Vec<Frame>> {
 
 /// Returns the index of the best candidate of a link for a parent's frame, and its cost including all
 /// descendants.
-fn best_candidate(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64]) -> (usize, f64) {
+fn best_candidate(
+    site: &Site,
+    parent: &NumericFrame,
+    choices: &[NumericFrame],
+    costs: &[f64],
+) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     for (c, frame) in choices.iter().enumerate() {
         let own = cost::cheapest_joint_placement(site, parent, frame).map_or(0.0, |(cost, ..)| cost);
@@ -109,7 +114,7 @@ fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option
     for (link, (site, step)) in model.links.iter_mut().zip(sites.iter().zip(steps)) {
         let Some(step) = step else { continue };
         link.placement = step.placement.frame_to_pose(g);
-        if matches!(site.freedom, Freedom::None) {
+        if matches!(site.freedom, FrameFreedom::None) {
             continue;
         }
         link.inertia = match &site.mass {

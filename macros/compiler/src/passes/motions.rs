@@ -7,7 +7,7 @@ use crate::mechanism::{Coordinate, Inertia, Link, Motion, Pose};
 
 /// Freedom with which a link's frame can be chosen without a change of the motion.
 #[derive(Clone, Copy, Debug)]
-pub enum Freedom {
+pub enum FrameFreedom {
     /// The frame of the link cannot be changed.
     None,
     /// The frame may be shifted along, and rotated about, coordinate axis `k`.
@@ -25,11 +25,11 @@ pub enum Freedom {
 }
 
 /// Returns the freedom to choose the frame of a link with this motion, or `None` if it is fixed.
-pub fn frame_freedom(motion: &Motion<'_>) -> Option<Freedom> {
+pub fn frame_freedom(motion: &Motion<'_>) -> Option<FrameFreedom> {
     match motion {
-        Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: true }),
-        Motion::Helix { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: false }),
-        Motion::Slide { axis, .. } => axis.constant_components().map(|along| Freedom::Slide { along }),
+        Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: true }),
+        Motion::Helix { axis, .. } => coordinate_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: false }),
+        Motion::Slide { axis, .. } => axis.constant_components().map(|along| FrameFreedom::Slide { along }),
         Motion::Ball { .. } | Motion::Free { .. } | Motion::Placed => None,
     }
 }

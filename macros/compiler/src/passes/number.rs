@@ -91,26 +91,26 @@ pub fn clean_rotation(m: &Matrix) -> Matrix {
 
 /// Frame with numeric pose relative to another frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct NumericFrame {
     /// Rotation matrix whose columns are the axes of the frame.
     pub rotation: Matrix,
     /// Position of the frame's origin, m.
     pub translation: Vector,
 }
 
-impl Frame {
+impl NumericFrame {
     /// Frame that coincides with its reference frame.
-    pub const IDENTITY: Frame = Frame { rotation: IDENTITY, translation: [0.0; 3] };
+    pub const IDENTITY: NumericFrame = NumericFrame { rotation: IDENTITY, translation: [0.0; 3] };
 
     /// Returns a numeric pose whose rotation is orthogonal up to rounding, or `None`.
-    pub fn from_pose(pose: &Pose<'_>) -> Option<Frame> {
+    pub fn from_pose(pose: &Pose<'_>) -> Option<NumericFrame> {
         let rotation = clean_rotation(&pose.rotation.rotation_matrix().constant_entries()?);
         let square = matrix_product(&transpose(&rotation), &rotation);
         let orthogonality_error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
         if (0..9).any(|k| orthogonality_error(k / 3, k % 3) > 4.0 * ROUNDING) {
             return None;
         }
-        Some(Frame { rotation, translation: clean_vector(pose.translation.constant_components()?) })
+        Some(NumericFrame { rotation, translation: clean_vector(pose.translation.constant_components()?) })
     }
 
     /// Converts the numeric frame to a pose of expressions.
@@ -120,7 +120,7 @@ impl Frame {
     }
 
     /// Returns the frame transformation `other⁻¹ self next`.
-    pub fn transform_between(&self, other: &Frame, next: &Frame) -> Frame {
+    pub fn transform_between(&self, other: &NumericFrame, next: &NumericFrame) -> NumericFrame {
         let rotation =
             matrix_product(&transpose(&other.rotation), &matrix_product(&self.rotation, &next.rotation));
         let ahead = matrix_times_vector(&self.rotation, next.translation);
@@ -129,7 +129,7 @@ impl Frame {
             round_noise_to_zero(self.translation[k] + ahead[k] - other.translation[k], scale)
         });
         let translation = multiply_transposed(&other.rotation, from).map(|c| round_noise_to_zero(c, scale));
-        Frame { rotation: clean_rotation(&rotation), translation }
+        NumericFrame { rotation: clean_rotation(&rotation), translation }
     }
 }
 
@@ -177,7 +177,7 @@ impl Mass {
 
     /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first
     /// moment `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
-    pub fn mass_in_frame(&self, place: &Frame) -> Mass {
+    pub fn mass_in_frame(&self, place: &NumericFrame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);
         let tensor: Matrix = std::array::from_fn(|i| {

@@ -8,7 +8,7 @@
 //! inertia, for a screw equal moments about `x` and `y`, for a ball joint a mass at its centre.
 
 use super::motions::{Gauge, coordinate_axis, movable_inertia};
-use super::number::{Frame, Mass};
+use super::number::{Mass, NumericFrame};
 
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
@@ -68,7 +68,7 @@ fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
         let child = &model.links[c];
         let turns = matches!(child.motion, Motion::Turn { .. } | Motion::Ball { .. });
         let (Some(place), Some(mut other)) =
-            (Frame::from_pose(&child.placement), Mass::from_inertia(&child.inertia))
+            (NumericFrame::from_pose(&child.placement), Mass::from_inertia(&child.inertia))
         else {
             continue;
         };

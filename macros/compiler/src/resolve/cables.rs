@@ -1,6 +1,6 @@
 //! Lengths of cables that wrap around spheres and cylinders.
 
-use super::call::{Call, flatten_slashes};
+use super::call::Call;
 use super::scope::{Allowed, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};
@@ -23,7 +23,7 @@ impl<'g> Scope<'_, 'g> {
     /// and a helix, which is straight on the unrolled cylinder; otherwise the cable is straight.
     pub fn resolve_cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [points, surface] = call.take_arguments(cx)?;
-        let Ok(ends) = <[_; 2]>::try_from(flatten_slashes(points)) else { return call.reject_arguments(cx) };
+        let ends = call.take_operands::<2>(points, cx)?;
         if !self.check_allowed(Allowed::Placement, "`cable(…)`", call.place, cx) {
             return None;
         }

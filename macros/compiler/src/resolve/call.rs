@@ -34,6 +34,15 @@ impl<'a> Call<'a> {
         self.arguments.try_into().ok().or_else(|| self.reject_arguments(cx))
     }
 
+    /// Returns the operands between the slashes of an argument, or reports a wrong number of them.
+    pub fn take_operands<const N: usize>(
+        &self,
+        argument: &'a syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<[&'a syntax::Expr; N]> {
+        flatten_slashes(argument).try_into().ok().or_else(|| self.reject_arguments(cx))
+    }
+
     /// Returns the operands between the slashes of the only argument, `y / x / A`; empty if there are several
     /// arguments.
     pub fn slash_operands(&self) -> Vec<&'a syntax::Expr> {

@@ -1,7 +1,7 @@
 //! Characteristic points of a motion: instantaneous centres, the screw axis, the centre of percussion. Each
 //! is a vector from the origin of the body or a point of it.
 
-use super::call::{Call, flatten_slashes};
+use super::call::Call;
 use super::quantities::vector_value;
 use super::scope::{Allowed, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::Diagnostics;
@@ -137,9 +137,7 @@ impl<'g> Scope<'_, 'g> {
     /// `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
     pub fn center_of_percussion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [operands, axis] = call.take_arguments(cx)?;
-        let Ok([body, about]) = <[_; 2]>::try_from(flatten_slashes(operands)) else {
-            return call.reject_arguments(cx);
-        };
+        let [body, about] = call.take_operands(operands, cx)?;
         if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", call.place, cx) {
             return None;
         }

@@ -1,7 +1,7 @@
 //! Physical matrices, which map vectors to vectors: projectors, rotations, cross products and inertias, with
 //! their products, transposes and rates.
 
-use super::call::{Call, flatten_slashes};
+use super::call::Call;
 use super::quantities::{in_links, vector_value};
 use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Axes, Kinematics, Placed, Scope, Terms, Value};
@@ -134,9 +134,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `rotation(B / A)`: `Σ bₖ aₖᵀ`, which rotates the axes of A into those of B.
     pub fn physical_rotation(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [operands] = self.take_matrix(call, cx)?;
-        let Ok([b, a]) = <[_; 2]>::try_from(flatten_slashes(operands)) else {
-            return call.reject_arguments(cx);
-        };
+        let [b, a] = call.take_operands(operands, cx)?;
         if !self.check_allowed(Allowed::Placement, "`rotation(…)`", call.place, cx) {
             return None;
         }
@@ -166,9 +164,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `inertia(body / point)`: the physical inertia matrix of bodies about a point.
     pub fn inertia_matrix(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [operands] = self.take_matrix(call, cx)?;
-        let Ok([bodies_written, about]) = <[_; 2]>::try_from(flatten_slashes(operands)) else {
-            return call.reject_arguments(cx);
-        };
+        let [bodies_written, about] = call.take_operands(operands, cx)?;
         if !self.check_allowed(Allowed::Placement, "`inertia(…)`", call.place, cx) {
             return None;
         }

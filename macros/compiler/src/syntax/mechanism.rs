@@ -200,3 +200,26 @@ pub struct FileOptions {
     /// Whether the visual geometry of a robot file is drawn.
     pub visuals: bool,
 }
+
+impl FileOptions {
+    /// Returns the options that hold for a file if none are written.
+    pub fn with_defaults(format: FileFormat, path: Name) -> FileOptions {
+        FileOptions {
+            format,
+            path,
+            base: Base::Fixed,
+            honour_passive: true,
+            follow_mimic: true,
+            limits: LimitOption::Honour,
+            inertias: Inertias::Check,
+            inputs: InputOption::None,
+            lock: Vec::new(),
+            snap: None,
+            parameters: Vec::new(),
+            contacts: false,
+            loops: LoopOption::Refuse,
+            collisions: false,
+            visuals: false,
+        }
+    }
+}

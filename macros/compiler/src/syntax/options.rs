@@ -108,8 +108,6 @@ pub fn read_options(
     arguments.report_remaining_arguments("`#[mechanism]`", &OPTIONS, cx);
     let (format, path) = file?;
     Some(FileOptions {
-        format,
-        path,
         base: if base { Base::Free } else { Base::Fixed },
         honour_passive: !ignore_passive,
         follow_mimic: !independent,
@@ -121,8 +119,7 @@ pub fn read_options(
         parameters,
         contacts,
         loops,
-        collisions: false,
-        visuals: false,
+        ..FileOptions::with_defaults(format, path)
     })
 }
 

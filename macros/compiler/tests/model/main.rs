@@ -8,7 +8,7 @@ use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::mechanism::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity};
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{Base, FileFormat, FileOptions, Inertias, InputOption, LoopOption, Name};
+use linkwork_compiler::syntax::{FileFormat, FileOptions, Name};
 use linkwork_compiler::{import, read_source};
 use std::path::Path;
 
@@ -37,23 +37,8 @@ fn facts_text(fields: &str, urdf: Option<&str>) -> String {
     };
     if let Some(text) = urdf {
         let place = source.mechanism.description.name.place.clone();
-        let options = FileOptions {
-            format: FileFormat::Urdf,
-            path: Name { text: "r.urdf".to_string(), place },
-            base: Base::Fixed,
-            honour_passive: true,
-            follow_mimic: true,
-            limits: linkwork_compiler::syntax::LimitOption::Honour,
-            inertias: Inertias::Check,
-            inputs: InputOption::None,
-            lock: Vec::new(),
-            snap: None,
-            parameters: Vec::new(),
-            contacts: false,
-            loops: LoopOption::Refuse,
-            collisions: false,
-            visuals: false,
-        };
+        let path = Name { text: "r.urdf".to_string(), place };
+        let options = FileOptions::with_defaults(FileFormat::Urdf, path);
         if let Some(imported) = import::import_file(text, Path::new(""), &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;
             source.mechanism.description.joints = imported.joints;

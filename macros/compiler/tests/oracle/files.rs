@@ -11,9 +11,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{
-    self, Base, FileFormat, FileOptions, Inertias, InputOption, LoopOption, Name,
-};
+use linkwork_compiler::syntax::{self, Base, FileFormat, FileOptions, InputOption, Name};
 use linkwork_compiler::{derive, import, read_source};
 use std::path::Path;
 
@@ -27,21 +25,10 @@ fn functions_of_file(robot: &Robot, format: FileFormat, text: &str) -> (Vec<Stri
     let place = source.mechanism.description.name.place.clone();
     let name_at_place = |text: &str| Name { text: text.to_string(), place: place.clone() };
     let options = FileOptions {
-        format,
-        path: name_at_place("file"),
         base: if robot.free { Base::Free } else { Base::Fixed },
-        honour_passive: true,
-        follow_mimic: true,
-        limits: linkwork_compiler::syntax::LimitOption::Honour,
-        inertias: Inertias::Check,
         inputs: InputOption::Joints,
         lock: robot.locked_joints().map(name_at_place).collect(),
-        snap: None,
-        parameters: Vec::new(),
-        contacts: false,
-        loops: LoopOption::Refuse,
-        collisions: false,
-        visuals: false,
+        ..FileOptions::with_defaults(format, name_at_place("file"))
     };
     let imported = import::import_file(text, Path::new(""), &options, &mut cx);
     let imported = imported.unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));

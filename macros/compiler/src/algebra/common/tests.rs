@@ -3,16 +3,16 @@
 use super::*;
 use crate::algebra::factor::items_of_polynomial;
 use crate::algebra::polynomial::tests::Random;
-use crate::algebra::polynomial::{Atom, Polynomial, Rank, Ring, Term};
+use crate::algebra::polynomial::{Atom, AtomRank, Polynomial, Ring, Term};
 use crate::expr::node::Symbol;
 
 /// Returns a ring with four parameters, two positions, two rates and an acceleration.
 fn test_ring() -> Ring {
     let mut ring = Ring::new(|s| match s.0 {
-        0..4 => Rank::Parameter,
-        4..6 => Rank::Position,
-        6..8 => Rank::Rate,
-        _ => Rank::Acceleration,
+        0..4 => AtomRank::Parameter,
+        4..6 => AtomRank::Position,
+        6..8 => AtomRank::Rate,
+        _ => AtomRank::Acceleration,
     });
     (0..9).for_each(|k| _ = ring.monomial_of_atom(Atom::Symbol(Symbol(k))).unwrap());
     ring

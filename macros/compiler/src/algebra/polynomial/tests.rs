@@ -7,8 +7,8 @@ use crate::expr::eval::eval_one;
 use crate::expr::{Expr, Graph};
 
 /// Returns the rank of a symbol: the first three are parameters, all others positions.
-pub fn rank_of_symbol(symbol: Symbol) -> Rank {
-    if symbol.0 < 3 { Rank::Parameter } else { Rank::Position }
+pub fn rank_of_symbol(symbol: Symbol) -> AtomRank {
+    if symbol.0 < 3 { AtomRank::Parameter } else { AtomRank::Position }
 }
 
 fn value_of_symbol(symbol: Symbol) -> f64 {

@@ -3,7 +3,7 @@
 use super::simplify_trigonometry;
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::tests::rank_of_symbol;
-use crate::equations::print::Writer;
+use crate::equations::print::PolynomialWriter;
 use crate::expr::{Expr, Graph, Symbol};
 
 /// Returns the shortest form as text, with angles `a`, `b`, `c` and a parameter `m`.
@@ -16,7 +16,7 @@ fn shortest_form_text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 3], Expr<'g>)
     }
     let p = normal.normal_form(build(&graph, angles, graph.symbol(Symbol(0)))).unwrap();
     let p = simplify_trigonometry(&mut normal.ring, &p).unwrap();
-    Writer::new(&normal.ring, &|s| ["m", "k", "l", "a", "b", "c"][s.0 as usize].to_string())
+    PolynomialWriter::new(&normal.ring, &|s| ["m", "k", "l", "a", "b", "c"][s.0 as usize].to_string())
         .format_polynomial(&p)
 }
 

@@ -7,7 +7,7 @@ use crate::kinematics::Joint;
 use crate::lower::Program;
 use crate::mechanics::derivatives::Factor;
 use crate::mechanics::passive::passive_forces;
-use crate::mechanics::speeds::{InSpeeds, Role};
+use crate::mechanics::speeds::{InSpeeds, ResultKind};
 use crate::mechanics::{self, aba, added_mass, constraints, crba, friction, ldl, massless, rnea};
 use crate::mechanism::Model;
 use crate::passes::{Passes, Variant};
@@ -92,14 +92,14 @@ impl<'g> Variants<'g> {
     /// Returns the outputs of a function for each variant of the model.
     pub fn candidate_outputs(
         &self,
-        role: Role,
+        role: ResultKind,
         outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
     ) -> impl Iterator<Item = Candidate<'g>> {
         self.variants_for_all_functions().map(outputs).map(move |list| self.candidate_in_speeds(role, list))
     }
 
     /// Returns outputs as a candidate, transformed to generalized speeds if there are any.
-    fn candidate_in_speeds(&self, role: Role, list: Vec<Expr<'g>>) -> Candidate<'g> {
+    fn candidate_in_speeds(&self, role: ResultKind, list: Vec<Expr<'g>>) -> Candidate<'g> {
         match &self.speeds {
             None => self.specialisation.candidate_with_size(list),
             Some(speeds) => self.specialisation.candidate_with_size(speeds.transform_results(role, &list)),
@@ -107,19 +107,27 @@ impl<'g> Variants<'g> {
     }
 
     /// Returns the program of the variant in which the function takes the fewest operations.
-    pub fn cheapest_program(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+    pub fn cheapest_program(
+        &self,
+        role: ResultKind,
+        outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
+    ) -> Program {
         self.specialisation.cheapest_program(self.candidate_outputs(role, outputs))
     }
 
     /// Returns the program of the variant with the smallest outputs. This is faster than
     /// [`cheapest_program`](Self::cheapest_program), since only one program is lowered.
-    pub fn smallest_program(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+    pub fn smallest_program(
+        &self,
+        role: ResultKind,
+        outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
+    ) -> Program {
         let smallest = self.candidate_outputs(role, outputs).min_by_key(|list| list.size);
         smallest.map_or_else(Program::default, |list| self.specialisation.lower_to_program(&list.outputs))
     }
 
     pub fn mass_matrices(&self) -> impl Iterator<Item = Candidate<'g>> {
-        self.candidate_outputs(Role::Metric, |model| crba::mass_matrix(model, &self.joints).concat())
+        self.candidate_outputs(ResultKind::Metric, |model| crba::mass_matrix(model, &self.joints).concat())
     }
 
     /// Returns inverse dynamics, or the bias if `accelerations` is false.
@@ -140,7 +148,7 @@ impl<'g> Variants<'g> {
             };
             // At zero rates of the speeds, joint accelerations may be different from zero.
             let all = rnea::inverse_dynamics(&variant.model, &self.joints, &v, Some(&a));
-            let all = speeds.transform_results(Role::Forces, &all);
+            let all = speeds.transform_results(ResultKind::Forces, &all);
             self.specialisation.candidate_with_size(if accelerations {
                 all
             } else {
@@ -163,7 +171,7 @@ impl<'g> Variants<'g> {
         let tau = mechanics::generalized_force_symbols(bias);
         let all = self.variants_for_all_functions().filter_map(|model| {
             let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
-            Some(self.candidate_in_speeds(Role::Accelerations(0), list))
+            Some(self.candidate_in_speeds(ResultKind::Accelerations(0), list))
         });
         all.collect()
     }
@@ -186,7 +194,7 @@ impl<'g> Variants<'g> {
                     .solve_factored(r.clone()),
             }
         };
-        self.candidate_outputs(Role::Accelerations(0), solve_for_accelerations).collect()
+        self.candidate_outputs(ResultKind::Accelerations(0), solve_for_accelerations).collect()
     }
 
     /// Returns the forces that accelerate the mechanism, `τ − h`.
@@ -210,13 +218,13 @@ impl<'g> Variants<'g> {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, biases) = (self.unbalanced_forces(), constraints::constraint_biases(&variant.model));
         if !friction::sliding_contact_constraints(&variant.model).is_empty() {
-            return self.slipping_contacts_program(Role::Accelerations(0), &force, &biases);
+            return self.slipping_contacts_program(ResultKind::Accelerations(0), &force, &biases);
         }
         let Some(pivots) = &variant.model.dependent else {
             let answers = responding_multiplier_count(&variant.model);
-            return self.multipliers_program(Role::Accelerations(answers), &force, &biases);
+            return self.multipliers_program(ResultKind::Accelerations(answers), &force, &biases);
         };
-        self.cheapest_program(Role::Accelerations(0), |model| {
+        self.cheapest_program(ResultKind::Accelerations(0), |model| {
             let mass = crba::mass_matrix(model, &self.joints);
             constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots)
         })
@@ -226,17 +234,21 @@ impl<'g> Variants<'g> {
     pub fn constraint_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::argument_symbols(&variant.model);
-        self.multipliers_program(Role::Answers(responding_multiplier_count(&variant.model)), &force, &bias)
+        self.multipliers_program(
+            ResultKind::Answers(responding_multiplier_count(&variant.model)),
+            &force,
+            &bias,
+        )
     }
 
     /// Returns the response of sliding contacts with friction to forces and biases that are arguments.
     pub fn slipping_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::argument_symbols(&variant.model);
-        self.slipping_contacts_program(Role::Answers(0), &force, &bias)
+        self.slipping_contacts_program(ResultKind::Answers(0), &force, &bias)
     }
 
-    fn multipliers_program(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+    fn multipliers_program(&self, role: ResultKind, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
         self.cheapest_program(role, |model| {
             let rows = constraints::jacobian(model);
             if model.is_overdetermined() {
@@ -248,7 +260,7 @@ impl<'g> Variants<'g> {
         })
     }
 
-    fn slipping_contacts_program(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+    fn slipping_contacts_program(&self, role: ResultKind, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
         self.cheapest_program(role, |model| {
             let (mass, force) = self.mass_and_forces_with_massless_terms(model, force, bias);
             friction::solve_with_friction(model, &mass, force, bias.to_vec())

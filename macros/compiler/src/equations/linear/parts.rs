@@ -1,6 +1,6 @@
 //! Construction of the symbols, rows and coefficients of linear equations.
 
-use crate::algebra::polynomial::Rank;
+use crate::algebra::polynomial::AtomRank;
 use crate::expr::{Expr, Symbol};
 use crate::mechanics::crba::Matrix;
 use crate::mechanism::{Equilibrium, Model, Quantity};
@@ -41,12 +41,12 @@ pub fn linear_equation_rows<'g>(
 }
 
 /// Returns the rank of a symbol of the linear equations, which determines its position in a printed product.
-pub fn rank_of_symbol(symbol: Symbol) -> Rank {
+pub fn rank_of_symbol(symbol: Symbol) -> AtomRank {
     match Quantity::from_symbol(symbol) {
-        Quantity::Deviation(_) => Rank::Position,
-        Quantity::Velocity(_) | Quantity::Laplace => Rank::Rate,
-        Quantity::Acceleration(_) => Rank::Acceleration,
-        Quantity::Input(_) | Quantity::Force(_) => Rank::Input,
-        _ => Rank::Parameter,
+        Quantity::Deviation(_) => AtomRank::Position,
+        Quantity::Velocity(_) | Quantity::Laplace => AtomRank::Rate,
+        Quantity::Acceleration(_) => AtomRank::Acceleration,
+        Quantity::Input(_) | Quantity::Force(_) => AtomRank::Input,
+        _ => AtomRank::Parameter,
     }
 }

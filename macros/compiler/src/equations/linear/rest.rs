@@ -8,7 +8,7 @@ use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::diag::Diagnostics;
-use crate::equations::print::Writer;
+use crate::equations::print::PolynomialWriter;
 use crate::expr::diff::TINY;
 use crate::expr::eval::{Tape, nodes_in_order};
 use crate::expr::exact::replace_exactly;
@@ -220,7 +220,7 @@ fn check_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Re
         return Ok(());
     }
     let symbol_name = |symbol| super::super::written::name_and_derivative_order(model, &[], symbol).0;
-    let text = Writer::new(&normal.ring, &symbol_name).format_polynomial(&p);
+    let text = PolynomialWriter::new(&normal.ring, &symbol_name).format_polynomial(&p);
     Err(match text.chars().count() > MAX_FORCE_CHARACTERS {
         true => format!("`{} …`", text.chars().take(MAX_FORCE_CHARACTERS).collect::<String>().trim_end()),
         false => format!("`{text}`"),

@@ -11,7 +11,7 @@ use crate::diag::all_of;
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::name_with_primes;
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
 
@@ -110,26 +110,26 @@ struct LinearLines {
 
 impl LinearLines {
     fn new<S: Style + Copy>(linear: &Linear, style: S) -> LinearLines {
-        let writer = Writer::with_style(&linear.ring, style);
+        let writer = PolynomialWriter::with_style(&linear.ring, style);
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
         let stability = linear.stability.as_ref();
         let format_stability = |stability: &Stability| {
             Some(
-                Writer::with_style(&stability.ring, style)
+                PolynomialWriter::with_style(&stability.ring, style)
                     .format_linear_form(&merged_characteristic(stability)?),
             )
         };
         let format_conditions = |stability: &Stability| match &stability.verdict {
             Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
-                let writer = Writer::with_style(&stability.ring, style);
+                let writer = PolynomialWriter::with_style(&stability.ring, style);
                 all.iter().map(|condition| writer.format_polynomial(condition)).collect()
             }
             _ => Vec::new(),
         };
         let frequency = stability.and_then(|stability| {
             let frequency = stability.frequency.as_ref()?;
-            Some(Writer::with_style(&stability.ring, style).format_polynomial(frequency))
+            Some(PolynomialWriter::with_style(&stability.ring, style).format_polynomial(frequency))
         });
         LinearLines {
             equations: sides

@@ -1,14 +1,14 @@
 //! Printing of equations for the math mode of LaTeX with `amsmath`.
 
-use super::names::{Glyph, Name};
-use super::style::{Argument, Factor, Number, Style};
+use super::names::{Glyph, SymbolName};
+use super::style::{Argument, Number, PrintedFactor, Style};
 use crate::expr::node::Symbol;
 
 /// LaTeX style, with names and dots for symbols: `\tfrac{1}{3}\,m\,l^{2}\,\cos\theta`.
 #[derive(Clone, Copy)]
 pub struct Latex<'a> {
     /// Returns the name of a symbol and its number of dots.
-    pub name: &'a dyn Fn(Symbol) -> (Name, u8),
+    pub name: &'a dyn Fn(Symbol) -> (SymbolName, u8),
 }
 
 /// LaTeX space that is printed between factors.
@@ -79,7 +79,12 @@ impl Style for Latex<'_> {
         format!("{head}{power}{gap}{arguments}")
     }
 
-    fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
+    fn product(
+        &self,
+        number: Option<Number>,
+        factors: &[PrintedFactor],
+        divisors: &[PrintedFactor],
+    ) -> String {
         if divisors.is_empty() {
             let number = number.map(|n| self.number(&n));
             return number
@@ -100,19 +105,19 @@ impl Style for Latex<'_> {
 }
 
 /// Formats the numerator or denominator of a fraction.
-fn fraction_side(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
+fn fraction_side(first: impl Iterator<Item = String>, factors: &[PrintedFactor]) -> String {
     let first: Vec<String> = first.collect();
     match (first.as_slice(), factors) {
         ([], []) => "1".to_string(),
-        ([], [Factor::Sum(text)]) => text.clone(),
+        ([], [PrintedFactor::Sum(text)]) => text.clone(),
         _ => first.into_iter().chain(factors.iter().map(format_factor)).collect::<Vec<_>>().join(SPACE),
     }
 }
 
-fn format_factor(factor: &Factor) -> String {
+fn format_factor(factor: &PrintedFactor) -> String {
     match factor {
-        Factor::Single(text) => text.clone(),
-        Factor::Sum(text) => put_in_parentheses(text),
+        PrintedFactor::Single(text) => text.clone(),
+        PrintedFactor::Sum(text) => put_in_parentheses(text),
     }
 }
 
@@ -134,7 +139,7 @@ fn format_exponent(power: u8) -> String {
 }
 
 /// Formats a name with dots above it, one for each time derivative.
-pub fn format_name(name: &Name, dots: u8) -> String {
+pub fn format_name(name: &SymbolName, dots: u8) -> String {
     let base = format_glyph(&name.base);
     let base = match dots {
         0 => base,

@@ -1,15 +1,15 @@
 //! Presentation MathML, which browsers render without scripts. Browsers do not break formulas. Every term of
 //! a sum is therefore a formula of its own, with line breaks between them.
 
-use super::names::{Glyph, Name};
-use super::style::{Argument, Factor, Number, Style};
+use super::names::{Glyph, SymbolName};
+use super::style::{Argument, Number, PrintedFactor, Style};
 use crate::expr::node::Symbol;
 
 /// MathML style, with names and dots for symbols.
 #[derive(Clone, Copy)]
 pub struct MathMl<'a> {
     /// Returns the name of a symbol and its number of dots.
-    pub name: &'a dyn Fn(Symbol) -> (Name, u8),
+    pub name: &'a dyn Fn(Symbol) -> (SymbolName, u8),
 }
 
 /// Marks of possible line breaks before signs: outside of parentheses, in one pair of parentheses, in two
@@ -170,7 +170,12 @@ impl Style for MathMl<'_> {
         format!("{head}<mo>\u{2061}</mo><mrow><mo>(</mo>{}<mo>)</mo></mrow>", arguments.join("<mo>,</mo>"))
     }
 
-    fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
+    fn product(
+        &self,
+        number: Option<Number>,
+        factors: &[PrintedFactor],
+        divisors: &[PrintedFactor],
+    ) -> String {
         let small = matches!(&number, Some(Number::Fraction(_, q) | Number::Root(_, q, _)) if *q != 1)
             || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
         let number = number.map(|n| self.number(&n));
@@ -192,24 +197,24 @@ impl Style for MathMl<'_> {
 }
 
 /// Formats the numerator or denominator of a fraction.
-fn format_fraction_side(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
+fn format_fraction_side(first: impl Iterator<Item = String>, factors: &[PrintedFactor]) -> String {
     let first: Vec<String> = first.collect();
     match (first.as_slice(), factors) {
         ([], []) => "<mn>1</mn>".to_string(),
-        ([], [Factor::Sum(text)]) => text.clone(),
+        ([], [PrintedFactor::Sum(text)]) => text.clone(),
         _ => first.into_iter().chain(factors.iter().map(format_factor)).collect::<Vec<_>>().join(TIMES),
     }
 }
 
-fn format_factor(factor: &Factor) -> String {
+fn format_factor(factor: &PrintedFactor) -> String {
     match factor {
-        Factor::Single(text) => text.clone(),
-        Factor::Sum(text) => put_in_parentheses(text),
+        PrintedFactor::Single(text) => text.clone(),
+        PrintedFactor::Sum(text) => put_in_parentheses(text),
     }
 }
 
 /// Formats a name with dots above it, raised to a power.
-pub fn format_name(name: &Name, dots: u8, power: u8) -> String {
+pub fn format_name(name: &SymbolName, dots: u8, power: u8) -> String {
     let base = format_glyph(&name.base);
     let base = match dots {
         0 => base,
@@ -248,7 +253,7 @@ mod tests {
     #[test]
     fn long_sums_in_mathml_break_between_terms() {
         let term = "<mi>alpha</mi><mi>beta</mi>";
-        let style = MathMl { name: &|_| (Name::parse("x"), 0) };
+        let style = MathMl { name: &|_| (SymbolName::parse("x"), 0) };
         let sum = [term; 8].join(style.sign(false, false));
         let break_into_pieces = |text: &str| split_at_breaks(text, &BREAKS);
         assert_eq!(break_into_pieces(&sum).len(), 8);

@@ -3,7 +3,7 @@
 
 /// Name of a symbol, split into base and subscripts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Name {
+pub struct SymbolName {
     /// Part of the name that is typeset on the line.
     pub base: Glyph,
     /// Subscripts of the name.
@@ -73,19 +73,19 @@ impl Glyph {
     }
 }
 
-impl Name {
+impl SymbolName {
     /// Returns a name that is typeset as one word, without subscripts.
-    pub fn single_word_name(text: &str) -> Name {
-        Name { base: Glyph::Word(text.to_string()), indices: Vec::new() }
+    pub fn single_word_name(text: &str) -> SymbolName {
+        SymbolName { base: Glyph::Word(text.to_string()), indices: Vec::new() }
     }
 
     /// Splits a name into base and subscripts.
-    pub fn parse(text: &str) -> Name {
+    pub fn parse(text: &str) -> SymbolName {
         if let Some((joint, member)) = text.split_once('.') {
-            return Name::name_of_member(joint, member);
+            return SymbolName::name_of_member(joint, member);
         }
         if text.split('_').any(str::is_empty) {
-            return Name::single_word_name(text);
+            return SymbolName::single_word_name(text);
         }
         let (head, tail) = text.split_once('_').map_or((text, None), |(head, tail)| (head, Some(tail)));
         let (stem, digits) = split_trailing_digits(head);
@@ -93,25 +93,28 @@ impl Name {
         let digits_of_index = |digits: &str| (!digits.is_empty()).then(|| Glyph::Digits(digits.to_string()));
         if let Glyph::Letter(_) | Glyph::Greek(..) = base {
             let indices = digits_of_index(digits).into_iter().chain(tail.map(Glyph::from_word)).collect();
-            return Name { base, indices };
+            return SymbolName { base, indices };
         }
         let (stem, digits) = split_trailing_digits(text);
         let stem = stem.trim_end_matches('_');
-        Name { base: Glyph::Word(stem.to_string()), indices: digits_of_index(digits).into_iter().collect() }
+        SymbolName {
+            base: Glyph::Word(stem.to_string()),
+            indices: digits_of_index(digits).into_iter().collect(),
+        }
     }
 
     /// Splits the name of a coordinate of a joint with several coordinates. Angular velocities, velocities
     /// and quaternions have an axis as second subscript.
-    fn name_of_member(joint: &str, member: &str) -> Name {
+    fn name_of_member(joint: &str, member: &str) -> SymbolName {
         let joint = Glyph::from_word(joint);
         let mut letters = member.chars();
         if let (Some(kind @ ('w' | 'v' | 'q' | 'r' | 'd')), Some(axis @ 'w'..='z'), None) =
             (letters.next(), letters.next(), letters.next())
         {
             let base = if kind == 'w' { Glyph::Greek("omega", 'ω') } else { Glyph::Letter(kind) };
-            return Name { base, indices: vec![joint, Glyph::Letter(axis)] };
+            return SymbolName { base, indices: vec![joint, Glyph::Letter(axis)] };
         }
-        Name { base: Glyph::from_word(member), indices: vec![joint] }
+        SymbolName { base: Glyph::from_word(member), indices: vec![joint] }
     }
 }
 
@@ -127,30 +130,30 @@ pub fn name_with_primes((name, dots): (String, u8)) -> String {
 
 /// Typeset names of all symbols. Names that would be indistinguishable after splitting into subscripts are
 /// not split.
-pub struct Names(Vec<(String, Name)>);
+pub struct Names(Vec<(String, SymbolName)>);
 
 impl Names {
     /// Creates the table of typeset names for all names that occur.
     pub fn new<'a>(texts: impl Iterator<Item = &'a str>) -> Names {
-        let mut names: Vec<(String, Name)> = Vec::new();
+        let mut names: Vec<(String, SymbolName)> = Vec::new();
         for text in texts {
             if names.iter().all(|(known, _)| known != text) {
-                names.push((text.to_string(), Name::parse(text)));
+                names.push((text.to_string(), SymbolName::parse(text)));
             }
         }
-        let is_ambiguous = |name: &Name| names.iter().filter(|(_, other)| other == name).count() > 1;
+        let is_ambiguous = |name: &SymbolName| names.iter().filter(|(_, other)| other == name).count() > 1;
         let ambiguous: Vec<bool> = names.iter().map(|(_, name)| is_ambiguous(name)).collect();
         for ((text, name), _) in names.iter_mut().zip(ambiguous).filter(|(_, ambiguous)| *ambiguous) {
-            *name = Name::single_word_name(text);
+            *name = SymbolName::single_word_name(text);
         }
         Names(names)
     }
 
     /// Returns the typeset form of a name in the table.
-    pub fn get(&self, text: &str) -> Name {
+    pub fn get(&self, text: &str) -> SymbolName {
         self.0
             .iter()
             .find(|(known, _)| known == text)
-            .map_or_else(|| Name::parse(text), |(_, name)| name.clone())
+            .map_or_else(|| SymbolName::parse(text), |(_, name)| name.clone())
     }
 }

@@ -44,11 +44,16 @@ pub trait Style {
 
     /// Formats the product of a number and factors, divided by `divisors`. `number` is `None` only if there
     /// are factors.
-    fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String;
+    fn product(
+        &self,
+        number: Option<Number>,
+        factors: &[PrintedFactor],
+        divisors: &[PrintedFactor],
+    ) -> String;
 }
 
 /// Formatted factor of a printed product.
-pub enum Factor {
+pub enum PrintedFactor {
     /// Factor that is printed without parentheses.
     Single(String),
     /// Sum that is printed in parentheses, here still without them.
@@ -191,10 +196,15 @@ impl Style for Plain<'_> {
         format!("{function}{}({})", format_exponent(power), arguments.join(", "))
     }
 
-    fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
-        let text_of_factor = |factor: &Factor| match factor {
-            Factor::Single(text) => text.clone(),
-            Factor::Sum(text) => format!("({text})"),
+    fn product(
+        &self,
+        number: Option<Number>,
+        factors: &[PrintedFactor],
+        divisors: &[PrintedFactor],
+    ) -> String {
+        let text_of_factor = |factor: &PrintedFactor| match factor {
+            PrintedFactor::Single(text) => text.clone(),
+            PrintedFactor::Sum(text) => format!("({text})"),
         };
         let number = number.map(|n| n.to_string());
         let above: Vec<String> = number.into_iter().chain(factors.iter().map(text_of_factor)).collect();

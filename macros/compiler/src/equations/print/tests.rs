@@ -7,13 +7,13 @@ use crate::expr::{Function, Graph};
 /// Names of parameters, coordinates, rates and an input: `m k l`, `x y`, `x' y'`, `u`.
 const NAMES: [&str; 8] = ["m", "k", "l", "x", "y", "x'", "y'", "u"];
 
-fn rank_of_symbol(symbol: Symbol) -> crate::algebra::polynomial::Rank {
-    use crate::algebra::polynomial::Rank;
+fn rank_of_symbol(symbol: Symbol) -> crate::algebra::polynomial::AtomRank {
+    use crate::algebra::polynomial::AtomRank;
     match symbol.0 {
-        0..3 => Rank::Parameter,
-        3..5 => Rank::Position,
-        5..7 => Rank::Rate,
-        _ => Rank::Input,
+        0..3 => AtomRank::Parameter,
+        3..5 => AtomRank::Position,
+        5..7 => AtomRank::Rate,
+        _ => AtomRank::Input,
     }
 }
 
@@ -22,7 +22,7 @@ fn formatted_text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) 
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
     let mut normal = Normal::new(&graph, rank_of_symbol);
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
-    Writer::new(&normal.ring, &|s| NAMES[s.0 as usize].to_string()).format_polynomial(&p)
+    PolynomialWriter::new(&normal.ring, &|s| NAMES[s.0 as usize].to_string()).format_polynomial(&p)
 }
 
 #[test]
@@ -147,9 +147,9 @@ fn formatted_latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>)
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
     let name_with_primes = |s: Symbol| {
         let name = NAMES[s.0 as usize].trim_end_matches('\'');
-        (Name::parse(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
+        (SymbolName::parse(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
     };
-    Writer::with_style(&normal.ring, Latex { name: &name_with_primes }).format_polynomial(&p)
+    PolynomialWriter::with_style(&normal.ring, Latex { name: &name_with_primes }).format_polynomial(&p)
 }
 
 #[test]
@@ -217,10 +217,10 @@ fn latex_names_have_subscripts() {
         ("table.x", r"x_{\mathrm{table}}"),
         ("hip1.second", r"\mathrm{second}_{\mathrm{hip1}}"),
     ] {
-        assert_eq!(super::latex::format_name(&Name::parse(text), 0), expected);
+        assert_eq!(super::latex::format_name(&SymbolName::parse(text), 0), expected);
     }
-    assert_eq!(super::latex::format_name(&Name::parse("theta2"), 1), r"\dot{\theta}_{2}");
-    assert_eq!(super::latex::format_name(&Name::parse("x"), 2), r"\ddot{x}");
+    assert_eq!(super::latex::format_name(&SymbolName::parse("theta2"), 1), r"\dot{\theta}_{2}");
+    assert_eq!(super::latex::format_name(&SymbolName::parse("x"), 2), r"\ddot{x}");
 }
 
 /// Names that would be indistinguishable in print are not split.

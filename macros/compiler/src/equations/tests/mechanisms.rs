@@ -79,7 +79,7 @@ struct Top {
 
 /// A cart with a pole and no parameters.
 pub const NUMBERS: &str = "
-struct Numbers {
+struct NumericCart {
     #[body(mass = 1.0, inertia = diagonal(0.004, 0.003, 0.005))] cart: Body,
     #[body(mass = 0.1, com = [0.01, 0, 0.5], inertia = [[0.0085, 0, 0.0001], [0, 0.0084, 0], [0.0001, 0, 0.0002]])] pole: Body,
     #[joint(ground.at(0.2 * z) -> cart, along = x)] slide: Sleeve,

@@ -4,7 +4,7 @@ use super::defaults::Element;
 use super::formula::Formula;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::syntax::DriveQuantity;
 
 pub(super) const OTHER_INPUTS: &str =
@@ -24,7 +24,7 @@ pub(super) struct ActuatorLaw {
     /// Force of the actuator as an expression.
     pub(super) force: Formula,
     /// Maximum magnitude of the actuator's force, if it is limited.
-    pub(super) limit: Option<Placed<f64>>,
+    pub(super) limit: Option<Located<f64>>,
 }
 
 /// State of first order of an actuator.

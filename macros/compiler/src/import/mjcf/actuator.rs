@@ -12,7 +12,7 @@ use super::reader::MjcfReader;
 use super::tendon::Tendon;
 use crate::import::context::Cx;
 use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::import::robot::{identifier_of_names, unused_name};
 use crate::syntax::file_parameters::{FileField, FileFieldKind};
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, InputOption, JointKind, LimitOption, Name};
@@ -49,7 +49,7 @@ pub(super) const ALL: [&str; 13] = [
 const TARGETS: [&str; 7] = ["joint", "jointinparent", "tendon", "site", "slidersite", "cranksite", "body"];
 
 /// Maximum effort of each joint: the sum over its actuators, or `None` if one of them is unlimited.
-type Efforts = BTreeMap<String, Option<Placed<f64>>>;
+type Efforts = BTreeMap<String, Option<Located<f64>>>;
 
 impl<'a> MjcfReader<'a> {
     /// Reads all actuators of an MJCF file.
@@ -257,7 +257,7 @@ impl<'a> MjcfReader<'a> {
             element.numbers_with_defaults("gear", [1.0; 6], cx).map_or(1.0, |gear| gear.value[0].abs());
         let damping = element.polynomial_coefficients("damping", cx).filter(|_| self.dampers && gear > 0.0);
         // MuJoCo multiplies all coefficients by the square of the gear ratio.
-        let damping = damping.map(|Placed { value: [linear, square, cube], place }| Placed {
+        let damping = damping.map(|Located { value: [linear, square, cube], place }| Located {
             value: [linear, square / gear, cube / (gear * gear)],
             place,
         });
@@ -291,13 +291,13 @@ impl<'a> MjcfReader<'a> {
         &mut self,
         element: &Element<'a>,
         on: &DriveOn,
-        ((gain, bias), saturation): ((f64, [f64; 3]), Option<Placed<f64>>),
+        ((gain, bias), saturation): ((f64, [f64; 3]), Option<Located<f64>>),
         efforts: &mut Efforts,
         cx: &mut Cx<'_>,
     ) {
-        let largest_magnitude = |ends: [Placed<f64>; 2]| {
+        let largest_magnitude = |ends: [Located<f64>; 2]| {
             let [low, high] = ends;
-            Placed { value: low.value.abs().max(high.value.abs()), place: low.place }
+            Located { value: low.value.abs().max(high.value.abs()), place: low.place }
         };
         let by_force = self.read_range(element, "forcelimited", "forcerange", cx).map(largest_magnitude);
         let saturation = saturation.filter(|_| self.options.limits != LimitOption::Ignore);
@@ -309,26 +309,27 @@ impl<'a> MjcfReader<'a> {
         let servos = usize::from((by_input.is_some() || inherits) && is_servo);
         self.count_skipped("ranges of servo commands", servos);
         let by_input =
-            by_input.filter(|_| !is_servo).map(|found| Placed { value: found.value * gain.abs(), ..found });
+            by_input.filter(|_| !is_servo).map(|found| Located { value: found.value * gain.abs(), ..found });
         let limit = match (by_force, by_input) {
             (Some(a), Some(b)) => Some(if a.value <= b.value { a } else { b }),
             (a, b) => a.or(b),
         };
-        let add =
-            |joint: String, more: Option<Placed<f64>>, efforts: &mut Efforts| match efforts.get_mut(&joint) {
-                Some(known) => {
-                    *known = known
-                        .take()
-                        .zip(more)
-                        .map(|(known, more)| Placed { value: known.value + more.value, place: known.place });
-                }
-                None => {
-                    efforts.insert(joint, more);
-                }
-            };
+        let add = |joint: String, more: Option<Located<f64>>, efforts: &mut Efforts| match efforts
+            .get_mut(&joint)
+        {
+            Some(known) => {
+                *known = known
+                    .take()
+                    .zip(more)
+                    .map(|(known, more)| Located { value: known.value + more.value, place: known.place });
+            }
+            None => {
+                efforts.insert(joint, more);
+            }
+        };
         if let DriveOn::Sum(terms) = on {
             for (joint, weight) in terms {
-                let more = limit.clone().map(|limit| Placed { value: limit.value * weight.abs(), ..limit });
+                let more = limit.clone().map(|limit| Located { value: limit.value * weight.abs(), ..limit });
                 add(joint.text.clone(), more, efforts);
             }
             return;

@@ -10,8 +10,8 @@ use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
     Node, child_elements, element_position, quoted_tag, read_name_attribute, read_number_attribute,
 };
-use crate::import::imported::Placed;
-use crate::import::pose::{Pose, add, axis_rotation, matrix_product, matrix_times_vector, scale_vector};
+use crate::import::imported::Located;
+use crate::import::pose::{FilePose, add, axis_rotation, matrix_product, matrix_times_vector, scale_vector};
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, massless_link, unused_name};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
@@ -26,24 +26,24 @@ struct OpenBody<'a> {
     /// Name of the parent link of the body.
     parent: Name,
     /// Pose of the surrounding `<frame>` elements relative to the parent.
-    outer: Pose,
+    outer: FilePose,
     /// Pose of the parent relative to the world, in the configuration of the file.
-    world: Pose,
+    world: FilePose,
     class: usize,
 }
 
 /// Shape or site, with the pose of its surrounding `<frame>` elements relative to the body.
-pub(super) type Shaped<'a> = (Element<'a>, Pose);
+pub(super) type Shaped<'a> = (Element<'a>, FilePose);
 
 /// Contents of a body, including the contents of its `<frame>` elements.
 #[derive(Default)]
 struct BodyContents<'a> {
-    bodies: Vec<(Node<'a>, Pose, usize)>,
+    bodies: Vec<(Node<'a>, FilePose, usize)>,
     shapes: Vec<Shaped<'a>>,
     sites: Vec<Shaped<'a>>,
-    inertial: Option<(Node<'a>, Pose)>,
+    inertial: Option<(Node<'a>, FilePose)>,
     /// Joints, each with the pose of its surrounding `<frame>` elements relative to the body, and its class.
-    jointed: Vec<(Node<'a>, Pose, usize)>,
+    jointed: Vec<(Node<'a>, FilePose, usize)>,
 }
 
 impl<'a> MjcfReader<'a> {
@@ -87,7 +87,7 @@ impl<'a> MjcfReader<'a> {
                 node,
                 parent: world.clone(),
                 outer,
-                world: Pose::ZERO,
+                world: FilePose::ZERO,
                 class,
             }));
         }
@@ -210,14 +210,14 @@ impl<'a> MjcfReader<'a> {
     /// Collects the elements in a body, each with the pose of its surrounding `<frame>` elements.
     fn contents_of_body(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) -> BodyContents<'a> {
         let mut found = BodyContents::default();
-        self.gather_contents(node, &Pose::ZERO, class, &mut found, cx);
+        self.gather_contents(node, &FilePose::ZERO, class, &mut found, cx);
         found
     }
 
     fn gather_contents(
         &mut self,
         node: Node<'a>,
-        outer: &Pose,
+        outer: &FilePose,
         class: usize,
         found: &mut BodyContents<'a>,
         cx: &mut Cx<'_>,
@@ -292,7 +292,7 @@ impl<'a> MjcfReader<'a> {
         &mut self,
         parent: &Name,
         body: &Name,
-        pose: &Pose,
+        pose: &FilePose,
         joints: Vec<BodyJoint>,
         cx: &mut Cx<'_>,
     ) {
@@ -316,7 +316,7 @@ impl<'a> MjcfReader<'a> {
         for (k, joint) in joints.into_iter().enumerate() {
             let child = if k + 1 == number { body.clone() } else { self.add_massless_link(body, &joint) };
             // The coordinates of a free joint are the pose of the body in the world.
-            let outer = if k == 0 && joint.kind != JointKind::Free { *pose } else { Pose::ZERO };
+            let outer = if k == 0 && joint.kind != JointKind::Free { *pose } else { FilePose::ZERO };
             if let Some(damping) = &joint.spread {
                 self.add_isotropic_damping(&joint, damping, &carrier, &child);
             }
@@ -342,7 +342,7 @@ impl<'a> MjcfReader<'a> {
     fn add_isotropic_damping(
         &mut self,
         joint: &BodyJoint,
-        damping: &Placed<f64>,
+        damping: &Located<f64>,
         carrier: &Name,
         child: &Name,
     ) {
@@ -375,7 +375,7 @@ impl<'a> MjcfReader<'a> {
         let text = unused_name(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
         self.joint_names.insert(text.clone());
         let place = body.place.clone();
-        let placed_value = |value| Placed { value, place: place.clone() };
+        let placed_value = |value| Located { value, place: place.clone() };
         Some(BodyJoint {
             name: Name { text, place: place.clone() },
             kind: JointKind::Free,
@@ -434,31 +434,16 @@ fn place_of_mass(inside: &BodyContents<'_>, node: Node<'_>, cx: &Cx<'_>) -> Plac
 }
 
 /// Returns a joint that fixes one link to another.
-fn weld_joint(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
-    let place = name.place.clone();
-    FileJoint {
-        name,
-        kind: JointKind::Weld,
-        word: "weld",
-        parent,
-        child,
-        origin: origin_of_pose(pose, &place),
-        anchor: [0.0; 3],
-        axis: Placed { value: [0.0, 0.0, 1.0], place },
-        mimic: None,
-        held: None,
-        lead: None,
-        limits: FileLimits::default(),
-        damping: None,
-        friction: None,
-    }
+fn weld_joint(name: Name, parent: Name, child: Name, pose: &FilePose) -> FileJoint {
+    let origin = origin_of_pose(pose, &name.place);
+    FileJoint::weld(name, "weld", [parent, child], origin)
 }
 
 /// Returns the joint with its endpoints. In the configuration of the file, its coordinate equals its
 /// reference instead of zero.
-fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJoint {
+fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FilePose) -> FileJoint {
     let axis = joint.axis.value;
-    let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };
+    let mut inner = FilePose { at: joint.anchor.value, ..FilePose::ZERO };
     match joint.kind.rotates_about_one_axis() {
         Some(true) if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
         Some(false) => inner.at = add(inner.at, scale_vector(axis, -joint.reference)),
@@ -466,27 +451,20 @@ fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose)
     }
     let free = joint.kind == JointKind::Free;
     let pose = if free {
-        Pose::ZERO
+        FilePose::ZERO
     } else {
-        Pose {
+        FilePose {
             at: add(outer.at, matrix_times_vector(&outer.axes, inner.at)),
             axes: matrix_product(&outer.axes, &inner.axes),
         }
     };
+    let origin = origin_of_pose(&pose, &joint.anchor.place);
+    let links = [carrier.clone(), child.clone()];
     FileJoint {
-        origin: origin_of_pose(&pose, &joint.anchor.place),
-        name: joint.name,
-        kind: joint.kind,
-        word: joint.word,
-        parent: carrier.clone(),
-        child: child.clone(),
         anchor: if free { [0.0; 3] } else { joint.anchor.value },
-        axis: joint.axis,
-        mimic: None,
-        held: None,
-        lead: None,
         limits: joint.limits,
         damping: joint.damping,
         friction: joint.friction,
+        ..FileJoint::from_links(joint.name, (joint.kind, joint.word), links, origin, joint.axis)
     }
 }

@@ -6,7 +6,7 @@ use super::reader::{MjcfReader, origin_of_pose};
 use super::touch::{CollisionShape, Law, Plane};
 use crate::import::context::Cx;
 use crate::import::element::element_position;
-use crate::import::pose::Pose;
+use crate::import::pose::FilePose;
 use crate::import::robot::{FileCollision, unused_name};
 use crate::syntax::Shape;
 use crate::syntax::contact::CONTACT_HELP;
@@ -124,12 +124,12 @@ impl<'a> MjcfReader<'a> {
         &self,
         shape: &super::defaults::Element<'a>,
         cx: &mut Cx<'_>,
-    ) -> Option<(Shape, Pose)> {
+    ) -> Option<(Shape, FilePose)> {
         let kind = shape.trimmed_text("type").unwrap_or("sphere");
         if kind == "mesh" || shape.node_with_attribute("mesh").is_some() {
             let pose = match is_mesh(shape) {
                 true => super::frame::read_pose(shape, &self.settings, cx),
-                false => Pose::ZERO,
+                false => FilePose::ZERO,
             };
             return Some((Shape::Mesh, pose));
         }

@@ -6,15 +6,15 @@ use super::activation::{
 };
 use super::defaults::Element;
 use super::formula::Formula;
-use super::record::Record;
+use super::record::ActuatorRecord;
 use crate::import::context::Cx;
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 
 /// Writes the force of a motor with its states: temperature, deflection of the bristles, current.
 pub(super) fn write_motor_law(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
-    record: &Record<'_>,
+    record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
@@ -70,7 +70,7 @@ pub(super) fn write_motor_law(
     law.limit = saturation.and_then(|found| {
         let [torque, current, _] = found.value;
         let value = if torque > 0.0 { torque } else { constant * current };
-        (value > 0.0).then_some(Placed { value, place: found.place })
+        (value > 0.0).then_some(Located { value, place: found.place })
     });
     Some(())
 }

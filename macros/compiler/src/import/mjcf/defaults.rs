@@ -5,7 +5,7 @@ use super::super::element::{
     Node, check_attributes, child_elements, element_position, read_name_attribute, read_number_attribute,
     read_numbers_attribute,
 };
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
@@ -163,12 +163,12 @@ impl<'a> Element<'a> {
     }
 
     /// Returns the value of an attribute that must be a finite number.
-    pub(super) fn finite_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+    pub(super) fn finite_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Located<f64>> {
         read_number_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
     /// Returns the value of an attribute that must be a finite number, or `None` if it is zero.
-    pub(super) fn nonzero_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+    pub(super) fn nonzero_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Located<f64>> {
         self.finite_number(attribute, cx).filter(|found| found.value != 0.0)
     }
 
@@ -177,7 +177,7 @@ impl<'a> Element<'a> {
         &self,
         attribute: &str,
         cx: &mut Cx<'_>,
-    ) -> Option<Placed<[f64; 3]>> {
+    ) -> Option<Located<[f64; 3]>> {
         self.numbers_with_defaults(attribute, [0.0; 3], cx).filter(|found| found.value != [0.0; 3])
     }
 
@@ -187,15 +187,15 @@ impl<'a> Element<'a> {
         attribute: &str,
         help: &'static str,
         cx: &mut Cx<'_>,
-    ) -> Option<Placed<f64>> {
-        let Placed { value: [linear, square, cube], place } = self.polynomial_coefficients(attribute, cx)?;
+    ) -> Option<Located<f64>> {
+        let Located { value: [linear, square, cube], place } = self.polynomial_coefficients(attribute, cx)?;
         if square != 0.0 || cube != 0.0 {
             let message = format!("a polynomial `{attribute}` is supported only on a `hinge` or a `slide`");
             cx.report_error(&place, message, |d| {
                 d.add_help("expected one number: a linear coefficient").add_help(help)
             });
         }
-        (linear != 0.0).then_some(Placed { value: linear, place })
+        (linear != 0.0).then_some(Located { value: linear, place })
     }
 
     /// Returns the value of an attribute that must be exactly `N` finite numbers.
@@ -203,7 +203,7 @@ impl<'a> Element<'a> {
         &self,
         attribute: &str,
         cx: &mut Cx<'_>,
-    ) -> Option<Placed<[f64; N]>> {
+    ) -> Option<Located<[f64; N]>> {
         read_numbers_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
@@ -214,9 +214,9 @@ impl<'a> Element<'a> {
         attribute: &str,
         rest: [f64; N],
         cx: &mut Cx<'_>,
-    ) -> Option<Placed<[f64; N]>> {
+    ) -> Option<Located<[f64; N]>> {
         let said = self.layers.iter().rev().filter(|node| node.has_attribute(attribute));
-        let mut found: Option<Placed<[f64; N]>> = None;
+        let mut found: Option<Located<[f64; N]>> = None;
         for node in said {
             let rest = found.map_or(rest, |found| found.value);
             found = Some(numbers_with_defaults(*node, attribute, rest, cx)?);
@@ -245,7 +245,7 @@ pub(super) fn numbers_with_defaults<const N: usize>(
     attribute: &str,
     mut rest: [f64; N],
     cx: &mut Cx<'_>,
-) -> Option<Placed<[f64; N]>> {
+) -> Option<Located<[f64; N]>> {
     let text = node.attribute(attribute)?;
     let count = text.split_ascii_whitespace().count();
     let place = cx.source_position(node.attribute_node(attribute)?.range_value().start);
@@ -256,7 +256,7 @@ pub(super) fn numbers_with_defaults<const N: usize>(
                 $($n if $n <= N => {
                     let found = read_numbers_attribute::<$n>(node, attribute, cx)?;
                     rest.iter_mut().zip(found.value).for_each(|(to, from)| *to = from);
-                    Some(Placed { value: rest, place })
+                    Some(Located { value: rest, place })
                 })*
                 _ => read_numbers_attribute::<N>(node, attribute, cx),
             }

@@ -5,7 +5,7 @@ use super::reader::{MjcfReader, origin_of_pose};
 use super::tendon::Tendon;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
-use crate::import::pose::{Pose, rotation_of_quaternion};
+use crate::import::pose::{FilePose, rotation_of_quaternion};
 use crate::import::robot::{plain_joint, unused_name};
 use crate::syntax::{
     BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, Mimic, Name,
@@ -208,7 +208,7 @@ impl<'a> MjcfReader<'a> {
         element: &Element<'a>,
         kind: JointKind,
         cx: &mut Cx<'_>,
-    ) -> Option<[(Name, Pose); 2]> {
+    ) -> Option<[(Name, FilePose); 2]> {
         if element.node.has_attribute("site1") {
             let mut end = |attribute: &str| {
                 let site = read_name_attribute(element.node, attribute, cx)?;
@@ -220,11 +220,11 @@ impl<'a> MjcfReader<'a> {
         let mut end = |attribute: &str| {
             let zero = Name { text: GROUND.to_string(), place: element_position(element.node, cx) };
             if attribute == "body2" && !element.node.has_attribute(attribute) {
-                return Some((zero, Pose::ZERO));
+                return Some((zero, FilePose::ZERO));
             }
             let mut body = read_name_attribute(element.node, attribute, cx)?;
             if body.text == super::body::WORLD {
-                return Some((Name { text: GROUND.to_string(), ..body }, Pose::ZERO));
+                return Some((Name { text: GROUND.to_string(), ..body }, FilePose::ZERO));
             }
             if body.text == GROUND {
                 // The body `ground` of the file was renamed.
@@ -244,8 +244,11 @@ impl<'a> MjcfReader<'a> {
         let between = inner.inverse_pose().compose_with(&outer);
         let anchor = element.exact_numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
         if kind == JointKind::Ball {
-            let at = Pose { at: anchor, ..Pose::ZERO };
-            return Some([(first, at), (second, Pose { at: between.compose_with(&at).at, ..Pose::ZERO })]);
+            let at = FilePose { at: anchor, ..FilePose::ZERO };
+            return Some([
+                (first, at),
+                (second, FilePose { at: between.compose_with(&at).at, ..FilePose::ZERO }),
+            ]);
         }
         let said = element.exact_numbers::<7>("relpose", cx).map(|said| said.value);
         // `relpose` is the pose of the second body's anchor relative to the first body. Without it, the
@@ -253,10 +256,10 @@ impl<'a> MjcfReader<'a> {
         let (pose, own) = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {
             Some([x, y, z, quat @ ..]) => {
                 let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let pose = Pose { at: [x, y, z], axes: rotation_of_quaternion(quat.map(|x| x / size)) };
-                (pose, Pose { at: anchor, ..Pose::ZERO })
+                let pose = FilePose { at: [x, y, z], axes: rotation_of_quaternion(quat.map(|x| x / size)) };
+                (pose, FilePose { at: anchor, ..FilePose::ZERO })
             }
-            None => (between.inverse_pose(), Pose::ZERO),
+            None => (between.inverse_pose(), FilePose::ZERO),
         };
         Some([(first, pose), (second, own)])
     }

@@ -5,9 +5,9 @@ use super::settings::Settings;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::check_radians;
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::import::pose::{
-    IDENTITY, Matrix, Pose, add, axis_rotation, cross, dot, length, matrix_product, rotation_from_z,
+    FilePose, IDENTITY, Matrix, add, axis_rotation, cross, dot, length, matrix_product, rotation_from_z,
     rotation_of_quaternion, scale_vector,
 };
 
@@ -15,9 +15,9 @@ use crate::import::pose::{
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// Returns the pose of an MJCF element relative to its parent.
-pub(super) fn read_pose(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Pose {
+pub(super) fn read_pose(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> FilePose {
     let at = element.exact_numbers("pos", cx).map_or([0.0; 3], |at| at.value);
-    Pose { at, axes: read_axes(element, settings, cx) }
+    FilePose { at, axes: read_axes(element, settings, cx) }
 }
 
 /// Returns the orientation of an MJCF element as a rotation matrix.
@@ -111,7 +111,7 @@ const RADIANS: &str = "`angle=\"radian\"` makes angles of the file radians: writ
 fn check_nonzero_length<const N: usize>(
     size: f64,
     what: &str,
-    found: &Placed<[f64; N]>,
+    found: &Located<[f64; N]>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     if size < 1e-14 || !size.is_finite() {

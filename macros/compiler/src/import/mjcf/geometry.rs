@@ -3,18 +3,18 @@
 use super::defaults::{Defaults, Element};
 use super::frame::read_pose;
 use super::mesh::Meshes;
-use super::settings::{Settings, Source};
+use super::settings::{MassSource, Settings};
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, check_attributes, element_position, quoted_tag, read_numbers_attribute};
 use crate::import::pose::{
-    IDENTITY, Matrix, Pose, Vector, add, dot, eigen_decomposition, length, rotated_tensor, rotation_from_z,
-    scale_vector,
+    FilePose, IDENTITY, Matrix, Vector, add, dot, eigen_decomposition, length, rotated_tensor,
+    rotation_from_z, scale_vector,
 };
 use std::f64::consts::PI;
 
 /// Numeric mass properties of a body: mass, centre of mass and inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Mass {
+pub(super) struct BodyMass {
     /// Mass of the body, kg.
     pub(super) mass: f64,
     /// Centre of mass in body axes, m.
@@ -31,11 +31,11 @@ const DENSITY: f64 = 1000.0;
 /// MJCF shapes without volume.
 const FLAT: [&str; 2] = ["plane", "hfield"];
 
-impl Mass {
+impl BodyMass {
     /// Transforms the mass properties from a frame to its reference frame. `pose` is the pose of the frame
     /// relative to the reference frame.
-    pub(super) fn mass_in_outer_frame(&self, pose: &Pose) -> Mass {
-        Mass {
+    pub(super) fn mass_in_outer_frame(&self, pose: &FilePose) -> BodyMass {
+        BodyMass {
             com: add(pose.at, crate::import::pose::matrix_times_vector(&pose.axes, self.com)),
             inertia: rotated_tensor(&pose.axes, &self.inertia),
             ..*self
@@ -44,7 +44,7 @@ impl Mass {
 }
 
 /// Returns the mass properties of the rigid union of several bodies; `None` for zero mass.
-pub(super) fn rigid_union(parts: &[Mass]) -> Option<Mass> {
+pub(super) fn rigid_union(parts: &[BodyMass]) -> Option<BodyMass> {
     if let [one] = parts {
         return Some(*one);
     }
@@ -66,26 +66,26 @@ pub(super) fn rigid_union(parts: &[Mass]) -> Option<Mass> {
             }
         }
     }
-    Some(Mass { mass, com, inertia })
+    Some(BodyMass { mass, com, inertia })
 }
 
 /// Returns the mass properties of a body from `<inertial>` or from its shapes. Each comes with the pose of
 /// its surrounding `<frame>` elements relative to the body.
 pub(super) fn mass_of_body<'a>(
-    inertial: &Option<(Node<'a>, Pose)>,
-    shapes: &[(Element<'a>, Pose)],
+    inertial: &Option<(Node<'a>, FilePose)>,
+    shapes: &[(Element<'a>, FilePose)],
     defaults: &Defaults<'a>,
     meshes: &mut Meshes<'a>,
-    (pose, settings): (&Pose, &Settings),
+    (pose, settings): (&FilePose, &Settings),
     cx: &mut Cx<'_>,
-) -> Option<Mass> {
-    let said = inertial.as_ref().filter(|_| settings.source != Source::Geometry || shapes.is_empty());
+) -> Option<BodyMass> {
+    let said = inertial.as_ref().filter(|_| settings.source != MassSource::Geometry || shapes.is_empty());
     let found = match said {
         Some((node, outer)) => read_inertial(*node, defaults, settings, cx)
-            .map(|mass| if *outer == Pose::ZERO { mass } else { mass.mass_in_outer_frame(outer) }),
-        None if settings.source == Source::Inertial => None,
+            .map(|mass| if *outer == FilePose::ZERO { mass } else { mass.mass_in_outer_frame(outer) }),
+        None if settings.source == MassSource::Inertial => None,
         None => {
-            let parts: Vec<Mass> = shapes
+            let parts: Vec<BodyMass> = shapes
                 .iter()
                 .filter_map(|(shape, outer)| {
                     Some(mass_of_shape(shape, meshes, settings, cx)?.mass_in_outer_frame(outer))
@@ -100,12 +100,12 @@ pub(super) fn mass_of_body<'a>(
 
 /// Raises mass and principal moments to the minimum values of the file. With `balance`, principal moments
 /// that violate the triangle inequality are replaced by their mean.
-fn raised_to_minimum(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass> {
+fn raised_to_minimum(found: Option<BodyMass>, pose: &FilePose, settings: &Settings) -> Option<BodyMass> {
     if settings.least_mass == 0.0 && settings.least_inertia == 0.0 && !settings.balance {
         return found;
     }
     // For a body without mass, MuJoCo puts this mass at the body's position relative to its parent.
-    let zero = Mass { mass: 0.0, com: pose.at, inertia: [[0.0; 3]; 3] };
+    let zero = BodyMass { mass: 0.0, com: pose.at, inertia: [[0.0; 3]; 3] };
     let found = found.unwrap_or(zero);
     let (moments, axes) = eigen_decomposition(&found.inertia);
     let mut moments = moments.map(|moment| moment.max(settings.least_inertia));
@@ -113,10 +113,10 @@ fn raised_to_minimum(found: Option<Mass>, pose: &Pose, settings: &Settings) -> O
     if settings.balance && (a + b < c || a + c < b || b + c < a) {
         moments = [(a + b + c) / 3.0; 3];
     }
-    let bounded = Mass { mass: found.mass.max(settings.least_mass), ..found };
+    let bounded = BodyMass { mass: found.mass.max(settings.least_mass), ..found };
     Some(match moments == [a, b, c] && moments == eigen_decomposition(&found.inertia).0 {
         true => bounded,
-        false => Mass { inertia: rotated_tensor(&axes, &diagonal_matrix(moments)), ..bounded },
+        false => BodyMass { inertia: rotated_tensor(&axes, &diagonal_matrix(moments)), ..bounded },
     })
 }
 
@@ -133,11 +133,11 @@ fn read_inertial(
     defaults: &Defaults<'_>,
     settings: &Settings,
     cx: &mut Cx<'_>,
-) -> Option<Mass> {
+) -> Option<BodyMass> {
     check_attributes(node, &["pos", "mass"], &INERTIAL, cx);
     let element = defaults.element_with_defaults(node, &[], 0, cx);
     let mass = element.finite_number("mass", cx)?.value;
-    let Pose { at: com, axes } = read_pose(&element, settings, cx);
+    let FilePose { at: com, axes } = read_pose(&element, settings, cx);
     if let Some(full) = read_numbers_attribute::<6>(node, "fullinertia", cx) {
         if node.has_attribute("diaginertia") {
             cx.report_error(&full.place, "`fullinertia` and `diaginertia` of one body", |d| {
@@ -148,10 +148,10 @@ fn read_inertial(
             cx.report_error(&full.place, "`fullinertia` with an orientation", |d| d.add_help(help));
         }
         let [xx, yy, zz, xy, xz, yz] = full.value;
-        return Some(Mass { mass, com, inertia: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] });
+        return Some(BodyMass { mass, com, inertia: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] });
     }
     let moments = read_numbers_attribute(node, "diaginertia", cx).map_or([0.0; 3], |found| found.value);
-    Some(Mass { mass, com, inertia: rotated_tensor(&axes, &diagonal_matrix(moments)) })
+    Some(BodyMass { mass, com, inertia: rotated_tensor(&axes, &diagonal_matrix(moments)) })
 }
 
 /// Returns the mass properties of a shape in body axes; `None` for a shape without mass.
@@ -160,7 +160,7 @@ fn mass_of_shape<'a>(
     meshes: &mut Meshes<'a>,
     settings: &Settings,
     cx: &mut Cx<'_>,
-) -> Option<Mass> {
+) -> Option<BodyMass> {
     let group = shape.finite_number("group", cx).map_or(0.0, |group| group.value);
     if group < settings.groups[0] || group > settings.groups[1] {
         return None;
@@ -186,7 +186,7 @@ fn mass_of_shape<'a>(
     let (volume, moments) = solid_properties(kind, size);
     let mass = said.unwrap_or(density * volume);
     let inertia = diagonal_matrix(scale_vector(moments, mass));
-    Some(Mass { mass, com: [0.0; 3], inertia }.mass_in_outer_frame(&pose))
+    Some(BodyMass { mass, com: [0.0; 3], inertia }.mass_in_outer_frame(&pose))
 }
 
 /// Returns pose and half lengths of a shape. The first entry is the radius of a round shape and the last
@@ -196,7 +196,7 @@ pub(super) fn shape_dimensions(
     shape: &Element<'_>,
     settings: &Settings,
     cx: &mut Cx<'_>,
-) -> Option<(Pose, Vector)> {
+) -> Option<(FilePose, Vector)> {
     let (pose, half) = pose_and_half_length(shape, settings, cx)?;
     let size = shape.numbers_with_defaults("size", [0.0; 3], cx);
     let [x, y, z] = size.as_ref().map_or([0.0; 3], |size| size.value);
@@ -236,7 +236,7 @@ pub(super) fn pose_and_half_length(
     shape: &Element<'_>,
     settings: &Settings,
     cx: &mut Cx<'_>,
-) -> Option<(Pose, Option<f64>)> {
+) -> Option<(FilePose, Option<f64>)> {
     let Some(ends) = shape.exact_numbers::<6>("fromto", cx) else {
         return Some((read_pose(shape, settings, cx), None));
     };
@@ -262,7 +262,7 @@ pub(super) fn pose_and_half_length(
         return None;
     }
     let at = scale_vector(add([a, b, c], [d, e, f]), 0.5);
-    Some((Pose { at, axes: rotation_from_z(scale_vector(along, 1.0 / size)) }, Some(size / 2.0)))
+    Some((FilePose { at, axes: rotation_from_z(scale_vector(along, 1.0 / size)) }, Some(size / 2.0)))
 }
 
 /// Returns the volume and the moments of inertia per unit mass of a solid with these half lengths.
@@ -295,7 +295,7 @@ fn solid_properties(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
 }
 
 /// Reports a shape whose mass properties cannot be computed.
-fn report_unsupported_shape(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
+fn report_unsupported_shape(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<BodyMass> {
     let message = format!("the mass properties of {what} are not computed");
     cx.report_error(&element_position(shape.node, cx), message, |d| d.add_help(NEEDS_INERTIAL));
     None

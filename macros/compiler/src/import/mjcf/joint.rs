@@ -4,8 +4,8 @@ use super::defaults::Element;
 use super::reader::MjcfReader;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, element_position, read_name_attribute};
-use crate::import::imported::Placed;
-use crate::import::pose::{Pose, Vector, add, length, matrix_times_vector, scale_vector};
+use crate::import::imported::Located;
+use crate::import::pose::{FilePose, Vector, add, length, matrix_times_vector, scale_vector};
 use crate::import::robot::{FileLimits, unused_name};
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, JointKind, LimitOption, Name};
 
@@ -26,16 +26,16 @@ pub(super) struct BodyJoint {
     pub(super) kind: JointKind,
     pub(super) word: &'static str,
     /// Position of the joint relative to its body, m.
-    pub(super) anchor: Placed<Vector>,
+    pub(super) anchor: Located<Vector>,
     /// Unit vector of the joint's axis in body axes.
-    pub(super) axis: Placed<Vector>,
+    pub(super) axis: Located<Vector>,
     /// Joint coordinate in the configuration of the file (`ref`).
     pub(super) reference: f64,
     pub(super) limits: FileLimits,
     pub(super) damping: Option<Expr>,
     pub(super) friction: Option<Expr>,
     /// Isotropic damping of a ball or free joint.
-    pub(super) spread: Option<Placed<f64>>,
+    pub(super) spread: Option<Located<f64>>,
 }
 
 impl<'a> MjcfReader<'a> {
@@ -43,7 +43,7 @@ impl<'a> MjcfReader<'a> {
     /// body.
     pub(super) fn read_joint(
         &mut self,
-        (node, outer, class): (Node<'a>, &Pose, usize),
+        (node, outer, class): (Node<'a>, &FilePose, usize),
         body: &Name,
         cx: &mut Cx<'_>,
     ) -> Option<BodyJoint> {
@@ -55,7 +55,7 @@ impl<'a> MjcfReader<'a> {
 
     fn joint_of_element(
         &mut self,
-        (element, outer): (&Element<'a>, &Pose),
+        (element, outer): (&Element<'a>, &FilePose),
         free: bool,
         body: &Name,
         cx: &mut Cx<'_>,
@@ -63,7 +63,7 @@ impl<'a> MjcfReader<'a> {
         let (word, kind) = if free { ("free", JointKind::Free) } else { read_joint_type(element, cx)? };
         let name = self.joint_name(element.node, word, body, cx);
         let alone = kind.rotates_about_one_axis().is_some();
-        let zero = |at: &str, cx: &Cx<'_>| Placed { value: [0.0; 3], place: element.place_of_value(at, cx) };
+        let zero = |at: &str, cx: &Cx<'_>| Located { value: [0.0; 3], place: element.place_of_value(at, cx) };
         let mut anchor = element.exact_numbers("pos", cx).unwrap_or(zero("pos", cx));
         anchor.value = add(outer.at, matrix_times_vector(&outer.axes, anchor.value));
         let mut axis = element.exact_numbers("axis", cx).unwrap_or(zero("axis", cx));
@@ -130,7 +130,7 @@ impl<'a> MjcfReader<'a> {
         if let Some([low, high]) = self.read_range(element, "limited", "range", cx)
             && self.settings.has_limits()
         {
-            let converted_end = |end: Placed<f64>| Placed {
+            let converted_end = |end: Located<f64>| Located {
                 value: if turns { self.settings.angle_in_radians(end.value) } else { end.value },
                 place: end.place,
             };
@@ -138,7 +138,7 @@ impl<'a> MjcfReader<'a> {
         }
         if let Some([low, high]) = self.read_range(element, "actuatorfrclimited", "actuatorfrcrange", cx) {
             let value = low.value.abs().max(high.value.abs());
-            limits.effort = Some(Placed { value, place: low.place });
+            limits.effort = Some(Located { value, place: low.place });
         }
         limits
     }
@@ -150,7 +150,7 @@ impl<'a> MjcfReader<'a> {
         limited: &str,
         range: &str,
         cx: &mut Cx<'_>,
-    ) -> Option<[Placed<f64>; 2]> {
+    ) -> Option<[Located<f64>; 2]> {
         if self.options.limits == LimitOption::Ignore {
             return None;
         }
@@ -178,7 +178,7 @@ impl<'a> MjcfReader<'a> {
             }
             _ => {}
         }
-        let Some(Placed { value: [low, high], place }) = found else {
+        let Some(Located { value: [low, high], place }) = found else {
             let message = format!("`{limited}=\"true\"` without `{range}`");
             cx.report_error(&element.place_of_value(limited, cx), message, |d| d);
             return None;
@@ -188,7 +188,7 @@ impl<'a> MjcfReader<'a> {
             cx.report_error(&place, message, |d| d.add_help(crate::import::robot::IGNORE_LIMITS));
             return None;
         }
-        Some([low, high].map(|value| Placed { value, place: place.clone() }))
+        Some([low, high].map(|value| Located { value, place: place.clone() }))
     }
 
     fn report_ignored_limits(&mut self, element: &Element<'a>, name: &Name, cx: &mut Cx<'_>) -> FileLimits {

@@ -6,7 +6,7 @@ use super::activation::{
 use super::dc_motor;
 use super::defaults::Element;
 use super::muscle;
-use super::record::{Record, read_record};
+use super::record::{ActuatorRecord, read_record};
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, element_position};
 
@@ -52,7 +52,7 @@ pub(super) fn read_force<'a>(
 }
 
 /// Reports types that are not supported, and damping that depends on the inertia.
-fn check_actuator_type(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> bool {
+fn check_actuator_type(actuator: &Element<'_>, record: &ActuatorRecord<'_>, cx: &mut Cx<'_>) -> bool {
     let mut good = true;
     let mut refuse = |attribute: &str, message: String, help: &'static str| {
         cx.report_error(&actuator.place_of_value(attribute, cx), message, |d| d.add_help(help));
@@ -102,7 +102,7 @@ fn check_actuator_type(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<
 fn write_general_law(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
-    record: &Record<'_>,
+    record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
@@ -155,7 +155,7 @@ fn write_general_law(
 fn write_pid_law(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
-    record: &Record<'_>,
+    record: &ActuatorRecord<'_>,
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {

@@ -6,14 +6,14 @@
 //! along the edge `a` is `−½ ρ b c |v| v − 3π d β v` and the torque about it is `−ρ a (b⁴ + c⁴) |ω| ω / 64 −
 //! π d³ β ω`.
 
-use super::geometry::Mass;
+use super::geometry::BodyMass;
 use super::joint::IGNORE_PASSIVE;
 use super::reader::MjcfReader;
 use super::spatial::BodyFrame;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::element_position;
-use crate::import::pose::{Pose, eigen_decomposition, transpose};
+use crate::import::pose::{FilePose, eigen_decomposition, transpose};
 use crate::syntax::{BinaryOp, Expr, ExprKind, GROUND, Name};
 use std::f64::consts::PI;
 
@@ -72,13 +72,13 @@ impl MjcfReader<'_> {
 
 /// Returns the Rayleigh dissipation function of the drag on a body: half of the dissipated power of linear
 /// terms plus a third of that of quadratic terms.
-fn fluid_dissipation(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
+fn fluid_dissipation(link: &str, mass: &BodyMass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
     let (moments, axes) = eigen_decomposition(&mass.inertia);
     let sum: f64 = moments.iter().sum();
     let edges = moments.map(|moment| ((sum - 2.0 * moment).max(0.0) / mass.mass * 6.0).sqrt());
     let mean = edges.iter().sum::<f64>() / 3.0;
     let name_expression = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-    let spot = BodyFrame { body: link.to_string(), pose: Pose { at: mass.com, ..Pose::ZERO } };
+    let spot = BodyFrame { body: link.to_string(), pose: FilePose { at: mass.com, ..FilePose::ZERO } };
     let quotient = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
     let path =
         quotient(quotient(spot.position_of_spot(at), name_expression(GROUND)), name_expression(GROUND));

@@ -6,7 +6,7 @@
 //! counts as positive.
 
 use super::defaults::{Defaults, Element};
-use super::geometry::Mass;
+use super::geometry::BodyMass;
 use super::settings::Settings;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
@@ -29,7 +29,7 @@ pub(super) struct Meshes<'a> {
     strips: bool,
     known: BTreeMap<String, Element<'a>>,
     /// Mass properties at density 1 of the meshes that were read.
-    read: BTreeMap<String, Option<Mass>>,
+    read: BTreeMap<String, Option<BodyMass>>,
     /// Paths of the mesh files that were read.
     pub(super) files: Vec<PathBuf>,
 }
@@ -63,7 +63,7 @@ impl<'a> Meshes<'a> {
     }
 
     /// Returns the mass properties at density 1 of a mesh shape, in the axes of the mesh file.
-    pub(super) fn mass_of_mesh_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
+    pub(super) fn mass_of_mesh_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<BodyMass> {
         let (mesh, element) = self.mesh_of_shape(shape, cx)?;
         if let Some(known) = self.read.get(&mesh) {
             return *known;
@@ -140,7 +140,7 @@ impl<'a> Meshes<'a> {
         Some(Mesh { path: element.trimmed_text("file")?.to_string(), scale })
     }
 
-    fn mass_of_mesh(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
+    fn mass_of_mesh(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<BodyMass> {
         let exact = match element.trimmed_text("inertia") {
             None | Some("legacy") => false,
             Some("exact") => true,
@@ -197,7 +197,7 @@ fn transform_triangles(element: &Element<'_>, triangles: &mut [Triangle], cx: &m
 }
 
 /// Returns the mass properties at density 1 of a triangulated solid; `None` if its volume is zero.
-fn solid_mass(triangles: &[Triangle], exact: bool) -> Option<Mass> {
+fn solid_mass(triangles: &[Triangle], exact: bool) -> Option<BodyMass> {
     let counted_volume = |volume: f64| if exact { volume } else { volume.abs() };
     let (mut area, mut middle) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {
@@ -239,13 +239,13 @@ fn solid_mass(triangles: &[Triangle], exact: bool) -> Option<Mass> {
     let inertia = std::array::from_fn(|i| {
         std::array::from_fn(|j| if i == j { trace - products[i][i] } else { -products[i][j] })
     });
-    Some(Mass { mass, com, inertia })
+    Some(BodyMass { mass, com, inertia })
 }
 
-impl Mass {
+impl BodyMass {
     /// Scales the mass properties to another total mass.
-    pub(super) fn scaled_to_mass(&self, mass: f64) -> Mass {
-        Mass { mass, com: self.com, inertia: self.inertia.map(|row| scale_vector(row, mass / self.mass)) }
+    pub(super) fn scaled_to_mass(&self, mass: f64) -> BodyMass {
+        BodyMass { mass, com: self.com, inertia: self.inertia.map(|row| scale_vector(row, mass / self.mass)) }
     }
 }
 
@@ -273,7 +273,7 @@ mod tests {
     const BOX: &str = "v 1 1 1\nv 3 1 1\nv 3 5 1\nv 1 5 1\nv 1 1 7\nv 3 1 7\nv 3 5 7\nv 1 5 7\n\
         f 4 3 2 1\nf 5/1 6/2 7/3 8/4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf -8 -4 -1 -5\n";
 
-    fn check_box_mass(found: &Mass, at: f64) {
+    fn check_box_mass(found: &BodyMass, at: f64) {
         assert!((found.mass - 48.0).abs() < 1e-12);
         let expected: Vector = [2.0 + at, 3.0, 4.0];
         assert!((0..3).all(|k| (found.com[k] - expected[k]).abs() < 1e-12), "{:?}", found.com);

@@ -8,7 +8,7 @@ use super::element::{Node, child_elements, element_position, quoted_tag};
 use super::whole::import_composed_text;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
-use crate::import::robot::{self, Order};
+use crate::import::robot::{self, JointOrder};
 use crate::syntax::{DriveLaw, DriveOn, Expr, FileFormat, FileOptions, GROUND, JointKind};
 use defaults::Defaults;
 use mesh::Meshes;
@@ -115,7 +115,7 @@ fn finish_import(reader: MjcfReader<'_>, options: &FileOptions, cx: &mut Cx<'_>)
     let children = robot.joints.iter().enumerate();
     let joints =
         children.filter_map(|(k, joint)| Some((k, *links.get(joint.child.text.as_str())?))).collect();
-    let order = Order { root: 0, joints };
+    let order = JointOrder { root: 0, joints };
     let standing = fixed_links(&robot, options);
     let closing = std::mem::take(&mut robot.closing);
     let files = reader.meshes.files;

@@ -4,7 +4,7 @@
 use super::activation::{ActuatorLaw, OTHER_INPUTS, TINY};
 use super::defaults::Element;
 use super::formula::Formula;
-use super::record::Record;
+use super::record::ActuatorRecord;
 use crate::import::context::Cx;
 
 /// Parameters of the force curves of a muscle.
@@ -21,7 +21,7 @@ impl Muscle {
     /// Reads the parameters. Reports those that MuJoCo computes from the inertia or by a simulation.
     pub(super) fn read_muscle(
         actuator: &Element<'_>,
-        record: &Record<'_>,
+        record: &ActuatorRecord<'_>,
         cx: &mut Cx<'_>,
     ) -> Option<Muscle> {
         let first_parameters = |prm: &[f64; 10]| std::array::from_fn(|k| prm[k]);
@@ -127,7 +127,7 @@ pub(super) fn activation_rate(
     law: &ActuatorLaw,
     input: Formula,
     state: Formula,
-    record: &Record<'_>,
+    record: &ActuatorRecord<'_>,
 ) -> Formula {
     let [rise, fall, width, ..] = record.dynprm;
     let factor = state.clone().clamp_between(0.0, 1.0) * 1.5 + 0.5;

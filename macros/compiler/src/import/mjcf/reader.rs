@@ -1,14 +1,14 @@
 //! State of the reader of an MJCF file.
 
 use super::defaults::{Defaults, Element};
-use super::geometry::Mass;
+use super::geometry::BodyMass;
 use super::mesh::Meshes;
 use super::settings::Settings;
 use super::touch::{CollisionShape, Plane};
 use crate::diag::Place;
-use crate::import::imported::Placed;
-use crate::import::pose::{Pose, roll_pitch_yaw, scale_vector};
-use crate::import::robot::{Origin, Robot};
+use crate::import::imported::Located;
+use crate::import::pose::{FilePose, roll_pitch_yaw, scale_vector};
+use crate::import::robot::{FileOrigin, Robot};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -37,21 +37,21 @@ pub(super) struct MjcfReader<'a> {
     pub(super) left_out: Vec<String>,
     pub(super) counts: BTreeMap<&'static str, usize>,
     /// Pose of each body relative to the world, in the configuration of the file.
-    pub(super) poses: BTreeMap<String, Pose>,
+    pub(super) poses: BTreeMap<String, FilePose>,
     /// Body of each site, and pose of the site relative to the body.
-    pub(super) poses_of_sites: BTreeMap<String, (String, Pose)>,
+    pub(super) poses_of_sites: BTreeMap<String, (String, FilePose)>,
     /// Named shapes, each with its body and the pose of its surrounding `<frame>` elements relative to the
     /// body.
-    pub(super) named_shapes: BTreeMap<String, (String, Element<'a>, Pose)>,
+    pub(super) named_shapes: BTreeMap<String, (String, Element<'a>, FilePose)>,
     /// Source position of the first shape with an individual fluid model.
     pub(super) shaped: Option<Place>,
     /// Names of mocap bodies, whose poses programs prescribe.
     pub(super) mocap: BTreeSet<String>,
     /// Mass properties of each link of the robot.
-    pub(super) masses: Vec<Option<Mass>>,
+    pub(super) masses: Vec<Option<BodyMass>>,
     /// Number of bodies read so far, which is MuJoCo's index of the last one.
     pub(super) bodies: usize,
-    pub(super) sites: Vec<(Name, String, Pose)>,
+    pub(super) sites: Vec<(Name, String, FilePose)>,
     /// Planes of the world with which shapes can collide.
     pub(super) planes: Vec<Plane>,
     /// Collision shapes of bodies that can touch planes of the world.
@@ -116,14 +116,14 @@ impl<'a> MjcfReader<'a> {
             if let Some(mass) = mass {
                 let place = link.mass.as_ref().map_or(link.name.place.clone(), |mass| mass.place.clone());
                 let inertia = mass.inertia.map(|row| scale_vector(row, factor));
-                set_mass(link, &Mass { mass: mass.mass * factor, inertia, ..*mass }, &place);
+                set_mass(link, &BodyMass { mass: mass.mass * factor, inertia, ..*mass }, &place);
             }
         }
     }
 }
 
 /// Sets the mass properties of a link from numbers.
-pub(super) fn set_mass(link: &mut Body, mass: &Mass, place: &Place) {
+pub(super) fn set_mass(link: &mut Body, mass: &BodyMass, place: &Place) {
     link.mass = Some(Expr::number_at(mass.mass, place));
     link.com = (mass.com != [0.0; 3]).then(|| Expr::vector_at(mass.com, place));
     let rows: Vec<Expr> = (0..3)
@@ -137,8 +137,8 @@ pub(super) fn set_mass(link: &mut Body, mass: &Mass, place: &Place) {
     link.inertia = (!zero).then(|| Expr { kind: ExprKind::Array(rows), place: place.clone() });
 }
 
-/// Converts a numeric pose to an [`Origin`] with a source position.
-pub(super) fn origin_of_pose(pose: &Pose, place: &Place) -> Origin {
-    let placed_value = |value| Placed { value, place: place.clone() };
-    Origin { xyz: placed_value(pose.at.map(|x| x + 0.0)), rpy: placed_value(roll_pitch_yaw(&pose.axes)) }
+/// Converts a numeric pose to a [`FileOrigin`] with a source position.
+pub(super) fn origin_of_pose(pose: &FilePose, place: &Place) -> FileOrigin {
+    let placed_value = |value| Located { value, place: place.clone() };
+    FileOrigin { xyz: placed_value(pose.at.map(|x| x + 0.0)), rpy: placed_value(roll_pitch_yaw(&pose.axes)) }
 }

@@ -9,12 +9,12 @@ use super::defaults::{Element, numbers_with_defaults};
 use super::winding;
 use crate::import::context::Cx;
 use crate::import::element::{Node, read_number_attribute};
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use std::f64::consts::PI;
 
 /// Parameters of an actuator as MuJoCo stores them.
 #[derive(Clone, Copy)]
-pub(super) struct Record<'a> {
+pub(super) struct ActuatorRecord<'a> {
     /// Type of the element whose attributes were read last.
     written: &'a str,
     pub(super) dynamics: &'a str,
@@ -26,7 +26,7 @@ pub(super) struct Record<'a> {
 }
 
 /// Actuator parameters of MuJoCo without any attribute.
-const PLAIN: Record<'static> = Record {
+const PLAIN: ActuatorRecord<'static> = ActuatorRecord {
     written: "general",
     dynamics: "none",
     gain_kind: "fixed",
@@ -55,7 +55,7 @@ pub(super) fn read_record<'a>(
     actuator: &Element<'a>,
     classes: &[Vec<Node<'a>>],
     cx: &mut Cx<'_>,
-) -> Record<'a> {
+) -> ActuatorRecord<'a> {
     let mut records = vec![PLAIN];
     for class in classes {
         records.extend(records.last().copied());
@@ -70,9 +70,9 @@ pub(super) fn read_record<'a>(
 
 /// Writes the attributes of an actuator or of its defaults to the last record. The preceding records belong
 /// to the parent classes.
-fn write_last_record<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
+fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
     let kind = node.tag_name().name();
-    let is_readable = |record: &&Record<'a>| {
+    let is_readable = |record: &&ActuatorRecord<'a>| {
         record.written == kind || (record.written == "general" && record.gain_kind == "fixed")
     };
     let usual = records.iter().rev().find(is_readable).copied().unwrap_or(PLAIN);
@@ -80,7 +80,7 @@ fn write_last_record<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx
     let own = if usual.written == kind { usual } else { PLAIN };
     let Some(record) = records.last_mut() else { return };
     let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
-    let shortcut_record = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| Record {
+    let shortcut_record = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| ActuatorRecord {
         written: kind,
         dynamics,
         gain_kind,
@@ -109,7 +109,7 @@ fn write_last_record<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx
                 _ => "none",
             };
             let written = shortcut_record(dynamics, "fixed", stiffness, "affine", [0.0, -stiffness, damping]);
-            Record { dynprm: padded_parameters(&[lag]), ..written }
+            ActuatorRecord { dynprm: padded_parameters(&[lag]), ..written }
         }
         "velocity" => {
             let gain = said("kv").unwrap_or(usual.gain[0]);
@@ -127,7 +127,7 @@ fn write_last_record<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx
             let bias = numbers_with_defaults(node, "bias", [0.0; 3], cx).map(|found| found.value);
             let [b0, b1, b2, ..] = usual.bias;
             let written = shortcut_record("filter", "fixed", area, "affine", bias.unwrap_or([b0, b1, b2]));
-            Record { dynprm: padded_parameters(&[lag]), ..written }
+            ActuatorRecord { dynprm: padded_parameters(&[lag]), ..written }
         }
         "muscle" => write_muscle(own, node, cx),
         "adhesion" => {
@@ -138,7 +138,12 @@ fn write_last_record<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx
             let known = own.gain_kind == "dcmotor";
             let [dynprm, gain, bias] = if known { [own.dynprm, own.gain, own.bias] } else { [[0.0; 10]; 3] };
             let [dynprm, gain, bias] = winding::motor_parameters([dynprm, gain, bias], node, cx);
-            Record { dynprm, gain, bias, ..shortcut_record("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3]) }
+            ActuatorRecord {
+                dynprm,
+                gain,
+                bias,
+                ..shortcut_record("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3])
+            }
         }
         "pid" => {
             let known = own.gain_kind == "pid";
@@ -150,14 +155,14 @@ fn write_last_record<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx
             let [imax, slew] = limits.map(|(attribute, usual)| said(attribute).unwrap_or(usual));
             let dynamics = if integral != 0.0 || slew != 0.0 { "pid" } else { "none" };
             let written = shortcut_record(dynamics, "pid", integral, "affine", [0.0, -stiffness, damping]);
-            Record { dynprm: padded_parameters(&[imax, slew]), ..written }
+            ActuatorRecord { dynprm: padded_parameters(&[imax, slew]), ..written }
         }
         _ => shortcut_record("none", kind, 1.0, "affine", [0.0; 3]),
     };
 }
 
 /// Returns the parameters of a muscle. `own` are those of its defaults.
-fn write_muscle<'a>(own: Record<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> Record<'a> {
+fn write_muscle<'a>(own: ActuatorRecord<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> ActuatorRecord<'a> {
     let known = own.gain_kind == "muscle";
     let (times, mut gain) =
         if known { (own.dynprm, own.gain) } else { (padded_parameters(&[0.01, 0.04]), MUSCLE) };
@@ -177,7 +182,7 @@ fn write_muscle<'a>(own: Record<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> Record<
     }
     let width = said("tausmooth").unwrap_or(width);
     let dynprm = padded_parameters(&[nonnegative_or(times[0], rise), nonnegative_or(times[1], fall), width]);
-    Record {
+    ActuatorRecord {
         written: "muscle",
         dynamics: "muscle",
         gain_kind: "muscle",
@@ -188,7 +193,7 @@ fn write_muscle<'a>(own: Record<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> Record<
     }
 }
 
-impl<'a> Record<'a> {
+impl<'a> ActuatorRecord<'a> {
     fn write_general_actuator(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
         let trimmed_or_default =
             |attribute: &str, usual: &'a str| node.attribute(attribute).map_or(usual, str::trim);
@@ -196,7 +201,7 @@ impl<'a> Record<'a> {
         (self.gain_kind, self.bias_kind) =
             (trimmed_or_default("gaintype", self.gain_kind), trimmed_or_default("biastype", self.bias_kind));
         let value_or_default =
-            |found: Option<Placed<[f64; 10]>>, usual| found.map_or(usual, |found| found.value);
+            |found: Option<Located<[f64; 10]>>, usual| found.map_or(usual, |found| found.value);
         self.dynprm = value_or_default(numbers_with_defaults(node, "dynprm", self.dynprm, cx), self.dynprm);
         self.gain = value_or_default(numbers_with_defaults(node, "gainprm", self.gain, cx), self.gain);
         self.bias = value_or_default(numbers_with_defaults(node, "biasprm", self.bias, cx), self.bias);

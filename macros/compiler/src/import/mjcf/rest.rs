@@ -3,28 +3,28 @@
 
 use super::reader::MjcfReader;
 use super::spatial::Poses;
-use crate::import::pose::{Pose, axis_rotation, matrix_product, scale_vector};
-use crate::import::robot::Origin;
+use crate::import::pose::{FilePose, axis_rotation, matrix_product, scale_vector};
+use crate::import::robot::FileOrigin;
 use crate::syntax::{GROUND, JointKind};
 
 impl MjcfReader<'_> {
     /// Returns the pose of each body relative to the world with all joint springs relaxed. Ball and free
     /// joints are as in the configuration of the file.
     pub(super) fn poses_at_rest(&self) -> Poses {
-        let mut poses = Poses::from([(GROUND.to_string(), Pose::ZERO)]);
+        let mut poses = Poses::from([(GROUND.to_string(), FilePose::ZERO)]);
         // The joint of the parent precedes each joint.
         for joint in &self.robot.joints {
             let rest = self.rests.get(&joint.name.text).copied().unwrap_or(0.0);
             let axis = joint.axis.value;
             let motion = match joint.kind.rotates_about_one_axis() {
-                Some(true) => Pose { axes: axis_rotation(axis, rest), ..Pose::ZERO },
-                Some(false) => Pose { at: scale_vector(axis, rest), ..Pose::ZERO },
-                None => Pose::ZERO,
+                Some(true) => FilePose { axes: axis_rotation(axis, rest), ..FilePose::ZERO },
+                Some(false) => FilePose { at: scale_vector(axis, rest), ..FilePose::ZERO },
+                None => FilePose::ZERO,
             };
-            let parent = poses.get(&joint.parent.text).copied().unwrap_or(Pose::ZERO);
-            let back = Pose { at: scale_vector(joint.anchor, -1.0), ..Pose::ZERO };
+            let parent = poses.get(&joint.parent.text).copied().unwrap_or(FilePose::ZERO);
+            let back = FilePose { at: scale_vector(joint.anchor, -1.0), ..FilePose::ZERO };
             let pose = if joint.kind == JointKind::Free {
-                self.poses.get(&joint.child.text).copied().unwrap_or(Pose::ZERO)
+                self.poses.get(&joint.child.text).copied().unwrap_or(FilePose::ZERO)
             } else {
                 parent.compose_with(&pose_of_origin(&joint.origin)).compose_with(&motion).compose_with(&back)
             };
@@ -34,7 +34,7 @@ impl MjcfReader<'_> {
     }
 }
 
-fn pose_of_origin(origin: &Origin) -> Pose {
+fn pose_of_origin(origin: &FileOrigin) -> FilePose {
     let [roll, pitch, yaw] = origin.rpy.value;
     let rotation_about_axis = |axis, angle| axis_rotation(axis, angle);
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
@@ -42,5 +42,5 @@ fn pose_of_origin(origin: &Origin) -> Pose {
         &matrix_product(&rotation_about_axis(z, yaw), &rotation_about_axis(y, pitch)),
         &rotation_about_axis(x, roll),
     );
-    Pose { at: origin.xyz.value, axes }
+    FilePose { at: origin.xyz.value, axes }
 }

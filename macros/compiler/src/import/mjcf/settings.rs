@@ -5,11 +5,11 @@ use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
     Node, child_elements, element_position, read_number_attribute, read_numbers_attribute,
 };
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 
 /// Source from which mass properties of MJCF bodies are taken.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Source {
+pub(super) enum MassSource {
     /// Mass properties from `<inertial>`, or from the geometry of bodies without it.
     Auto,
     /// Mass properties from the geometry of all bodies.
@@ -27,7 +27,7 @@ pub(super) struct Settings {
     /// Whether the presence of a range activates the limit of a joint or tendon.
     pub(super) autolimits: bool,
     /// Source from which mass properties of bodies are taken.
-    pub(super) source: Source,
+    pub(super) source: MassSource,
     /// First and last geometry group that contributes mass.
     pub(super) groups: [f64; 2],
     /// Whether inertias that violate the triangle inequality are replaced by that of a ball.
@@ -41,10 +41,10 @@ pub(super) struct Settings {
     /// Folder that contains the meshes.
     pub(super) meshes: String,
     /// Gravitational acceleration of the file, m/s².
-    pub(super) gravity: Placed<[f64; 3]>,
+    pub(super) gravity: Located<[f64; 3]>,
     gravitates: bool,
     /// Nonzero properties of the fluid: density, viscosity and wind.
-    pub(super) medium: Vec<(&'static str, Placed<[f64; 3]>)>,
+    pub(super) medium: Vec<(&'static str, Located<[f64; 3]>)>,
     /// Whether springs of joints and tendons are enabled.
     pub(super) springs: bool,
     /// Whether dampers of joints and tendons are enabled.
@@ -78,14 +78,14 @@ impl Settings {
             degrees: true,
             euler: ['x', 'y', 'z'],
             autolimits: true,
-            source: Source::Auto,
+            source: MassSource::Auto,
             groups: [0.0, 5.0],
             balance: false,
             least_mass: 0.0,
             least_inertia: 0.0,
             total_mass: None,
             meshes: String::new(),
-            gravity: Placed { value: [0.0, 0.0, -9.81], place: element_position(root, cx) },
+            gravity: Located { value: [0.0, 0.0, -9.81], place: element_position(root, cx) },
             gravitates: true,
             medium: Vec::new(),
             springs: true,
@@ -152,9 +152,9 @@ impl Settings {
         }
         if let Some(word) = word("inertiafromgeom") {
             match word {
-                "auto" => self.source = Source::Auto,
-                "true" => self.source = Source::Geometry,
-                "false" => self.source = Source::Inertial,
+                "auto" => self.source = MassSource::Auto,
+                "true" => self.source = MassSource::Geometry,
+                "false" => self.source = MassSource::Inertial,
                 _ => unknown("inertiafromgeom", "`true`, `false` or `auto`"),
             }
         }

@@ -14,7 +14,7 @@ use crate::import::element::{
     Node, check_attributes, child_elements, element_position, quoted_tag, read_name_attribute,
     read_number_attribute,
 };
-use crate::import::pose::{Pose, Vector, add, cross, dot, length, matrix_times_vector, scale_vector};
+use crate::import::pose::{FilePose, Vector, add, cross, dot, length, matrix_times_vector, scale_vector};
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 #[derive(Clone)]
 pub(super) struct BodyFrame {
     pub(super) body: String,
-    pub(super) pose: Pose,
+    pub(super) pose: FilePose,
 }
 
 /// Path of a tendon around a surface.
@@ -67,7 +67,7 @@ pub(super) struct Path {
 }
 
 /// Poses of bodies relative to the world, by name of the body.
-pub(super) type Poses = BTreeMap<String, Pose>;
+pub(super) type Poses = BTreeMap<String, FilePose>;
 
 impl<'a> MjcfReader<'a> {
     /// Reads the path of a tendon. The outer `None` means an error in the file, the inner `Err` an
@@ -214,7 +214,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Records the named shapes of a body, and shapes with an individual fluid model.
-    pub(super) fn record_shapes(&mut self, body: &str, shapes: &[(Element<'a>, Pose)], cx: &Cx<'_>) {
+    pub(super) fn record_shapes(&mut self, body: &str, shapes: &[(Element<'a>, FilePose)], cx: &Cx<'_>) {
         for (shape, outer) in shapes {
             self.note_fluid_shape(shape, cx);
             if let Some(name) = shape.node.attribute("name") {

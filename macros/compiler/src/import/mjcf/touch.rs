@@ -3,7 +3,7 @@
 use super::defaults::Element;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::pose::{Pose, matrix_times_vector};
+use crate::import::pose::{FilePose, matrix_times_vector};
 use crate::syntax::{Contact, Expr, ExprKind, GROUND, Key, Name, WrittenArguments};
 use std::cmp::Ordering;
 
@@ -22,7 +22,7 @@ pub(super) struct Law {
 /// Plane of the MJCF world, with which shapes collide.
 pub(super) struct Plane {
     pub(super) name: String,
-    pub(super) pose: Pose,
+    pub(super) pose: FilePose,
     pub(super) law: Law,
 }
 

@@ -5,7 +5,7 @@ use super::defaults::Element;
 use super::reader::{MjcfReader, origin_of_pose};
 use crate::import::context::Cx;
 use crate::import::element::element_position;
-use crate::import::pose::Pose;
+use crate::import::pose::FilePose;
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Shape};
 
@@ -32,7 +32,7 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn visual_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(Shape, Option<Mesh>, Pose)> {
+    fn visual_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(Shape, Option<Mesh>, FilePose)> {
         match shape.trimmed_text("type").unwrap_or("sphere") {
             "mesh" => {
                 let pose = super::frame::read_pose(shape, &self.settings, cx);

@@ -4,10 +4,10 @@
 use super::couplings;
 use super::drives;
 use super::joint::FileJoint;
-use super::motion::Motion;
+use super::motion::JointMotion;
 use super::names::unused_name;
 use super::parts::Robot;
-use super::tree::Order;
+use super::tree::JointOrder;
 use crate::import::context::{Cx, quote_word};
 use crate::import::imported::Imported;
 use crate::syntax::{
@@ -18,8 +18,8 @@ use crate::syntax::{
 /// Assembles the mechanism. Each body is placed in the list like the joint whose child it is.
 pub(in crate::import) fn assemble_mechanism(
     robot: Robot,
-    order: &Order,
-    motions: Vec<Motion>,
+    order: &JointOrder,
+    motions: Vec<JointMotion>,
     options: &FileOptions,
     cx: &mut Cx<'_>,
 ) -> Imported {
@@ -34,7 +34,7 @@ pub(in crate::import) fn assemble_mechanism(
     let visuals = visuals.collect();
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
-    let mut given: Vec<Option<(FileJoint, Motion)>> =
+    let mut given: Vec<Option<(FileJoint, JointMotion)>> =
         robot.joints.into_iter().zip(motions).map(Some).collect();
     let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
     let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
@@ -43,16 +43,16 @@ pub(in crate::import) fn assemble_mechanism(
     let (mut limits, stops) = (Vec::new(), options.limits == LimitOption::Stops);
     let mut left_out = robot.left_out;
     for (joint, child) in &order.joints {
-        if let Some((joint, Motion::Frozen(_))) = &given[*joint]
+        if let Some((joint, JointMotion::Frozen(_))) = &given[*joint]
             && joint.mimic.is_some()
             && options.lock.iter().any(|lock| lock.text == joint.name.text)
         {
             left_out.push(format!("the coupling of {}, which is locked", joint.name.text));
         }
         limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
-            Motion::Frozen(_) => None,
-            Motion::Own => joint.limits.limit_of_joint(&joint.name, false, stops),
-            Motion::Follows(_) => joint.limits.limit_of_joint(&joint.name, true, stops),
+            JointMotion::Frozen(_) => None,
+            JointMotion::Own => joint.limits.limit_of_joint(&joint.name, false, stops),
+            JointMotion::Follows(_) => joint.limits.limit_of_joint(&joint.name, true, stops),
         }));
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
@@ -150,8 +150,8 @@ fn endpoint_of_parent(given: &FileJoint) -> Endpoint {
     }
 }
 
-fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {
-    if let Motion::Frozen(coordinate) = motion {
+fn build_joint(given: FileJoint, motion: JointMotion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {
+    if let JointMotion::Frozen(coordinate) = motion {
         let mut parent = endpoint_of_parent(&given);
         move_end(&mut parent, &given, coordinate, cx);
         let child = endpoint_of_child(given.anchor, &given);
@@ -160,7 +160,7 @@ fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut
     let alone = given.has_coordinate();
     let mut joint = converted_joint(given);
     match motion {
-        Motion::Follows(mimic) => joint.mimic = Some(mimic),
+        JointMotion::Follows(mimic) => joint.mimic = Some(mimic),
         _ => joint.driven = options.inputs == InputOption::Joints && alone,
     }
     joint

@@ -1,13 +1,13 @@
 //! Collision shapes of links, which contacts refer to.
 
-use super::origin::Origin;
+use super::origin::FileOrigin;
 use crate::diag::Place;
 use crate::syntax::{Collision, Endpoint, MeshVertices, Name, Shape};
 
 /// Collision shape of a link.
 pub(in crate::import) struct FileCollision {
     /// Pose of the collision shape's centre relative to the link.
-    pub(in crate::import) origin: Origin,
+    pub(in crate::import) origin: FileOrigin,
     /// Shape of the collision geometry with its lengths, m.
     pub(in crate::import) shape: Shape,
     /// Source of the vertices of a mesh; `None` for other shapes.

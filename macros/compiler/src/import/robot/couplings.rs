@@ -1,7 +1,7 @@
 //! Substitutes the coordinates of locked joints into constraints.
 
 use super::joint::FileJoint;
-use super::motion::{Motion, locked_coordinates};
+use super::motion::{JointMotion, locked_coordinates};
 use crate::import::context::{Cx, quote_word};
 use crate::syntax::{BinaryOp, Constraint, Expr, ExprKind};
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 /// satisfied and reported otherwise.
 pub(in crate::import) fn resolve_constraints(
     constraints: Vec<Constraint>,
-    joints: &[Option<(FileJoint, Motion)>],
+    joints: &[Option<(FileJoint, JointMotion)>],
     cx: &mut Cx<'_>,
 ) -> Vec<Constraint> {
     let frozen = locked_coordinates(joints);

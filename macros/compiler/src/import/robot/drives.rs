@@ -2,13 +2,13 @@
 //! coordinate contributes a constant to the length of an element.
 
 use super::joint::FileJoint;
-use super::motion::{Motion, locked_coordinates};
+use super::motion::{JointMotion, locked_coordinates};
 use crate::syntax::{Drive, DriveLaw, DriveOn};
 use std::collections::BTreeMap;
 
 /// Returns the elements that act on at least one moving joint. Inputs without a joint are preserved, because
 /// callers rely on the input's index.
-pub(super) fn resolve_drives(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
+pub(super) fn resolve_drives(drives: Vec<Drive>, joints: &[Option<(FileJoint, JointMotion)>]) -> Vec<Drive> {
     let frozen = locked_coordinates(joints);
     drives.into_iter().filter_map(|drive| without_locked_joints(drive, &frozen)).collect()
 }

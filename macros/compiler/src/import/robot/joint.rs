@@ -1,8 +1,8 @@
 //! A joint as its file describes it, before locks and `mimic` are resolved.
 
 use super::limit::FileLimits;
-use super::origin::Origin;
-use crate::import::imported::Placed;
+use super::origin::FileOrigin;
+use crate::import::imported::Located;
 use crate::syntax::{Expr, JointKind, Mimic, Name};
 
 /// Joint as the robot file describes it.
@@ -19,11 +19,11 @@ pub(in crate::import) struct FileJoint {
     pub(in crate::import) child: Name,
     /// Frame of the joint relative to the parent. At coordinate zero, the child's axes coincide with the
     /// joint's.
-    pub(in crate::import) origin: Origin,
+    pub(in crate::import) origin: FileOrigin,
     /// Position of the joint relative to the child's origin, in the child's axes.
     pub(in crate::import) anchor: [f64; 3],
     /// Joint axis, nonzero but not normalised; unused by welds and free joints.
-    pub(in crate::import) axis: Placed<[f64; 3]>,
+    pub(in crate::import) axis: Located<[f64; 3]>,
     /// Leader and coefficients of a joint that follows another joint; `None` if the user's options ignore
     /// `mimic`.
     pub(in crate::import) mimic: Option<Mimic>,
@@ -40,6 +40,44 @@ pub(in crate::import) struct FileJoint {
 }
 
 impl FileJoint {
+    /// Returns the joint of a parent and a child link, without limits, passive forces and relations to other
+    /// joints. The child's origin is on the joint.
+    pub(in crate::import) fn from_links(
+        name: Name,
+        (kind, word): (JointKind, &'static str),
+        [parent, child]: [Name; 2],
+        origin: FileOrigin,
+        axis: Located<[f64; 3]>,
+    ) -> FileJoint {
+        FileJoint {
+            name,
+            kind,
+            word,
+            parent,
+            child,
+            origin,
+            anchor: [0.0; 3],
+            axis,
+            mimic: None,
+            held: None,
+            lead: None,
+            limits: FileLimits::default(),
+            damping: None,
+            friction: None,
+        }
+    }
+
+    /// Returns the joint that fixes one link to another, with the name of this joint type in the file format.
+    pub(in crate::import) fn weld(
+        name: Name,
+        word: &'static str,
+        links: [Name; 2],
+        origin: FileOrigin,
+    ) -> FileJoint {
+        let axis = Located { value: [0.0, 0.0, 1.0], place: name.place.clone() };
+        FileJoint::from_links(name, (JointKind::Weld, word), links, origin, axis)
+    }
+
     /// Returns whether the joint has exactly one coordinate, to which limits and locks refer.
     pub(in crate::import) fn has_coordinate(&self) -> bool {
         has_coordinate(self.kind)

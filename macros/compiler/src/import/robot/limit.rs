@@ -1,19 +1,19 @@
 //! Limits of a joint as a robot file specifies them.
 
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::syntax::{Expr, ExprKind, Key, Limit, Name, WrittenArguments};
 
 /// Limits of a joint; `None` for a quantity without a limit.
 #[derive(Default)]
 pub(in crate::import) struct FileLimits {
     /// Lower bound of the joint coordinate.
-    pub(in crate::import) lower: Option<Placed<f64>>,
+    pub(in crate::import) lower: Option<Located<f64>>,
     /// Upper bound of the joint coordinate.
-    pub(in crate::import) upper: Option<Placed<f64>>,
+    pub(in crate::import) upper: Option<Located<f64>>,
     /// Maximum magnitude of the joint velocity.
-    pub(in crate::import) velocity: Option<Placed<f64>>,
+    pub(in crate::import) velocity: Option<Located<f64>>,
     /// Maximum magnitude of the joint force or torque.
-    pub(in crate::import) effort: Option<Placed<f64>>,
+    pub(in crate::import) effort: Option<Located<f64>>,
 }
 
 /// Help text for limits of a robot file that are invalid.
@@ -36,7 +36,7 @@ impl FileLimits {
         stops: bool,
     ) -> Option<Limit> {
         let limit_expression =
-            |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number_at(f.value, &f.place));
+            |found: &Option<Located<f64>>| found.as_ref().map(|f| Expr::number_at(f.value, &f.place));
         let bounds = [
             (Key::From, limit_expression(&self.lower)),
             (Key::To, limit_expression(&self.upper)),

@@ -30,8 +30,8 @@ pub(super) use names::{
     check_joint_ends, check_locked_names, check_names, check_unique, check_unknown_links, declare_world_link,
     rename_ground, unused_name,
 };
-pub(super) use origin::{Origin, origin_from_pose};
+pub(super) use origin::{FileOrigin, origin_from_pose};
 pub(super) use parts::{MAX_ELEMENTS, Robot, massless_link};
 pub(super) use snap::snap_joint_frame;
-pub(super) use tree::{Order, order_joints};
+pub(super) use tree::{JointOrder, order_joints};
 pub(super) use visual::FileVisual;

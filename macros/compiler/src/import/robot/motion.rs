@@ -7,7 +7,7 @@ use crate::syntax::{Mimic, Name};
 use std::collections::BTreeMap;
 
 /// Motion of a joint: free, coupled or locked.
-pub(in crate::import) enum Motion {
+pub(in crate::import) enum JointMotion {
     /// Joint whose coordinate is independent.
     Own,
     /// Joint that follows an independent joint by a linear relation.
@@ -17,12 +17,14 @@ pub(in crate::import) enum Motion {
 }
 
 /// Returns the coordinates of the locked joints by name.
-pub(in crate::import) fn locked_coordinates(joints: &[Option<(FileJoint, Motion)>]) -> BTreeMap<&str, f64> {
+pub(in crate::import) fn locked_coordinates(
+    joints: &[Option<(FileJoint, JointMotion)>],
+) -> BTreeMap<&str, f64> {
     joints
         .iter()
         .flatten()
         .filter_map(|(joint, motion)| match motion {
-            Motion::Frozen(at) => Some((joint.name.text.as_str(), *at)),
+            JointMotion::Frozen(at) => Some((joint.name.text.as_str(), *at)),
             _ => None,
         })
         .collect()
@@ -34,7 +36,7 @@ pub(in crate::import) fn resolve_motions(
     joints: &[FileJoint],
     locks: &[Name],
     cx: &mut Cx<'_>,
-) -> Option<Vec<Motion>> {
+) -> Option<Vec<JointMotion>> {
     let index: BTreeMap<&str, usize> =
         joints.iter().enumerate().map(|(k, joint)| (joint.name.text.as_str(), k)).collect();
     let mut locked: Vec<bool> = joints.iter().map(|joint| joint.held.is_some()).collect();
@@ -50,7 +52,7 @@ pub(in crate::import) fn resolve_motions(
         return None;
     }
     let motions = (0..joints.len()).map(|k| match locked[k] {
-        true => Motion::Frozen(joints[k].held.unwrap_or(0.0)),
+        true => JointMotion::Frozen(joints[k].held.unwrap_or(0.0)),
         false => follow_leaders(k, joints, &leaders, &locked, cx),
     });
     Some(motions.collect())
@@ -118,14 +120,14 @@ fn follow_leaders(
     leaders: &[Option<usize>],
     locked: &[bool],
     cx: &mut Cx<'_>,
-) -> Motion {
+) -> JointMotion {
     let (mut at, mut factor, mut offset) = (start, 1.0, 0.0);
     while let (Some(leader), Some(mimic)) = (leaders[at], &joints[at].mimic) {
         (factor, offset) = (factor * mimic.multiplier, factor * mimic.offset + offset);
         at = leader;
     }
     let Some(mimic) = joints[start].mimic.as_ref().filter(|_| at != start) else {
-        return Motion::Own;
+        return JointMotion::Own;
     };
     if !f64::is_finite(factor) || !f64::is_finite(offset) {
         let message = format!(
@@ -135,8 +137,8 @@ fn follow_leaders(
         cx.report_error(&mimic.joint.place, message, |d| d);
     }
     if locked[at] || factor == 0.0 {
-        return Motion::Frozen(offset + factor * joints[at].held.unwrap_or(0.0));
+        return JointMotion::Frozen(offset + factor * joints[at].held.unwrap_or(0.0));
     }
     let joint = Name { text: joints[at].name.text.clone(), place: mimic.joint.place.clone() };
-    Motion::Follows(Mimic { joint, multiplier: factor, offset })
+    JointMotion::Follows(Mimic { joint, multiplier: factor, offset })
 }

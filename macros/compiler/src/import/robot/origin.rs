@@ -1,19 +1,19 @@
 //! Pose of a frame: a position and roll, pitch and yaw.
 
 use crate::diag::Place;
-use crate::import::imported::Placed;
-use crate::import::pose::{Pose, axis_rotation, matrix_product, roll_pitch_yaw};
+use crate::import::imported::Located;
+use crate::import::pose::{FilePose, axis_rotation, matrix_product, roll_pitch_yaw};
 use crate::syntax::Expr;
 
 /// Pose of a frame as a robot file specifies it: position and rotation.
-pub(in crate::import) struct Origin {
+pub(in crate::import) struct FileOrigin {
     /// Position of the frame's origin relative to its reference frame, m.
-    pub(in crate::import) xyz: Placed<[f64; 3]>,
+    pub(in crate::import) xyz: Located<[f64; 3]>,
     /// Roll, pitch and yaw, rad: rotations about the fixed x, y and z axes, in this order.
-    pub(in crate::import) rpy: Placed<[f64; 3]>,
+    pub(in crate::import) rpy: Located<[f64; 3]>,
 }
 
-impl Origin {
+impl FileOrigin {
     /// Returns the position of the frame, or `None` if it is zero.
     pub(in crate::import) fn nonzero_position(&self) -> Option<Expr> {
         (self.xyz.value != [0.0; 3]).then(|| Expr::vector_at(self.xyz.value, &self.xyz.place))
@@ -28,11 +28,11 @@ impl Origin {
     }
 
     /// Returns the pose as position and axes, exact at multiples of a right angle.
-    pub(in crate::import) fn pose(&self) -> Pose {
+    pub(in crate::import) fn pose(&self) -> FilePose {
         let [roll, pitch, yaw] = self.rpy.value;
         let tilted =
             matrix_product(&axis_rotation([0.0, 1.0, 0.0], pitch), &axis_rotation([1.0, 0.0, 0.0], roll));
-        Pose { at: self.xyz.value, axes: matrix_product(&axis_rotation([0.0, 0.0, 1.0], yaw), &tilted) }
+        FilePose { at: self.xyz.value, axes: matrix_product(&axis_rotation([0.0, 0.0, 1.0], yaw), &tilted) }
     }
 
     /// Rotates a vector from the axes of this frame to those of its reference frame.
@@ -44,13 +44,16 @@ impl Origin {
     }
 }
 
-/// Converts a pose to an [`Origin`].
-pub(in crate::import) fn origin_from_pose(pose: &Pose, place: &Place) -> Origin {
-    let value_at_pose = |value| Placed { value, place: place.clone() };
-    Origin { xyz: value_at_pose(pose.at.map(|x| x + 0.0)), rpy: value_at_pose(roll_pitch_yaw(&pose.axes)) }
+/// Converts a pose to a [`FileOrigin`].
+pub(in crate::import) fn origin_from_pose(pose: &FilePose, place: &Place) -> FileOrigin {
+    let value_at_pose = |value| Located { value, place: place.clone() };
+    FileOrigin {
+        xyz: value_at_pose(pose.at.map(|x| x + 0.0)),
+        rpy: value_at_pose(roll_pitch_yaw(&pose.axes)),
+    }
 }
 
-fn rotation_expression(axis: &str, angle: f64, origin: &Origin) -> Expr {
+fn rotation_expression(axis: &str, angle: f64, origin: &FileOrigin) -> Expr {
     let place = &origin.rpy.place;
     Expr::function_call_at(axis, vec![Expr::number_at(angle, place)], place)
 }

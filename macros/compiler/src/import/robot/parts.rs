@@ -2,7 +2,7 @@
 
 use super::collision::FileCollision;
 use super::joint::FileJoint;
-use super::origin::Origin;
+use super::origin::FileOrigin;
 use super::visual::FileVisual;
 use crate::syntax::file_parameters::FileField;
 use crate::syntax::{Body, Constraint, Contact, Drive, Expr, Joint, Name};
@@ -19,7 +19,7 @@ pub(in crate::import) struct Robot {
     /// Joints of the kinematic tree, and joints that close loops before these are separated.
     pub(in crate::import) joints: Vec<FileJoint>,
     /// Pose of the root relative to the ground; `None` for the identity.
-    pub(in crate::import) root: Option<Origin>,
+    pub(in crate::import) root: Option<FileOrigin>,
     /// Names of the joints that extensions of the format declare to close loops.
     pub(in crate::import) declared_closing: BTreeSet<String>,
     /// Joints that close loops.

@@ -5,7 +5,7 @@ use crate::import::context::{Cx, quote_all, quote_word};
 use std::collections::BTreeMap;
 
 /// Root of the kinematic tree, and the joints in coordinate order.
-pub(in crate::import) struct Order {
+pub(in crate::import) struct JointOrder {
     /// Index of the link that is no joint's child.
     pub(in crate::import) root: usize,
     /// Pairs of the index of a joint and of its child link, depth first. Joints of one parent are sorted by
@@ -15,7 +15,7 @@ pub(in crate::import) struct Order {
 
 /// Orders the joints. Names must have been checked before. Returns `None` with the error in `cx` if the links
 /// do not form a single tree.
-pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
+pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<JointOrder> {
     let name_with_index = |(k, name): (usize, &str)| (name.to_string(), k);
     let links: BTreeMap<String, usize> =
         robot.links.iter().map(|link| link.name.text.as_str()).enumerate().map(name_with_index).collect();
@@ -31,7 +31,7 @@ pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<
     }
     report_cycles(robot, &ends, &above, cx);
     let root = find_root(robot, &above, cx)?;
-    Some(Order { root, joints: depth_first_order(robot, root, &ends) })
+    Some(JointOrder { root, joints: depth_first_order(robot, root, &ends) })
 }
 
 /// Returns the link that is no joint's child, the root. Returns `None` if there is a cycle, which is reported

@@ -1,12 +1,12 @@
 //! Visual shapes of the links of a robot file.
 
-use super::origin::Origin;
+use super::origin::FileOrigin;
 use crate::syntax::{Endpoint, Mesh, Name, Shape, Visual};
 
 /// Visual shape of a link of a robot file.
 pub(in crate::import) struct FileVisual {
     /// Pose of the visual shape's centre relative to the link.
-    pub(in crate::import) origin: Origin,
+    pub(in crate::import) origin: FileOrigin,
     /// Visual shape with its lengths, m.
     pub(in crate::import) shape: Shape,
     /// Triangles of a mesh; `None` for other shapes.

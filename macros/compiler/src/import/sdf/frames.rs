@@ -8,8 +8,8 @@ use crate::import::element::{
     Attribute, Node, check_radians, check_value_element, child_elements, element_position,
     read_numbers_content, relevant_contents, report_duplicate,
 };
-use crate::import::pose::{IDENTITY, Pose, axis_rotation, matrix_product, rotation_of_quaternion};
-use crate::import::robot::{Origin, origin_from_pose};
+use crate::import::pose::{FilePose, IDENTITY, axis_rotation, matrix_product, rotation_of_quaternion};
+use crate::import::robot::{FileOrigin, origin_from_pose};
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
@@ -18,11 +18,11 @@ const MAX_DEPTH: usize = 1024;
 
 /// Frame of the file: a link, a joint, a model or a `<frame>`.
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
+pub(super) struct SdfFrame {
     /// Full name of the frame that the pose is relative to.
     pub(super) base: Name,
     /// Pose of the SDF frame relative to the frame `base`.
-    pub(super) pose: Pose,
+    pub(super) pose: FilePose,
     /// Frame that this frame is attached to; `None` for links.
     pub(super) attached: Option<Name>,
 }
@@ -32,7 +32,7 @@ pub(super) struct Frame {
 #[derive(Default)]
 pub(super) struct Frames {
     /// SDF frames by their full names.
-    pub(super) known: BTreeMap<String, Frame>,
+    pub(super) known: BTreeMap<String, SdfFrame>,
 }
 
 /// First version in which the attribute `relative_to` of a pose replaces `frame`.
@@ -40,11 +40,15 @@ const RELATIVE_TO: (u32, u32) = (1, 7);
 
 /// Reads `<pose relative_to="…">` of an element, or `<pose frame="…">` in old versions. Without either
 /// attribute, the pose is relative to `base`.
-pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> Frame {
+pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> SdfFrame {
     let base_name = |at: Place| Name { text: base.to_string(), place: at };
     let mut poses = child_elements(node).filter(|child| child.tag_name().name() == "pose");
     let Some(found) = poses.next() else {
-        return Frame { base: base_name(element_position(node, cx)), pose: Pose::ZERO, attached: None };
+        return SdfFrame {
+            base: base_name(element_position(node, cx)),
+            pose: FilePose::ZERO,
+            attached: None,
+        };
     };
     if let Some(second) = poses.next() {
         report_duplicate(second, Some(found), cx);
@@ -59,8 +63,8 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
         None => base_name(element_position(found, cx)),
     };
     let is_empty = relevant_contents(found).next().is_none();
-    let pose = if is_empty { Pose::ZERO } else { read_pose(found, cx).unwrap_or(Pose::ZERO) };
-    Frame { base, pose, attached: None }
+    let pose = if is_empty { FilePose::ZERO } else { read_pose(found, cx).unwrap_or(FilePose::ZERO) };
+    SdfFrame { base, pose, attached: None }
 }
 
 /// Returns the attribute of a `<pose>` that names its reference frame.
@@ -104,7 +108,7 @@ pub(super) fn pose_in_link(
     (link, scope): (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
-) -> Option<Pose> {
+) -> Option<FilePose> {
     let frame = read_frame(node, scope, &link.text, cx);
     Some(
         frames
@@ -114,20 +118,20 @@ pub(super) fn pose_in_link(
     )
 }
 
-/// Returns the pose of an element of a link relative to the link, as an [`Origin`].
+/// Returns the pose of an element of a link relative to the link, as an [`FileOrigin`].
 pub(super) fn origin_in_link(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
-) -> Option<Origin> {
+) -> Option<FileOrigin> {
     Some(origin_from_pose(&pose_in_link(node, link, frames, cx)?, &element_position(node, cx)))
 }
 
 const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
                        everywhere in the file";
 
-fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
+fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FilePose> {
     if node.attribute("rotation_format") == Some("quat_xyzw") {
         let [x, y, z, a, b, c, w] = read_numbers_content(node, cx)?.value;
         let size = (a * a + b * b + c * c + w * w).sqrt();
@@ -136,7 +140,10 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
             cx.report_error(&element_position(node, cx), message, |d| d);
             return None;
         }
-        return Some(Pose { at: [x, y, z], axes: rotation_of_quaternion([w, a, b, c].map(|x| x / size)) });
+        return Some(FilePose {
+            at: [x, y, z],
+            axes: rotation_of_quaternion([w, a, b, c].map(|x| x / size)),
+        });
     }
     let found = read_numbers_content(node, cx)?;
     let [x, y, z, roll, pitch, yaw] = found.value;
@@ -149,7 +156,7 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     let axes = turns.into_iter().fold(IDENTITY, |whole, (axis, turn)| {
         matrix_product(&whole, &axis_rotation(axis, angle_in_radians(turn)))
     });
-    Some(Pose { at: [x, y, z], axes })
+    Some(FilePose { at: [x, y, z], axes })
 }
 
 impl Frames {
@@ -182,8 +189,8 @@ impl Frames {
     }
 
     /// Returns the pose of a frame relative to the world. Reports unknown names and cycles.
-    pub(super) fn resolve_pose(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Pose> {
-        let mut pose = Pose::ZERO;
+    pub(super) fn resolve_pose(&self, name: &Name, cx: &mut Cx<'_>) -> Option<FilePose> {
+        let mut pose = FilePose::ZERO;
         let mut at = name.clone();
         for _ in 0..MAX_DEPTH {
             if at.text == WORLD {

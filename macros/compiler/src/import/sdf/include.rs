@@ -26,7 +26,7 @@ const INCLUDE: [&str; 6] = ["uri", "name", "pose", "static", "plugin", "placemen
 type Range = std::ops::Range<usize>;
 
 /// Step of the expansion. The list of steps is a stack: the last step is executed first.
-enum ExpansionStep {
+enum ModelExpansionStep {
     /// Expansion step that copies a range of bytes of the file with this index.
     Copy(usize, Range),
     /// Inserted text, attributed to a byte of a file: text, index of the file, offset.
@@ -62,14 +62,14 @@ pub(super) fn read_with_includes(
     let mut steps = expansion_steps(&whole.files, 0, name, None, cx)?;
     while let Some(step) = steps.pop() {
         match step {
-            ExpansionStep::Copy(file, range) => {
+            ModelExpansionStep::Copy(file, range) => {
                 whole.append_file_bytes(file, range.start, range.end, name, cx)?
             }
-            ExpansionStep::Put(text, file, at) => whole.append_text(&text, (file, at), name, cx)?,
-            ExpansionStep::Leave => {
+            ModelExpansionStep::Put(text, file, at) => whole.append_text(&text, (file, at), name, cx)?,
+            ModelExpansionStep::Leave => {
                 open.pop();
             }
-            ExpansionStep::Include(include) => {
+            ModelExpansionStep::Include(include) => {
                 let found = find_included_file(&whole.files, &include, cx)?;
                 count += 1;
                 if include.depth > MAX_DEPTH || count > MAX_FILES {
@@ -87,7 +87,7 @@ pub(super) fn read_with_includes(
                     places.push(include.uri.clone());
                 }
                 open.push(file);
-                steps.push(ExpansionStep::Leave);
+                steps.push(ModelExpansionStep::Leave);
                 steps.extend(expansion_steps(&whole.files, file, &include.uri, Some(&include), cx)?);
             }
         }
@@ -102,7 +102,7 @@ fn expansion_steps(
     name: &Name,
     include: Option<&Include>,
     cx: &mut Diagnostics,
-) -> Option<Vec<ExpansionStep>> {
+) -> Option<Vec<ModelExpansionStep>> {
     let read = files.get(file)?;
     let shown = Name { text: read.shown.clone(), place: name.place.clone() };
     let cx = &mut Cx::new(&read.text, &shown, cx);
@@ -141,20 +141,20 @@ fn expansion_steps(
             None
         } else if node.tag_name().name() == "include" {
             match read_include(node, files, file, depth, cx) {
-                Some(found) => Some(ExpansionStep::Include(Box::new(found))),
+                Some(found) => Some(ModelExpansionStep::Include(Box::new(found))),
                 // A world may include missing models, which are skipped.
                 None => continue,
             }
         } else {
             continue;
         };
-        steps.push(ExpansionStep::Copy(file, at..range.start));
+        steps.push(ModelExpansionStep::Copy(file, at..range.start));
         steps.extend(replaces);
         at = range.end;
     }
-    steps.push(ExpansionStep::Copy(file, at..end));
+    steps.push(ModelExpansionStep::Copy(file, at..end));
     if include.is_some() {
-        steps.push(ExpansionStep::Put("</model>".to_string(), file, end));
+        steps.push(ModelExpansionStep::Put("</model>".to_string(), file, end));
     }
     steps.reverse();
     (!cx.has_errors()).then_some(steps)
@@ -166,14 +166,14 @@ fn copy_with_prefixes(
     file: usize,
     read: &ReadFile,
     cx: &mut Cx<'_>,
-) -> Option<Vec<ExpansionStep>> {
+) -> Option<Vec<ModelExpansionStep>> {
     let include =
         document.descendants().find(|node| node.is_element() && node.tag_name().name() == "include");
     if let Some(include) = include.filter(|include| !is_in_world(*include)) {
         report_undeclared_prefixes(include, cx);
         return None;
     }
-    Some(vec![ExpansionStep::Copy(file, 0..read.text.len())])
+    Some(vec![ModelExpansionStep::Copy(file, 0..read.text.len())])
 }
 
 fn report_undeclared_prefixes(node: Node<'_>, cx: &mut Cx<'_>) {
@@ -191,31 +191,32 @@ fn is_in_world(node: Node<'_>) -> bool {
 
 /// Adds the start tag of an included SDF model, with name and pose of the `<include>` if it has them,
 /// otherwise those of the model.
-fn open_included_model(steps: &mut Vec<ExpansionStep>, model: Node<'_>, file: usize, include: &Include) {
+fn open_included_model(steps: &mut Vec<ModelExpansionStep>, model: Node<'_>, file: usize, include: &Include) {
     let start = model.range().start;
-    let text_step = |text: &str| ExpansionStep::Put(text.to_string(), file, start);
-    steps.push(ExpansionStep::Put("<model name=\"".to_string(), include.by, include.from));
+    let text_step = |text: &str| ModelExpansionStep::Put(text.to_string(), file, start);
+    steps.push(ModelExpansionStep::Put("<model name=\"".to_string(), include.by, include.from));
     match &include.name {
-        Some(range) => steps.push(ExpansionStep::Copy(include.by, range.clone())),
-        None => steps
-            .extend(model.attribute_node("name").map(|name| ExpansionStep::Copy(file, name.range_value()))),
+        Some(range) => steps.push(ModelExpansionStep::Copy(include.by, range.clone())),
+        None => steps.extend(
+            model.attribute_node("name").map(|name| ModelExpansionStep::Copy(file, name.range_value())),
+        ),
     }
     steps.push(text_step("\""));
     // The version of the included file determines the interpretation of its elements.
     if let Some(version) = model.document().root_element().attribute_node("version") {
         steps.push(text_step(&format!(" {}=\"", version::OF_INCLUDED)));
-        steps.push(ExpansionStep::Copy(file, version.range_value()));
+        steps.push(ModelExpansionStep::Copy(file, version.range_value()));
         steps.push(text_step("\""));
     }
     let is_own_attribute = |name: &str| name != "name" && name != version::OF_INCLUDED;
     for attribute in model.attributes().filter(|attribute| is_own_attribute(attribute.name())) {
         steps.push(text_step(&format!(" {}=\"", attribute.name())));
-        steps.push(ExpansionStep::Copy(file, attribute.range_value()));
+        steps.push(ModelExpansionStep::Copy(file, attribute.range_value()));
         steps.push(text_step("\""));
     }
     steps.push(text_step(">"));
     let parts = include.pose.iter().chain(&include.plugins);
-    steps.extend(parts.map(|part| ExpansionStep::Copy(include.by, part.clone())));
+    steps.extend(parts.map(|part| ModelExpansionStep::Copy(include.by, part.clone())));
 }
 
 /// Returns the only model of an included file, or reports that it has no model or several.

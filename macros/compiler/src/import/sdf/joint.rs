@@ -8,11 +8,11 @@ use crate::import::element::{
     Node, check_attributes, check_value_element, child_elements, element_position, known_children,
     quoted_tag, read_name_attribute, read_numbers_content, read_word, relevant_contents, required_child,
 };
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::import::misplaced;
-use crate::import::pose::{Pose, Vector, length, matrix_times_vector};
+use crate::import::pose::{FilePose, Vector, length, matrix_times_vector};
 use crate::import::robot::{
-    FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, has_axis, has_coordinate, massless_link,
+    FileJoint, FileLimits, FileOrigin, IGNORE_LIMITS, Robot, has_axis, has_coordinate, massless_link,
     origin_from_pose,
 };
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
@@ -85,7 +85,7 @@ pub(super) fn read_joint(
     let (parent, child) = (frames.link_of_frame(&parent, cx)?, frames.link_of_frame(&child, cx)?);
     let (outer, inner) = (frames.resolve_pose(&parent, cx)?, frames.resolve_pose(&child, cx)?);
     let anchor = inner.inverse_pose().compose_with(&at).at;
-    let base = outer.inverse_pose().compose_with(&Pose { at: at.at, axes: inner.axes });
+    let base = outer.inverse_pose().compose_with(&FilePose { at: at.at, axes: inner.axes });
     let number = axes.max(1);
     for (axis, which) in [(axis, "axis"), (axis2, "second axis")].into_iter().skip(axes) {
         // Exporters write an axis into fixed joints.
@@ -105,7 +105,7 @@ pub(super) fn read_joint(
             true => child.clone(),
             false => Name { text: format!("{}_1", joint.text), place: joint.place.clone() },
         };
-        let pose = if k == 0 { base } else { Pose { at: anchor, ..Pose::ZERO } };
+        let pose = if k == 0 { base } else { FilePose { at: anchor, ..FilePose::ZERO } };
         let said = AxisSource { node, named: &named, axis, word, kind };
         let mut found = said.read_axis_joint((&at, &inner), scope, frames, options, robot, cx)?;
         (found.parent, found.child) = (carrier, carried.clone());
@@ -170,24 +170,8 @@ fn read_screw_lead(
 }
 
 /// Returns the SDF joint that fixes one link to another.
-pub(super) fn fixed_joint(name: Name, parent: Name, child: Name, origin: Origin) -> FileJoint {
-    let axis = Placed { value: [0.0, 0.0, 1.0], place: name.place.clone() };
-    FileJoint {
-        name,
-        kind: JointKind::Weld,
-        word: "fixed",
-        parent,
-        child,
-        origin,
-        anchor: [0.0; 3],
-        axis,
-        mimic: None,
-        held: None,
-        lead: None,
-        limits: FileLimits::default(),
-        damping: None,
-        friction: None,
-    }
+pub(super) fn fixed_joint(name: Name, parent: Name, child: Name, origin: FileOrigin) -> FileJoint {
+    FileJoint::weld(name, "fixed", [parent, child], origin)
 }
 
 /// Data from which one axis of an SDF joint is read.
@@ -203,7 +187,7 @@ impl AxisSource<'_> {
     /// Reads the joint of this axis. Parent, child and origin are placeholders, which the caller sets.
     fn read_axis_joint(
         &self,
-        (at, inner): (&Pose, &Pose),
+        (at, inner): (&FilePose, &FilePose),
         scope: &Scope,
         frames: &Frames,
         options: &FileOptions,
@@ -213,7 +197,7 @@ impl AxisSource<'_> {
         let AxisSource { node, named, word, kind, .. } = *self;
         let own = element_position(node, cx);
         let bare =
-            fixed_joint(named.clone(), named.clone(), named.clone(), origin_from_pose(&Pose::ZERO, &own));
+            fixed_joint(named.clone(), named.clone(), named.clone(), origin_from_pose(&FilePose::ZERO, &own));
         let mut joint = FileJoint { kind, word, ..bare };
         let Some(axis) = self.axis.filter(|_| has_axis(kind)) else {
             if has_axis(kind) {
@@ -270,14 +254,14 @@ fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
 fn read_axis(
     xyz: Option<Node<'_>>,
     axis: Node<'_>,
-    (usual, inner): (&Pose, &Pose),
+    (usual, inner): (&FilePose, &FilePose),
     scope: &Scope,
     frames: &Frames,
     cx: &mut Cx<'_>,
-) -> Option<Placed<Vector>> {
+) -> Option<Located<Vector>> {
     let found = match xyz {
         Some(xyz) => read_numbers_content::<3>(xyz, cx)?,
-        None => Placed { value: [0.0, 0.0, 1.0], place: element_position(axis, cx) },
+        None => Located { value: [0.0, 0.0, 1.0], place: element_position(axis, cx) },
     };
     if length(found.value) < 1e-14 {
         cx.report_error(&found.place, "axis of zero length has no direction", |d| d);
@@ -293,7 +277,7 @@ fn read_axis(
         None => *usual,
     };
     let value = matrix_times_vector(&inner.inverse_pose().compose_with(&axes).axes, found.value);
-    Some(Placed { value: value.map(|x| if x.abs() < 1e-15 { 0.0 } else { x }), place: found.place })
+    Some(Located { value: value.map(|x| if x.abs() < 1e-15 { 0.0 } else { x }), place: found.place })
 }
 
 fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &mut Cx<'_>) {
@@ -313,7 +297,7 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
             cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
         }
     }
-    let nonzero_expression = |found: Option<Placed<[f64; 1]>>| {
+    let nonzero_expression = |found: Option<Located<[f64; 1]>>| {
         let found = found.filter(|found| found.value != [0.0])?;
         Some(Expr::number_at(found.value[0], &found.place))
     };
@@ -343,12 +327,13 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
     let mut number = |part: Option<Node<'_>>| {
         let part = part.filter(|part| !is_infinite_limit(*part, cx))?;
         let found = read_numbers_content::<1>(part, cx)?;
-        Some(Placed { value: found.value[0], place: found.place }).filter(|found| found.value.abs() < ENDLESS)
+        Some(Located { value: found.value[0], place: found.place })
+            .filter(|found| found.value.abs() < ENDLESS)
     };
     let [lower, upper, velocity, effort] = found.map(&mut number);
-    let limit_unless_continuous = |end: Option<Placed<f64>>| end.filter(|_| !continuous);
+    let limit_unless_continuous = |end: Option<Located<f64>>| end.filter(|_| !continuous);
     // Negative limits mean that there is no limit.
-    let nonnegative_limit = |size: Option<Placed<f64>>| size.filter(|size| size.value >= 0.0);
+    let nonnegative_limit = |size: Option<Located<f64>>| size.filter(|size| size.value >= 0.0);
     let limits = FileLimits {
         lower: limit_unless_continuous(lower),
         upper: limit_unless_continuous(upper),
@@ -377,7 +362,7 @@ fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
     let [multiplier, offset, reference] =
         found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
     let value_or_default =
-        |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
+        |found: Option<Located<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
     let multiplier = value_or_default(multiplier, 1.0);
     Some(Mimic {
         joint: leader,

@@ -10,7 +10,7 @@ use crate::import::element::{
     known_children, read_numbers_content, read_word,
 };
 use crate::import::misplaced;
-use crate::import::pose::{Matrix, Pose, rotated_tensor};
+use crate::import::pose::{FilePose, Matrix, rotated_tensor};
 use crate::import::robot::massless_link;
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 
@@ -81,7 +81,7 @@ pub(super) fn read_link(
             }
             pose_in_link(inertial, (name, scope), frames, cx)?
         }
-        _ => Pose::ZERO,
+        _ => FilePose::ZERO,
     };
     set_mass_properties(&mut body, mass, &pose, &rotated_tensor(&pose.axes, &read_inertia(inertia, cx)), &at);
     if !body
@@ -145,7 +145,7 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
 }
 
 /// Sets the mass properties of a body from an SDF link.
-fn set_mass_properties(body: &mut Body, mass: f64, pose: &Pose, inertia: &Matrix, at: &Place) {
+fn set_mass_properties(body: &mut Body, mass: f64, pose: &FilePose, inertia: &Matrix, at: &Place) {
     body.mass = Some(Expr::number_at(mass, at));
     body.com = (pose.at != [0.0; 3]).then(|| Expr::vector_at(pose.at, at));
     let entry =

@@ -9,13 +9,13 @@ use super::element::{
     read_name_attribute, read_numbers_content, read_word, relevant_contents,
 };
 use super::misplaced;
-use super::pose::Pose;
+use super::pose::FilePose;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot, origin_from_pose};
 use crate::import::whole::import_composed_text;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
-use frames::{Frame, Frames, name_in_owner, own_frames, read_frame};
+use frames::{Frames, SdfFrame, name_in_owner, own_frames, read_frame};
 use scope::{Scope, WORLD, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -353,7 +353,7 @@ impl<'a> SdfReader<'a> {
             if !prefix.is_empty() {
                 let short = prefix.trim_end_matches("::").to_string();
                 let base = Name { text: own.clone(), place: element_position(node, cx) };
-                let same = Frame { attached: Some(base.clone()), base, pose: Pose::ZERO };
+                let same = SdfFrame { attached: Some(base.clone()), base, pose: FilePose::ZERO };
                 self.frames.known.insert(short, same);
             }
             self.frames.known.insert(own.clone(), frame);

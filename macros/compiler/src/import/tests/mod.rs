@@ -4,7 +4,7 @@ use super::{FileOptions, Imported, import_file};
 use crate::diag::Diagnostics;
 use crate::syntax::{
     Base, BinaryOp, Body, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, FileFormat, Inertias,
-    InputOption, Joint, LimitOption, LoopOption, Name,
+    InputOption, Joint, LoopOption, Name,
 };
 use proc_macro2::Span;
 use std::fs;
@@ -35,11 +35,17 @@ struct Folder(PathBuf);
 impl Folder {
     fn new(test: &str, files: &[(&str, &str)]) -> Folder {
         let folder = std::env::temp_dir().join(format!("linkwork-{test}-{}", std::process::id()));
-        fs::create_dir_all(folder.join("parts")).expect("a folder");
-        for (name, text) in files {
-            fs::write(folder.join(name), text).expect("a file");
-        }
-        Folder(folder)
+        fs::create_dir_all(&folder).expect("a folder");
+        let folder = Folder(folder);
+        files.iter().for_each(|(name, text)| folder.write_file(name, text.as_bytes()));
+        folder
+    }
+
+    /// Writes a file of the folder, in a subfolder that need not exist.
+    fn write_file(&self, name: &str, bytes: &[u8]) {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, bytes).expect("a file");
     }
 
     fn import_as_text(&self, options: &FileOptions, text: &str) -> String {
@@ -60,23 +66,7 @@ impl Drop for Folder {
 
 /// Returns the default options of a robot file.
 fn default_options() -> FileOptions {
-    FileOptions {
-        format: FileFormat::Urdf,
-        path: test_name("r.urdf"),
-        base: Base::Fixed,
-        honour_passive: true,
-        follow_mimic: true,
-        limits: LimitOption::Honour,
-        inertias: Inertias::Check,
-        inputs: InputOption::None,
-        lock: Vec::new(),
-        snap: None,
-        parameters: Vec::new(),
-        contacts: false,
-        loops: LoopOption::Refuse,
-        collisions: false,
-        visuals: false,
-    }
+    FileOptions::with_defaults(FileFormat::Urdf, test_name("r.urdf"))
 }
 
 fn options_with_locked_joints(joints: &[&str]) -> FileOptions {

@@ -7,7 +7,7 @@ use crate::import::element::{
     Node, check_attributes, child_elements, element_position, known_children, read_name_attribute,
     read_number_attribute, read_numbers_attribute, required_child,
 };
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::import::mesh;
 use crate::import::robot::FileCollision;
 use crate::syntax::{MeshVertices, Shape};
@@ -36,7 +36,7 @@ fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<File
         }
         (_, Some(cuboid), ..) => {
             check_attributes(cuboid, &["size"], &[], cx);
-            let size: Placed<[f64; 3]> = read_numbers_attribute(cuboid, "size", cx)?;
+            let size: Located<[f64; 3]> = read_numbers_attribute(cuboid, "size", cx)?;
             for x in size.value {
                 require_positive(x, &size.place, cx)?;
             }

@@ -7,9 +7,9 @@ use crate::import::element::{
     Node, check_attributes, element_position, known_children, read_name_attribute, read_numbers_content,
     read_word, required_child,
 };
-use crate::import::imported::Placed;
-use crate::import::pose::{Pose, Vector, length, matrix_times_vector};
-use crate::import::robot::{FileJoint, Origin, Robot, has_axis};
+use crate::import::imported::Located;
+use crate::import::pose::{FilePose, Vector, length, matrix_times_vector};
+use crate::import::robot::{FileJoint, FileOrigin, Robot, has_axis};
 use crate::syntax::{Expr, FileOptions, JointKind, Name};
 use std::collections::BTreeMap;
 
@@ -79,14 +79,14 @@ pub(super) fn read_gazebo_joint(
 
 /// Axis of a joint, and its damping or friction.
 struct GazeboAxis {
-    direction: Placed<Vector>,
+    direction: Located<Vector>,
     damping: Option<Expr>,
 }
 
 impl GazeboAxis {
     /// Returns the placeholder for a joint without an axis.
     fn unused(name: &Name) -> GazeboAxis {
-        GazeboAxis { direction: Placed { value: [0.0, 0.0, 1.0], place: name.place.clone() }, damping: None }
+        GazeboAxis { direction: Located { value: [0.0, 0.0, 1.0], place: name.place.clone() }, damping: None }
     }
 }
 
@@ -139,8 +139,8 @@ fn read_gazebo_axis(
 }
 
 /// Reads a pose relative to the child link; the default is the identity.
-fn read_pose(node: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Pose> {
-    let Some(node) = node else { return Some(Pose::ZERO) };
+fn read_pose(node: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<FilePose> {
+    let Some(node) = node else { return Some(FilePose::ZERO) };
     let frame = node.attribute("relative_to").or(node.attribute("frame")).map_or("", str::trim);
     if !frame.is_empty() {
         let message = format!("a pose relative to {} is not supported", quote_word(frame));
@@ -151,12 +151,12 @@ fn read_pose(node: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Pose> {
     }
     let found = read_numbers_content::<6>(node, cx)?;
     let [x, y, z, roll, pitch, yaw] = found.value;
-    let value_at_pose = |value| Placed { value, place: found.place.clone() };
-    Some(Origin { xyz: value_at_pose([x, y, z]), rpy: value_at_pose([roll, pitch, yaw]) }.pose())
+    let value_at_pose = |value| Located { value, place: found.place.clone() };
+    Some(FileOrigin { xyz: value_at_pose([x, y, z]), rpy: value_at_pose([roll, pitch, yaw]) }.pose())
 }
 
 /// Returns the poses of the links relative to their root, with all coordinates zero.
-fn placements_at_zero(robot: &Robot) -> BTreeMap<String, Pose> {
+fn placements_at_zero(robot: &Robot) -> BTreeMap<String, FilePose> {
     let mut below: BTreeMap<&str, Vec<&FileJoint>> = BTreeMap::new();
     let mut roots: BTreeMap<&str, ()> =
         robot.links.iter().map(|link| (link.name.text.as_str(), ())).collect();
@@ -169,7 +169,7 @@ fn placements_at_zero(robot: &Robot) -> BTreeMap<String, Pose> {
         roots.remove(joint.child.text.as_str());
     }
     let mut placed = BTreeMap::new();
-    let mut stack: Vec<(&str, Pose)> = roots.into_keys().map(|root| (root, Pose::ZERO)).collect();
+    let mut stack: Vec<(&str, FilePose)> = roots.into_keys().map(|root| (root, FilePose::ZERO)).collect();
     while let Some((link, pose)) = stack.pop() {
         if placed.contains_key(link) {
             continue;

@@ -8,7 +8,7 @@ use crate::import::element::{
     Node, check_attributes, check_contents, element_position, known_children, read_name_attribute,
     read_number_attribute, read_numbers_attribute, required_child,
 };
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::import::misplaced;
 use crate::import::robot::{FileJoint, has_axis, has_coordinate};
 use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
@@ -69,20 +69,11 @@ pub(super) fn read_joint(
     let limits = read_limits(limit, joint.as_ref(), word == "continuous", cx);
     let (name, parent, child) = (joint?, parent?, child?);
     Some(FileJoint {
-        name,
-        kind,
-        word,
-        parent,
-        child,
-        origin,
-        anchor: [0.0; 3],
-        axis,
         mimic,
-        held: None,
-        lead: None,
         limits,
         damping,
         friction,
+        ..FileJoint::from_links(name, (kind, word), [parent, child], origin, axis)
     })
 }
 
@@ -106,8 +97,8 @@ fn read_end_link(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx
 }
 
 /// Reads the axis of a joint; the default of URDF is x.
-pub(super) fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
-    let default_axis = |place: Place| Placed { value: [1.0, 0.0, 0.0], place };
+pub(super) fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Located<[f64; 3]> {
+    let default_axis = |place: Place| Located { value: [1.0, 0.0, 0.0], place };
     let Some(axis) = axis else {
         return default_axis(element_position(node, cx));
     };

@@ -2,7 +2,7 @@
 
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, check_contents, read_number_attribute};
-use crate::import::imported::Placed;
+use crate::import::imported::Located;
 use crate::import::robot::{FileLimits, IGNORE_LIMITS};
 use crate::syntax::Name;
 
@@ -57,9 +57,9 @@ pub(super) fn read_limits(
 }
 
 /// Reads a bound. Returns `None` for infinity, and 0 if the attribute is missing.
-fn read_bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+fn read_bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option<Located<f64>> {
     let Some(text) = node.attribute(which) else {
-        return Some(Placed { value: 0.0, place: cx.source_position(node.range().start) });
+        return Some(Located { value: 0.0, place: cx.source_position(node.range().start) });
     };
     let plain = text.trim().trim_start_matches('+').to_ascii_lowercase();
     if plain == infinite || plain == format!("{infinite}inity") {

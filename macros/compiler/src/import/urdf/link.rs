@@ -8,7 +8,7 @@ use crate::import::element::{
     read_name_attribute, read_number_attribute, required_child,
 };
 use crate::import::misplaced;
-use crate::import::robot::{Origin, massless_link};
+use crate::import::robot::{FileOrigin, massless_link};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias};
 
 /// Attributes of the URDF element `<inertia>`: the entries of the inertia matrix.
@@ -94,7 +94,7 @@ fn is_zero(expr: Option<&Expr>) -> bool {
 
 /// Reads the inertia matrix, transformed from the axes of the inertial frame to those of the link. Returns
 /// `None` if the matrix is zero.
-fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr> {
+fn read_inertia(node: Node<'_>, origin: &FileOrigin, cx: &mut Cx<'_>) -> Option<Expr> {
     check_contents(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
     let read = INERTIA.map(|entry| read_number_attribute(node, entry, cx));
     let largest = read.iter().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.value.abs()));

@@ -15,9 +15,9 @@ use crate::import::element::{
     Node, check_attributes, check_contents, child_elements, element_position, known_children,
     read_name_attribute, read_numbers_attribute, required_child,
 };
-use crate::import::imported::Placed;
-use crate::import::pose::{Pose, Vector, matrix_times_vector};
-use crate::import::robot::{FileJoint, FileLimits, Origin, Robot, has_axis, origin_from_pose, unused_name};
+use crate::import::imported::Located;
+use crate::import::pose::{FilePose, Vector, matrix_times_vector};
+use crate::import::robot::{FileJoint, FileOrigin, Robot, has_axis, origin_from_pose, unused_name};
 use crate::syntax::{FileOptions, JointKind, LoopOption, Name};
 
 /// Element of Isaac Sim for a joint that closes a loop.
@@ -84,32 +84,20 @@ fn refuse(node: Node<'_>, prefix: &str, options: &FileOptions, robot: &mut Robot
 pub(super) fn joint_between(
     name: Name,
     (kind, word): (JointKind, &'static str),
-    (parent, on_parent): (Name, Pose),
-    (child, on_child): (Name, Pose),
-    axis: &Placed<Vector>,
+    (parent, on_parent): (Name, FilePose),
+    (child, on_child): (Name, FilePose),
+    axis: &Located<Vector>,
 ) -> FileJoint {
     // The child's axes if the frames coincide; the joint is where its frame is.
     let axes = on_parent.compose_with(&on_child.inverse_pose()).axes;
     let place: Place = name.place.clone();
+    let origin = origin_from_pose(&FilePose { at: on_parent.at, axes }, &place);
+    let in_child = matrix_times_vector(&on_child.axes, axis.value);
+    let axis =
+        Located { value: in_child.map(|x| if x.abs() < 1e-15 { 0.0 } else { x }), place: axis.place.clone() };
     FileJoint {
-        name,
-        kind,
-        word,
-        parent,
-        child,
-        origin: origin_from_pose(&Pose { at: on_parent.at, axes }, &place),
         anchor: on_child.at,
-        axis: Placed {
-            value: matrix_times_vector(&on_child.axes, axis.value)
-                .map(|x| if x.abs() < 1e-15 { 0.0 } else { x }),
-            place: axis.place.clone(),
-        },
-        mimic: None,
-        held: None,
-        lead: None,
-        limits: FileLimits::default(),
-        damping: None,
-        friction: None,
+        ..FileJoint::from_links(name, (kind, word), [parent, child], origin, axis)
     }
 }
 
@@ -135,11 +123,11 @@ fn read_loop_joint(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileJoint> {
     let mut end = |end: Node<'_>| {
         check_contents(end, &["link"], &["xyz", "rpy"], &[], cx);
         let link = read_name_attribute(end, "link", cx)?;
-        let zero = || Placed { value: [0.0; 3], place: element_position(end, cx) };
+        let zero = || Located { value: [0.0; 3], place: element_position(end, cx) };
         let (xyz, rpy) = (zero(), zero());
         let xyz = read_numbers_attribute(end, "xyz", cx).unwrap_or(xyz);
         let rpy = read_numbers_attribute(end, "rpy", cx).unwrap_or(rpy);
-        Some((link, Origin { xyz, rpy }.pose()))
+        Some((link, FileOrigin { xyz, rpy }.pose()))
     };
     let (parent, child) = (end(first)?, end(second)?);
     Some(joint_between(name?, (kind, word), parent, child, &axis))
@@ -161,7 +149,7 @@ fn read_ball_constraint(node: Node<'_>, robot: &Robot, cx: &mut Cx<'_>) -> Optio
     let point_of = |part: Option<Node<'_>>, cx: &mut Cx<'_>| {
         let part = part?;
         check_attributes(part, &["value"], &[], cx);
-        read_numbers_attribute::<3>(part, "value", cx).map(|at| Pose { at: at.value, ..Pose::ZERO })
+        read_numbers_attribute::<3>(part, "value", cx).map(|at| FilePose { at: at.value, ..FilePose::ZERO })
     };
     for link in [a, b].into_iter().flatten() {
         check_attributes(link, &["name"], &[], cx);
@@ -171,7 +159,7 @@ fn read_ball_constraint(node: Node<'_>, robot: &Robot, cx: &mut Cx<'_>) -> Optio
     let is_taken = |name: &str| robot.joints.iter().any(|joint| joint.name.text == name);
     let place = element_position(node, cx);
     let name = Name { text: unused_name("ball_constraint", is_taken), place: place.clone() };
-    let axis = Placed { value: [1.0, 0.0, 0.0], place };
+    let axis = Located { value: [1.0, 0.0, 0.0], place };
     let kind = (JointKind::Ball, "spherical");
     Some(joint_between(name, kind, (parent?, on_parent?), (child?, on_child?), &axis))
 }

@@ -1,17 +1,17 @@
-//! Conversion of an element `<origin xyz="…" rpy="…"/>` to an [`Origin`].
+//! Conversion of an element `<origin xyz="…" rpy="…"/>` to a [`FileOrigin`].
 
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_contents, check_radians, element_position, read_numbers_attribute};
-use crate::import::imported::Placed;
-use crate::import::robot::Origin;
+use crate::import::imported::Located;
+use crate::import::robot::FileOrigin;
 
 const RADIANS: &str = "`rpy` is in radians: write the angle that is meant, everywhere in the file";
 
 /// Reads the `<origin>` of `owner`. Without an `<origin>`, the pose is the identity.
-pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> Origin {
-    let zero_vector_at_node = |node| Placed { value: [0.0; 3], place: element_position(node, cx) };
+pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> FileOrigin {
+    let zero_vector_at_node = |node| Located { value: [0.0; 3], place: element_position(node, cx) };
     let Some(node) = node else {
-        return Origin { xyz: zero_vector_at_node(owner), rpy: zero_vector_at_node(owner) };
+        return FileOrigin { xyz: zero_vector_at_node(owner), rpy: zero_vector_at_node(owner) };
     };
     let (no_xyz, no_rpy) = (zero_vector_at_node(node), zero_vector_at_node(node));
     if let Some(found) = node.attribute_node("quat_xyzw") {
@@ -25,5 +25,5 @@ pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'
     let xyz = read_numbers_attribute(node, "xyz", cx).unwrap_or(no_xyz);
     let rpy = read_numbers_attribute(node, "rpy", cx).unwrap_or(no_rpy);
     check_radians(&rpy.value, &rpy.place, RADIANS, cx);
-    Origin { xyz, rpy }
+    FileOrigin { xyz, rpy }
 }

@@ -160,25 +160,7 @@ impl<'g> DofContribution<'g> {
     }
 }
 
-impl<'g> Propagated<'g> for DofContribution<'g> {
-    fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
-        DofContribution {
-            by_q: self.by_q.zip_with(&other.by_q, f),
-            by_v: self.by_v.zip_with(&other.by_v, f),
-            momentum: self.momentum.zip_with(&other.momentum, f),
-            moment: self.moment.zip_with(&other.moment, f),
-        }
-    }
-
-    fn to_parent(&self, joint: &Joint<'g>) -> Self {
-        DofContribution {
-            by_q: self.by_q.to_parent(joint),
-            by_v: self.by_v.to_parent(joint),
-            momentum: self.momentum.to_parent(joint),
-            moment: self.moment.to_parent(joint),
-        }
-    }
-}
+impl_propagated!(DofContribution { by_q, by_v, momentum, moment });
 
 impl<'g> ForceDerivatives<'g> {
     fn add(&mut self, row: &Column<'g>, column: &Column<'g>, by_q: Expr<'g>, by_v: Expr<'g>) {

@@ -9,7 +9,7 @@ use crate::mechanism::Model;
 /// Motion of a frame in its own axes. Accelerations are classical (those of points), and gravity is included
 /// as an upward acceleration of the ground.
 #[derive(Clone, Copy)]
-pub struct State<'g> {
+pub struct FrameMotion<'g> {
     /// Velocity of the frame's origin, in the frame's own axes.
     pub v: Vec3<'g>,
     /// Angular velocity of the frame, in the frame's own axes.
@@ -20,11 +20,11 @@ pub struct State<'g> {
     pub a: Vec3<'g>,
 }
 
-impl<'g> State<'g> {
+impl<'g> FrameMotion<'g> {
     /// Returns the state of the ground: no velocity, and the acceleration opposite to gravity.
-    pub fn state_of_ground(model: &Model<'g>) -> State<'g> {
+    pub fn state_of_ground(model: &Model<'g>) -> FrameMotion<'g> {
         let zero = Vec3::zero(model.graph);
-        State { v: zero, w: zero, dw: zero, a: -model.gravity }
+        FrameMotion { v: zero, w: zero, dw: zero, a: -model.gravity }
     }
 
     /// Returns `U = [ẇ]× + [w]×[w]×`: a point at `r` has the acceleration `a + U r`.
@@ -49,9 +49,9 @@ impl<'g> State<'g> {
 #[derive(Clone, Copy)]
 pub struct LinkMotion<'g> {
     /// Motion of the link's own frame.
-    pub own: State<'g>,
+    pub own: FrameMotion<'g>,
     /// Motion of the point of the parent that coincides with the link's origin.
-    pub parent: State<'g>,
+    pub parent: FrameMotion<'g>,
 }
 
 /// Returns the motions of all links by the outward recursion.
@@ -63,9 +63,9 @@ pub fn link_motions<'g>(
 ) -> Vec<LinkMotion<'g>> {
     let mut motions: Vec<LinkMotion<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
-        let above = joint.parent.map_or(State::state_of_ground(model), |p| motions[p.0].own);
+        let above = joint.parent.map_or(FrameMotion::state_of_ground(model), |p| motions[p.0].own);
         let (turn, p) = (&joint.rotation, joint.translation);
-        let parent = State {
+        let parent = FrameMotion {
             v: turn.to_child(above.v + above.w.cross(p)),
             w: turn.to_child(above.w),
             dw: turn.to_child(above.dw),
@@ -73,7 +73,7 @@ pub fn link_motions<'g>(
         };
         let (rate, change) = (joint.total_relative_twist(model, v), joint.relative_twist(model, a));
         let w = parent.w;
-        let own = State {
+        let own = FrameMotion {
             v: parent.v + rate.linear,
             w: w + rate.angular,
             dw: parent.dw + w.cross(rate.angular) + change.angular,

@@ -304,11 +304,11 @@ struct HessianEntries<'a, 'g> {
 }
 
 impl<'g> Visitor<'g> for HessianEntries<'_, 'g> {
-    type Item = DofContribution<'g>;
+    type Item = FactoredContribution<'g>;
 
-    fn start(&mut self, dof: usize) -> DofContribution<'g> {
+    fn start(&mut self, dof: usize) -> FactoredContribution<'g> {
         let (own, sums) = (self.all[dof], &self.sums[self.links[dof]]);
-        let changes = DofContribution::new(&own, sums);
+        let changes = FactoredContribution::new(&own, sums);
         let out = &mut self.out;
         for other in &self.columns[self.links[dof]] {
             let [qq, _, vq, _, _, aq] = changes.entries_with_ancestor(other);
@@ -324,7 +324,7 @@ impl<'g> Visitor<'g> for HessianEntries<'_, 'g> {
         changes
     }
 
-    fn visit(&mut self, group: &LaneGroup<DofContribution<'g>>) {
+    fn visit(&mut self, group: &LaneGroup<FactoredContribution<'g>>) {
         for other in &self.columns[group.link] {
             let met = group.item.entries_with_ancestor(&other.map(&|e| group.repeat_for_members(e)));
             for (part, entry) in met.into_iter().enumerate() {
@@ -381,7 +381,7 @@ impl<'g> Hessian<'g> {
 
 /// Contribution of one degree of freedom to the entries with its ancestors, as wrenches about an ancestor's
 /// origin in the ancestor's axes. Moments are wrenches without force.
-struct DofContribution<'g> {
+struct FactoredContribution<'g> {
     /// Wrench `I Ψ̈ + B Ψ̇ + S ×* F`: change with the displacement.
     by_q: Spatial<'g>,
     /// Virtual wrench `I Ω + S ×* P`: change with the displacement.
@@ -396,12 +396,12 @@ struct DofContribution<'g> {
     momentum: Spatial<'g>,
 }
 
-impl<'g> DofContribution<'g> {
-    fn new(own: &ColumnDirections<'g>, sums: &SubtreeSums<'g>) -> DofContribution<'g> {
+impl<'g> FactoredContribution<'g> {
+    fn new(own: &ColumnDirections<'g>, sums: &SubtreeSums<'g>) -> FactoredContribution<'g> {
         let (column, plain) = (&own.column, &sums.plain);
         let s = &column.subspace;
         let momentum_of_twist = |x: &Spatial<'g>| momentum(&plain.inertia, x);
-        DofContribution {
+        FactoredContribution {
             by_q: momentum_of_twist(&column.second)
                 .plus(&plain.map(&column.first))
                 .plus(&analytic::cross_force(s, &plain.wrench)),
@@ -431,26 +431,4 @@ impl<'g> DofContribution<'g> {
     }
 }
 
-impl<'g> Propagated<'g> for DofContribution<'g> {
-    fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
-        DofContribution {
-            by_q: self.by_q.zip_with(&other.by_q, f),
-            factored: self.factored.zip_with(&other.factored, f),
-            moment_by_q: self.moment_by_q.zip_with(&other.moment_by_q, f),
-            by_v: self.by_v.zip_with(&other.by_v, f),
-            moment_by_v: self.moment_by_v.zip_with(&other.moment_by_v, f),
-            momentum: self.momentum.zip_with(&other.momentum, f),
-        }
-    }
-
-    fn to_parent(&self, joint: &Joint<'g>) -> Self {
-        DofContribution {
-            by_q: self.by_q.to_parent(joint),
-            factored: self.factored.to_parent(joint),
-            moment_by_q: self.moment_by_q.to_parent(joint),
-            by_v: self.by_v.to_parent(joint),
-            moment_by_v: self.moment_by_v.to_parent(joint),
-            momentum: self.momentum.to_parent(joint),
-        }
-    }
-}
+impl_propagated!(FactoredContribution { by_q, factored, moment_by_q, by_v, moment_by_v, momentum });

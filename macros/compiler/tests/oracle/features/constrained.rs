@@ -71,12 +71,9 @@ impl Case<'_, '_> {
     /// with respect to configuration, whose rows belong to the multipliers.
     pub(super) fn check_constraint_curvature(&mut self) {
         let found = self.run_at_own_values("__constraint_curvature");
-        let find_function = |name: &str| self.find_function(name).cloned();
-        let (Some(jacobian), Some(bias), Some(rates)) = (
-            find_function("constraint_jacobian"),
-            find_function("constraint_bias"),
-            find_function("constraint_rates"),
-        ) else {
+        let names = ["constraint_jacobian", "constraint_bias", "constraint_rates"];
+        let [Some(jacobian), Some(bias), Some(rates)] = names.map(|name| self.find_function(name).cloned())
+        else {
             return;
         };
         if found.is_empty() {
@@ -133,12 +130,9 @@ impl Case<'_, '_> {
     /// Checks the derivatives of `Gᵀ f`, `G a + b` and the contact velocities `G v + …`.
     fn check_contact_derivatives(&mut self) {
         let found = self.run_at_own_values("__contact_derivatives");
-        let find_function = |name: &str| self.find_function(name).cloned();
-        let (Some(jacobian), Some(bias), Some(rates)) = (
-            find_function("contact_jacobian"),
-            find_function("contact_bias"),
-            find_function("contact_rates"),
-        ) else {
+        let names = ["contact_jacobian", "contact_bias", "contact_rates"];
+        let [Some(jacobian), Some(bias), Some(rates)] = names.map(|name| self.find_function(name).cloned())
+        else {
             return;
         };
         if found.is_empty() {

@@ -1,4 +1,5 @@
-//! Properties of generated code that reduce rustc's compile time.
+//! Properties of generated code on which rustc's time and memory depend: its length, and the number of calls,
+//! bindings and statements.
 
 use linkwork_compiler::expand;
 use std::fmt::Write;
@@ -21,6 +22,33 @@ fn chain_code(pins: usize) -> String {
     let arguments = "gravity = -9.81 * z, derivatives".parse().unwrap();
     let emitted = expand(arguments, item.parse().unwrap(), Path::new(""));
     format!("{}{}", emitted.tokens, emitted.text)
+}
+
+#[test]
+fn generated_code_of_chains_grows_linearly() {
+    let (short, long) = (chain_code(16), chain_code(32));
+
+    // Jacobians of frames grow linearly with the number of links.
+    let count_jacobians = |code: &str| code.matches("_columns(").count();
+    assert!(
+        count_jacobians(&long) < 3 * count_jacobians(&short),
+        "{} and {}",
+        count_jacobians(&short),
+        count_jacobians(&long)
+    );
+
+    // The product of a number and lanes is one call, and blocks assign values instead of returning tuples.
+    for code in [&short, &long] {
+        assert!(code.contains("scale_add8(") && !code.contains("(splat8("), "numbers are not spread first");
+        let bodies = code.replace("const _: () = {\n", "");
+        assert!(!bodies.contains(") = {\n"), "blocks have no values");
+    }
+    assert!(long.contains("\n{\n"), "large bodies have blocks");
+
+    // The lanes of a vector are stored to a column, or to adjacent columns, by one call.
+    let each = long.matches("Ops::store_two").count();
+    let together = long.matches("Ops::store_rows").count() + long.matches("Ops::store_columns").count();
+    assert!(together > 4 * each, "{each} pairs and {together} vectors are stored");
 }
 
 /// Returns the identifiers that occur in a text of Rust code.
