@@ -142,17 +142,16 @@ impl Shared {
         work: &mut [f64],
     ) {
         let entry = &self.entries[function];
-        let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-        inputs[0] = values.inputs[0];
-        for (input, argument) in inputs[1..].iter_mut().zip(&entry.arguments) {
+        let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        for (list, argument) in lists.iter_mut().zip(&entry.arguments) {
             let index_of_argument = || arguments.iter().position(|known| known == argument);
-            *input = match replaced.iter().find(|(known, _)| known == argument) {
+            *list = match replaced.iter().find(|(known, _)| known == argument) {
                 Some((_, list)) => list,
-                None => index_of_argument().and_then(|at| values.inputs.get(1 + at)).copied().unwrap_or(&[]),
+                None => index_of_argument().and_then(|at| values.arguments.get(at)).copied().unwrap_or(&[]),
             };
         }
-        let inputs = &inputs[..=entry.arguments.len()];
-        entry.run(self, Values { inputs, ..values }, out, work);
+        let arguments = &lists[..entry.arguments.len()];
+        entry.run(self, Values { arguments, ..values }, out, work);
     }
 
     /// Compiles a function and the functions that it calls to machine code. Returns false if one of them is
