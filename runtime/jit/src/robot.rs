@@ -129,7 +129,7 @@ pub(crate) struct State<'a> {
     pub a: &'a [f64],
     pub tau: &'a [f64],
     pub u: &'a [f64],
-    pub other: [&'a [f64]; 3],
+    pub other: &'a [&'a [f64]],
 }
 
 thread_local! {
@@ -528,7 +528,7 @@ impl Robot {
         let entry = &self.shared.entries[index];
         let time = [state.t.unwrap_or(self.time)];
         let mut arguments: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-        let mut others = state.other.into_iter();
+        let mut others = state.other.iter().copied();
         for (list, argument) in arguments.iter_mut().zip(&entry.arguments) {
             *list = match argument {
                 Argument::T => &time,

@@ -56,6 +56,8 @@ pub(crate) struct Constraints {
     pub determining: Vec<usize>,
     /// Number of independent constraints in nonsingular configurations.
     pub rank: usize,
+    /// Numbers of independent coordinates and velocities.
+    pub freedom: [usize; 2],
     /// Whether some constraints are redundant in every configuration.
     pub overdetermined: bool,
     /// Whether the elimination for the accelerations has pivots that are chosen in advance.
