@@ -232,6 +232,7 @@ pub mod __private {
     pub use crate::private::{constant, put_block, put_rows};
     pub use crate::second::forward_second_derivatives;
     pub use crate::speeds::{displacement_rate_derivatives_in_speeds, integrate_derivatives_in_speeds};
+    pub use crate::trigonometry::{COSINE, LARGEST as LARGEST_ANGLE, QUARTER_TURN, ROUND, SINE};
     pub use nalgebra::{
         ArrayStorage, IsometryMatrix3, Matrix3, Rotation3, SMatrix, SVector, Translation3, Vector3,
     };

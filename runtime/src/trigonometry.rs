@@ -15,7 +15,7 @@ use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use nalgebra::ComplexField;
 
 /// Largest angle for which the three-part reduction is exact.
-pub(crate) const LARGEST: f64 = 1e5;
+pub const LARGEST: f64 = 1e5;
 
 /// Returns sines and cosines of several angles, rad. Multiples of eight angles are fastest.
 #[cfg_attr(debug_assertions, inline)]
@@ -102,7 +102,7 @@ fn sin_cos_of_small_angle<A: Registers>(x: f64) -> (f64, f64) {
 /// Coefficients of the polynomial for `(sin r - r) / r³` in `r²`, from fdlibm's `__kernel_sin` (Sun
 /// Microsystems 1993).
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
-const SINE: [f64; 6] = [
+pub const SINE: [f64; 6] = [
     -1.666_666_666_666_663_243_48e-1,
     8.333_333_333_322_489_461_24e-3,
     -1.984_126_982_985_794_931_34e-4,
@@ -113,7 +113,7 @@ const SINE: [f64; 6] = [
 
 /// Coefficients of the polynomial for `(cos r - 1 + r² / 2) / r⁴` in `r²`, from fdlibm's `__kernel_cos`.
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
-const COSINE: [f64; 6] = [
+pub const COSINE: [f64; 6] = [
     4.166_666_666_666_660_190_37e-2,
     -1.388_888_888_887_410_957_49e-3,
     2.480_158_728_947_672_941_78e-5,
@@ -121,6 +121,14 @@ const COSINE: [f64; 6] = [
     2.087_572_321_298_174_827_90e-9,
     -1.135_964_755_778_819_482_65e-11,
 ];
+
+/// Number whose addition rounds to an integer with the quadrant of an angle in its last bits: 1.5 · 2⁵².
+pub const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// Parts of π/2 for reductions with fused multiply-add. The first is the nearest number, a multiple of which is
+/// subtracted without error because the difference has fewer digits. The second has 36 bits, whose products
+/// with integers are exact. The third is the remainder.
+pub const QUARTER_TURN: [f64; 3] = [FRAC_PI_2, 6.123_233_995_707_727e-17, 2.903_855_973_979_360_5e-28];
 
 /// Returns sine and cosine of the reduced angle, and the number whose last bits are the quadrant of the
 /// angle.
@@ -131,8 +139,6 @@ const COSINE: [f64; 6] = [
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn reduced_sine_and_cosine<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
-    // Adding 1.5 · 2⁵² rounds to an integer, whose last bits are the quadrant.
-    const ROUND: f64 = 6_755_399_441_055_744.0;
     let shifted = A::mul_add(x, X::constant(FRAC_2_PI), X::constant(ROUND));
     let (r, low) = reduce_angle::<A, _>(x, shifted - X::constant(ROUND));
     let z = r * r;
@@ -168,10 +174,7 @@ pub(crate) fn reduced_sine_and_cosine<A: Registers, X: Number<A>>(x: X) -> (X, X
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn reduce_angle<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
     if A::FUSED {
-        // π / 2 as the nearest number, a multiple of which is subtracted without error because the difference
-        // has fewer digits; then 36 bits, whose products with integers are exact; then the remainder.
-        const PARTS: [f64; 3] = [FRAC_PI_2, 6.123_233_995_707_727e-17, 2.903_855_973_979_360_5e-28];
-        let [nearest, next, rest] = [X::constant(PARTS[0]), X::constant(PARTS[1]), X::constant(PARTS[2])];
+        let [nearest, next, rest] = QUARTER_TURN.map(X::constant);
         let first = A::neg_mul_add(quarters, nearest, x);
         let r = A::neg_mul_add(quarters, next, first);
         let low = A::neg_mul_add(quarters, next, first - r);

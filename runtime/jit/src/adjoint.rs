@@ -150,11 +150,10 @@ impl VectorJacobian {
         let charts = &self.shared.charts;
         match &self.kind {
             Product::Reversed(routine) => {
-                let mut inputs: Vec<&[f64]> = vec![robot.parameter_values()];
-                inputs.extend(arguments);
-                inputs.push(factors);
-                let tables = robot.table_values();
-                routine.run(Values { inputs: &inputs, tables, interpreted: false }, out, &mut []);
+                let arguments: Vec<&[f64]> = arguments.iter().copied().chain([factors]).collect();
+                let (parameters, tables) = (robot.parameter_values(), robot.table_values());
+                let values = Values { parameters, arguments: &arguments, tables, interpreted: false };
+                routine.run(values, out, &mut []);
             }
             _ => {
                 out.fill(0.0);

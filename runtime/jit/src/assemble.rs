@@ -121,7 +121,7 @@ impl Robot {
     #[must_use]
     pub fn terrain_heights(&self, place: [f64; 2]) -> Option<Vec<f64>> {
         let index = self.shared.internal[Internal::DrawingHeights as usize]?;
-        let state = crate::robot::State { other: [&place, &[], &[]], ..crate::robot::State::default() };
+        let state = crate::robot::State { other: &[&place], ..crate::robot::State::default() };
         self.state_call(index, state).ok()
     }
 

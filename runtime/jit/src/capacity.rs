@@ -24,9 +24,25 @@ pub(crate) trait ContactVisitor {
 }
 
 /// Maximum number of coordinates, velocities, inputs and constraints of a robot.
-pub(crate) const LARGEST: usize = 64;
+const LARGEST: usize = 256;
 /// Maximum number of unilateral contacts of a robot.
-pub(crate) const MOST_CONTACTS: usize = 64;
+const MOST_CONTACTS: usize = 64;
+/// Number of coordinates, velocities, inputs and constraints beyond which matrices have [`LARGEST`] rows.
+const MEDIUM: usize = 64;
+
+/// Stack size of the thread on which robots of at most [`MEDIUM`] coordinates are simulated, bytes.
+const STACK: usize = 64 << 20;
+/// Stack size of the thread for larger robots, whose matrices have 0.5 MiB each, bytes.
+const LARGE_STACK: usize = if cfg!(target_pointer_width = "64") { 1 << 30 } else { 256 << 20 };
+
+/// Runs a function on a thread with a stack of this size, and waits for it.
+fn on_stack<T: Send>(size: usize, run: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(size);
+        let thread = thread.spawn_scoped(scope, run).map_err(|error| Error::Internal(error.to_string()))?;
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
 
 impl Robot {
     /// Returns the largest of the numbers of coordinates, velocities (including first-order states), inputs,
@@ -38,9 +54,12 @@ impl Robot {
             .fold(0, usize::max)
     }
 
-    /// Whether the matrices of the runtime need more stack than threads usually have.
-    pub(crate) fn needs_stack(&self) -> bool {
-        self.largest_dimension() > 24 || self.shared.contacts.len() > 8
+    /// Runs a simulation, on a thread of its own if its matrices need more stack than threads usually have.
+    pub(crate) fn with_stack(&self, run: impl FnOnce() -> Result<(), Error> + Send) -> Result<(), Error> {
+        match self.largest_dimension() > 24 || self.shared.contacts.len() > 8 {
+            true => on_stack(STACK, run),
+            false => run(),
+        }
     }
 
     fn too_large(&self, what: &str, count: usize, most: usize) -> Error {
@@ -52,31 +71,44 @@ impl Robot {
     }
 
     /// Calls a visitor with the robot padded to suitable array dimensions.
-    pub(crate) fn visit_padded_robot<V: Visitor>(&self, visitor: V) -> Result<V::Output, Error> {
+    pub(crate) fn visit_padded_robot<V>(&self, visitor: V) -> Result<V::Output, Error>
+    where
+        V: Visitor<Output: Send> + Send,
+    {
         match self.largest_dimension() {
             ..=8 => Ok(visitor.visit(&Padded::<8, 8, 8, _>::new(self)?)),
             9..=24 => Ok(visitor.visit(&Padded::<24, 24, 24, _>::new(self)?)),
-            25..=LARGEST => Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?)),
+            25..=MEDIUM => Ok(visitor.visit(&Padded::<MEDIUM, MEDIUM, MEDIUM, _>::new(self)?)),
+            ..=LARGEST => on_stack(LARGE_STACK, || {
+                Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?))
+            }),
             count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),
         }
     }
 
     /// Calls a visitor with the robot and its contacts, padded to suitable array dimensions.
-    pub(crate) fn visit_contacts<V: ContactVisitor>(&self, visitor: V) -> Result<V::Output, Error> {
+    pub(crate) fn visit_contacts<V>(&self, visitor: V) -> Result<V::Output, Error>
+    where
+        V: ContactVisitor<Output: Send> + Send,
+    {
         let (count, rates) = (self.shared.contacts.len(), self.shared.contact_rates);
         let is_few = count <= 8 && rates <= 24;
         match self.largest_dimension() {
+            _ if count > MOST_CONTACTS => Err(self.too_large("contacts", count, MOST_CONTACTS)),
             ..=8 if is_few => Ok(visitor.visit(&PaddedContacts::<8, 8, 8, 8, 24, _>::new(self)?)),
             ..=24 if is_few => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 8, 24, _>::new(self)?)),
             ..=24 if count <= 32 => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 32, 96, _>::new(self)?)),
-            ..=LARGEST if count <= 16 => {
-                Ok(visitor.visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, 16, 48, _>::new(self)?))
+            ..=MEDIUM if count <= 16 => {
+                Ok(visitor.visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, 16, 48, _>::new(self)?))
             }
-            ..=LARGEST if count <= MOST_CONTACTS => {
+            ..=MEDIUM => {
+                Ok(visitor
+                    .visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, MOST_CONTACTS, 192, _>::new(self)?))
+            }
+            ..=LARGEST => on_stack(LARGE_STACK, || {
                 Ok(visitor
                     .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 192, _>::new(self)?))
-            }
-            ..=LARGEST => Err(self.too_large("contacts", count, MOST_CONTACTS)),
+            }),
             count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),
         }
     }

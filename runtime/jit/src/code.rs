@@ -25,7 +25,8 @@ use linkwork::__private::{Arithmetic, Evaluate, dispatch};
 use linkwork_compiler::expr::Function as Elementary;
 use linkwork_compiler::lower::Program;
 use pieces::Pieces;
-use plan::{Allocation, TOGETHER};
+use plan::{Allocation, WIDEST};
+use std::mem::MaybeUninit;
 
 /// Declares functions in the calling convention of generated code, that of System V on all systems.
 macro_rules! called {
@@ -126,26 +127,77 @@ impl Code {
     /// # Panics
     ///
     /// A slice is shorter than its argument or result: callers check lengths before.
-    pub fn call(&self, inputs: &[&[f64]], tables: &[AnyTable], results: &mut [f64], more: &mut [f64]) {
-        let mut pointers = [std::ptr::null(); Layout::MOST];
-        assert!(self.lengths.len() <= inputs.len() && inputs.len() <= pointers.len(), "inputs");
-        for ((input, length), pointer) in inputs.iter().zip(&self.lengths).zip(&mut pointers) {
-            assert!(input.len() >= *length, "the length of an input");
-            *pointer = input.as_ptr();
+    pub fn call(
+        &self,
+        parameters: &[f64],
+        arguments: &[&[f64]],
+        tables: &[AnyTable],
+        results: &mut [f64],
+        more: &mut [f64],
+    ) {
+        let fits = self.call_if(parameters, arguments, |_, _| true, tables, results, more);
+        assert!(fits, "lengths of arguments and results");
+    }
+
+    /// Evaluates a program without further outputs if its arguments have these lengths. Returns false
+    /// otherwise.
+    #[inline]
+    pub fn call_if_lengths(
+        &self,
+        parameters: &[f64],
+        arguments: &[&[f64]],
+        lengths: &[usize],
+        tables: &[AnyTable],
+        results: &mut [f64],
+    ) -> bool {
+        let has_length = |k: usize, list: &[f64]| lengths.get(k).is_some_and(|length| list.len() == *length);
+        arguments.len() == lengths.len()
+            && self.call_if(parameters, arguments, has_length, tables, results, &mut [])
+    }
+
+    /// Evaluates the program if no slice is too short and all arguments satisfy a condition. Returns false
+    /// otherwise.
+    #[inline]
+    fn call_if(
+        &self,
+        parameters: &[f64],
+        arguments: &[&[f64]],
+        condition: impl Fn(usize, &[f64]) -> bool,
+        tables: &[AnyTable],
+        results: &mut [f64],
+        more: &mut [f64],
+    ) -> bool {
+        let mut pointers = [const { MaybeUninit::<*const f64>::uninit() }; Layout::MOST];
+        let [own, lengths @ ..] = &*self.lengths else { return false };
+        if parameters.len() < *own
+            || arguments.len() != lengths.len()
+            || arguments.len() >= pointers.len()
+            || tables.len() < self.tables
+            || results.len() < self.outputs[0]
+            || more.len() < self.outputs[1]
+        {
+            return false;
         }
-        assert!(tables.len() >= self.tables, "tables");
-        assert!(results.len() >= self.outputs[0] && more.len() >= self.outputs[1], "results");
+        pointers[0].write(parameters.as_ptr());
+        let all = arguments.iter().zip(lengths).zip(&mut pointers[1..]).enumerate();
+        for (k, ((list, length), pointer)) in all {
+            if list.len() < *length || !condition(k, list) {
+                return false;
+            }
+            pointer.write(list.as_ptr());
+        }
         // SAFETY: the code reads `lengths` entries of the inputs, the constants and the tables, and writes
-        // `outputs` entries; all of them exist, as checked here.
+        // `outputs` entries; all of them exist, as checked here. The pointers to all inputs are written.
         unsafe {
             (self.entry)(
-                pointers.as_ptr(),
+                pointers.as_ptr().cast(),
                 self.constants.as_ptr().cast(),
                 tables.as_ptr(),
                 results.as_mut_ptr(),
                 more.as_mut_ptr(),
             );
         }
+        true
     }
 }
 
@@ -197,39 +249,36 @@ called! {
         table.derivative_value([x, y, z], [0, 2, 4].map(|shift| (orders >> shift & 3) as u8))
     }
 
-    /// Writes the sines, then the cosines, of `count` angles into the array after the angles. `count` is one,
-    /// two, four, or a multiple of [`TOGETHER`].
+    /// Writes the sines, then the cosines, of each group of angles into the array after the angles of the
+    /// group; see [`plan::AngleGroup`]. `count` is the number of angles of all groups.
     fn write_sines_and_cosines(array: *mut f64, count: u64) {
-        let count = count as usize;
         // SAFETY: generated code passes an array of `3 * count` numbers on its stack.
-        let array = unsafe { std::slice::from_raw_parts_mut(array, 3 * count) };
-        dispatch::<0, f64, _, _>(&SinesAndCosines, (array, count));
+        let array = unsafe { std::slice::from_raw_parts_mut(array, 3 * count as usize) };
+        dispatch::<0, f64, _, _>(&SinesAndCosines, array);
     }
 }
 
 struct SinesAndCosines;
 
-impl Evaluate<0, (&mut [f64], usize)> for SinesAndCosines {
+impl Evaluate<0, &mut [f64]> for SinesAndCosines {
     type Output = ();
 
     #[inline(always)]
-    fn evaluate<A: Arithmetic>(&self, (array, count): (&mut [f64], usize)) {
-        let (angles, results) = array.split_at_mut(count);
-        let (sines, cosines) = results.split_at_mut(count);
-        match count {
-            1 => sines_in_registers::<A, 1>(angles, sines, cosines),
-            2 => sines_in_registers::<A, 2>(angles, sines, cosines),
-            4 => sines_in_registers::<A, 4>(angles, sines, cosines),
-            _ => sines_in_registers::<A, TOGETHER>(angles, sines, cosines),
+    fn evaluate<A: Arithmetic>(&self, array: &mut [f64]) {
+        let (groups, last) = array.as_chunks_mut::<{ 3 * WIDEST }>();
+        groups.iter_mut().for_each(|group| sines_of_group::<A, WIDEST>(group));
+        match last.len() {
+            3 => sines_of_group::<A, 1>(last),
+            6 => sines_of_group::<A, 2>(last),
+            _ => {}
         }
     }
 }
 
+/// Writes the sines, then the cosines, of `N` angles after them.
 #[inline(always)]
-fn sines_in_registers<A: Arithmetic, const N: usize>(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
-    let (angles, _) = angles.as_chunks::<N>();
-    let ((sines, _), (cosines, _)) = (sines.as_chunks_mut::<N>(), cosines.as_chunks_mut::<N>());
-    for ((angles, sines), cosines) in angles.iter().zip(sines).zip(cosines) {
+fn sines_of_group<A: Arithmetic, const N: usize>(group: &mut [f64]) {
+    if let ([angles, sines, cosines], _) = group.as_chunks_mut::<N>() {
         (*sines, *cosines) = A::sin_cos_all(*angles);
     }
 }

@@ -1,12 +1,13 @@
-//! Functions of mechanisms with constraints, for which the runtime computes accelerations and multipliers.
+//! Functions that the runtime computes: accelerations, multipliers and their derivatives of mechanisms with
+//! constraints, and second derivatives of accelerations.
 
 use crate::capacity::Visitor;
 use crate::error::Error;
 use crate::functions::{Entry, Maker, Matrix, Plan};
 use crate::padded::Padded;
 use crate::robot::Robot;
-use linkwork::nalgebra::SVector;
-use linkwork::{Constrained, Derivatives};
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::{Constrained, Derivatives, SecondDerivatives};
 use linkwork_compiler::catalogue::{Argument, Id};
 
 /// Function of a constrained mechanism that the runtime evaluates, instead of a compiled program.
@@ -18,67 +19,86 @@ pub(crate) enum ConstrainedFunction {
     Dynamics,
     /// Function that returns the derivatives of the accelerations of constrained motion.
     Derivatives,
+    /// Function that returns the second derivatives of the accelerations, contracted with factors, with and
+    /// without constraints.
+    SecondDerivatives,
 }
 
-/// Adds the functions of constrained dynamics to those of a mechanism, if it has constraints and dynamics.
+/// Adds the functions of constrained dynamics to those of a mechanism, if it has constraints and dynamics,
+/// and the second derivatives of its accelerations, if they are requested.
 pub(crate) fn add(maker: &mut Maker<'_, '_>) {
     let has_function = |id: Id| maker.output.functions.iter().any(|f| f.id == id);
-    if !has_function(Id::ConstrainedDynamics) {
-        return;
-    }
-    let has_derivatives = has_function(Id::MotionDerivatives);
     let (nv, nc) = (maker.model.nv(), maker.model.constraints.len());
+    let is_constrained = has_function(Id::ConstrainedDynamics);
     let time = maker.model.time.then_some(Argument::T);
     let arguments: Vec<Argument> =
         time.into_iter().chain([Argument::Q, Argument::V, Argument::Tau]).collect();
-    let result_matrix = |name, rows, columns| Matrix { name, rows, columns };
-    let functions = [
-        (
+    let square = |name| Matrix { name, rows: nv, columns: nv };
+    let vector = |name, rows| Matrix { name, rows, columns: 1 };
+    let mut functions = Vec::new();
+    if is_constrained {
+        functions.push((
             ConstrainedFunction::Accelerations,
             "forward_dynamics",
             "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where \
              friction jams.",
-            vec![result_matrix("result", nv, 1)],
-        ),
-        (
+            vec![vector("result", nv)],
+        ));
+        functions.push((
             ConstrainedFunction::Dynamics,
             "constrained_dynamics",
             "Accelerations under the generalized forces `tau`, and the multipliers of the constraints.",
-            vec![result_matrix("accelerations", nv, 1), result_matrix("multipliers", nc, 1)],
-        ),
-        (
+            vec![vector("accelerations", nv), vector("multipliers", nc)],
+        ));
+    }
+    if is_constrained && has_function(Id::MotionDerivatives) {
+        functions.push((
             ConstrainedFunction::Derivatives,
             "forward_dynamics_derivatives",
             "Derivatives of the accelerations under the constraints with respect to `q`, `v` and `tau`.",
-            vec![
-                result_matrix("by_q", nv, nv),
-                result_matrix("by_v", nv, nv),
-                result_matrix("by_tau", nv, nv),
-            ],
-        ),
-    ];
+            ["by_q", "by_v", "by_tau"].map(square).to_vec(),
+        ));
+    }
+    if has_function(Id::InverseDynamicsSecondDerivatives)
+        && is_constrained == has_function(Id::ConstraintCurvature)
+    {
+        functions.push((
+            ConstrainedFunction::SecondDerivatives,
+            "forward_dynamics_second_derivatives",
+            "Second derivatives of the accelerations under the generalized forces `tau`, contracted with the \
+             factors `lambda`. Rows of mixed derivatives belong to `q`; all others are zero.",
+            ["by_qq", "by_qv", "by_vv", "by_qtau"].map(square).to_vec(),
+        ));
+    }
     for (kind, name, documentation, results) in functions {
-        if kind != ConstrainedFunction::Derivatives || has_derivatives {
-            let plan = Plan::Constrained(kind);
-            let rank = if kind == ConstrainedFunction::Derivatives { 2 } else { 1 };
-            let entry = Entry::new(name, documentation.to_string(), arguments.clone(), results, plan);
-            maker.entries.push(Entry { rank, ..entry });
-        }
+        let (rank, further) = match kind {
+            ConstrainedFunction::Accelerations | ConstrainedFunction::Dynamics => (1, None),
+            ConstrainedFunction::Derivatives => (2, None),
+            ConstrainedFunction::SecondDerivatives => (2, Some(Argument::Factors(nv))),
+        };
+        let arguments = arguments.iter().copied().chain(further).collect();
+        let plan = Plan::Constrained(kind);
+        let entry = Entry::new(name, documentation.to_string(), arguments, results, plan);
+        maker.entries.push(Entry { rank, ..entry });
     }
 }
 
 impl Robot {
     /// Evaluates a function of constrained dynamics with the arguments `t` (if the mechanism depends on it),
-    /// `q`, `v` and `tau`.
+    /// `q`, `v`, `tau`, and `lambda` for second derivatives.
     pub(crate) fn call_constrained(
         &self,
         kind: ConstrainedFunction,
         arguments: &[&[f64]],
         out: &mut [f64],
     ) -> Result<(), Error> {
+        let (arguments, lambda): (_, &[f64]) = match arguments {
+            [others @ .., lambda] if kind == ConstrainedFunction::SecondDerivatives => (others, lambda),
+            _ => (arguments, &[]),
+        };
         let [time @ .., q, v, tau] = arguments else { return Ok(()) };
         let t = time.first().and_then(|t| t.first()).copied().unwrap_or_default();
-        self.visit_padded_robot(Call { kind, t, q, v, tau, out })
+        self.visit_padded_robot(Call { kind, t, q, v, tau, lambda, out })
     }
 }
 
@@ -89,6 +109,8 @@ struct Call<'a> {
     q: &'a [f64],
     v: &'a [f64],
     tau: &'a [f64],
+    /// Factors of second derivatives.
+    lambda: &'a [f64],
     out: &'a mut [f64],
 }
 
@@ -103,19 +125,33 @@ impl Visitor for Call<'_> {
         for (k, one) in robot.shared.states.iter().enumerate() {
             v[n + k] = robot.parameter_values()[one.parameter];
         }
-        if self.kind == ConstrainedFunction::Derivatives {
-            let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(self.t, &q, &v, &tau);
-            for (to, from) in self.out.chunks_exact_mut(n * n).zip([by_q, by_v, by_tau]) {
-                for (to, from) in to.chunks_exact_mut(n).zip(from.column_iter()) {
-                    to.copy_from_slice(&from.as_slice()[..n]);
-                }
+        match self.kind {
+            ConstrainedFunction::Accelerations | ConstrainedFunction::Dynamics => {
+                let (a, lambda) = Constrained::<N, N, N, N, N>::constrained_dynamics(m, self.t, &q, &v, &tau);
+                let (accelerations, multipliers) = self.out.split_at_mut(n);
+                accelerations.copy_from_slice(&a.as_slice()[..n]);
+                let count = multipliers.len();
+                multipliers.copy_from_slice(&lambda.as_slice()[..count]);
             }
-            return;
+            ConstrainedFunction::Derivatives => {
+                let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(self.t, &q, &v, &tau);
+                write_matrices(n, &[by_q, by_v, by_tau], self.out);
+            }
+            ConstrainedFunction::SecondDerivatives => {
+                let lambda = padded_vector(self.lambda);
+                let (qq, qv, vv, q_tau) =
+                    m.forward_dynamics_second_derivatives(self.t, &q, &v, &tau, &lambda);
+                write_matrices(n, &[qq, qv, vv, q_tau], self.out);
+            }
         }
-        let (a, lambda) = Constrained::<N, N, N, N, N>::constrained_dynamics(m, self.t, &q, &v, &tau);
-        let (accelerations, multipliers) = self.out.split_at_mut(n);
-        accelerations.copy_from_slice(&a.as_slice()[..n]);
-        let count = multipliers.len();
-        multipliers.copy_from_slice(&lambda.as_slice()[..count]);
+    }
+}
+
+/// Writes the first `n` rows and columns of each matrix, by columns one after the other.
+fn write_matrices<const N: usize>(n: usize, matrices: &[SMatrix<f64, N, N>], out: &mut [f64]) {
+    for (to, from) in out.chunks_exact_mut(n * n).zip(matrices) {
+        for (to, from) in to.chunks_exact_mut(n).zip(from.column_iter()) {
+            to.copy_from_slice(&from.as_slice()[..n]);
+        }
     }
 }

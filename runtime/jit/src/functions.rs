@@ -512,6 +512,8 @@ fn is_internal(id: Id) -> bool {
             | Id::MotionDerivatives
             | Id::ContactLaws
             | Id::ContactResponses
+            | Id::ContactDerivatives
+            | Id::ConstraintCurvature
             | Id::RateMatrix
             | Id::SpeedMatrix
             | Id::RateChanges

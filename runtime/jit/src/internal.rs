@@ -53,5 +53,9 @@ internal! {
     ContactBias = "contact_bias",
     ContactLaws = "__contact_laws",
     ContactResponses = "__contact_responses",
+    ContactDerivatives = "__contact_derivatives",
+    InverseDynamicsSecondDerivatives = "inverse_dynamics_second_derivatives",
+    GeneralizedForcesSecondDerivatives = "generalized_forces_second_derivatives",
+    ConstraintCurvature = "__constraint_curvature",
     DrawingHeights = "__drawing_heights",
 }

@@ -15,6 +15,7 @@ mod drawing;
 mod error;
 mod frames;
 mod functions;
+mod independent;
 mod internal;
 mod inverse;
 mod kernels;
@@ -41,6 +42,7 @@ pub use drawing::Drawing;
 pub use drawing::drawn;
 pub use error::Error;
 pub use functions::Matrix;
+pub use independent::IndependentMotion;
 pub use linkwork::simulate::Overlaps;
 pub use load::{Loader, declare, load};
 #[doc(hidden)]

@@ -373,6 +373,7 @@ fn constraints_of(model: &Model<'_>) -> Constraints {
         slipping: matching_constraint_indices(|constraint| !constraint.friction.is_empty()),
         determining: matching_constraint_indices(|constraint| constraint.determines),
         rank: model.nv().saturating_sub(model.freedom.velocities),
+        freedom: [model.freedom.coordinates, model.freedom.velocities],
         overdetermined: model.is_overdetermined(),
         independent: model.dependent.is_some(),
         angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),

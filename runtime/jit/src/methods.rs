@@ -218,9 +218,9 @@ others! {
     neutral neutral_into() State::default();
     /// Returns the configuration that is reached from `q` after one unit of time with the constant joint
     /// velocity `dv`.
-    integrate integrate_into(q, dv) State { q, other: [dv, &[], &[]], ..State::default() };
+    integrate integrate_into(q, dv) State { q, other: &[dv], ..State::default() };
     /// Returns the constant joint velocity that leads from one configuration to another in one unit of time.
-    difference difference_into(from, to) State { other: [from, to, &[]], ..State::default() };
+    difference difference_into(from, to) State { other: &[from, to], ..State::default() };
     /// Returns the rate of the displacement `dv` for which `integrate(q, dv)` moves with velocity `v`.
-    tangent_rate tangent_rate_into(dv, v) State { v, other: [dv, &[], &[]], ..State::default() };
+    tangent_rate tangent_rate_into(dv, v) State { v, other: &[dv], ..State::default() };
 }

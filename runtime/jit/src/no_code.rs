@@ -14,7 +14,19 @@ impl Code {
     }
 
     /// Evaluates the program. It is never called, because no machine code exists on such processors.
-    pub fn call(&self, _: &[&[f64]], _: &[AnyTable], _: &mut [f64], _: &mut [f64]) {
+    pub fn call(&self, _: &[f64], _: &[&[f64]], _: &[AnyTable], _: &mut [f64], _: &mut [f64]) {
+        match *self {}
+    }
+
+    /// Evaluates the program if arguments have the right lengths. It is never called.
+    pub fn call_if_lengths(
+        &self,
+        _: &[f64],
+        _: &[&[f64]],
+        _: &[usize],
+        _: &[AnyTable],
+        _: &mut [f64],
+    ) -> bool {
         match *self {}
     }
 }

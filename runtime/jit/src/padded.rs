@@ -1,9 +1,21 @@
 //! Adapters that pass loaded mechanisms to the runtime's integrators and other code that is generic over
 //! mechanisms.
 
+/// Passes functions on to the robot without contacts.
+macro_rules! forward {
+    ($($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {$(
+        #[inline]
+        fn $name(&self, $($argument: $type),*) -> $result {
+            self.plain.$name($($argument),*)
+        }
+    )*};
+}
+
 mod constraints;
+mod contact_derivatives;
 mod contacts;
 mod derivatives;
+mod second;
 
 pub use contacts::PaddedContacts;
 
@@ -25,8 +37,8 @@ use std::borrow::Borrow;
 /// States of first order are the last velocities, as in [`Extended`](linkwork::Extended). Constraints are
 /// those of [`Constrained`], of which a robot has `NV` at most; further ones are always satisfied.
 ///
-/// Derivatives are those of the option `derivatives`; without it they are NaN. Contacts are those of
-/// [`PaddedContacts`].
+/// Derivatives are those of the option `derivatives`, second derivatives those of `second_derivatives`;
+/// without the option they are NaN. Contacts are those of [`PaddedContacts`].
 ///
 /// Two designs were weighed: dimensions as associated types of the traits, so that loaded mechanisms have
 /// dynamic vectors, and this one, a capacity. Associated types change every signature of the runtime, and
@@ -348,7 +360,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         let state = State {
             q: self.configuration_entries(q),
             v: self.velocity_entries(dv),
-            other: [self.velocity_entries(dv), &[], &[]],
+            other: &[self.velocity_entries(dv)],
             ..State::default()
         };
         self.fill_vector(Internal::Integrate, state, nq, all)
@@ -360,7 +372,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         for (entry, (to, from)) in all.iter_mut().skip(nv).zip(to.iter().zip(from).skip(nq)) {
             *entry = to - from;
         }
-        let other = [self.configuration_entries(from), self.configuration_entries(to), &[]];
+        let other = &[self.configuration_entries(from), self.configuration_entries(to)];
         self.fill_vector(Internal::Difference, State { other, ..State::default() }, n, all)
     }
 
@@ -388,7 +400,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         let state = State {
             q: self.configuration_entries(q),
             v: self.velocity_entries(v),
-            other: [self.velocity_entries(dv), &[], &[]],
+            other: &[self.velocity_entries(dv)],
             ..State::default()
         };
         self.fill_vector(Internal::DisplacementRate, state, self.robot().nv(), *v)

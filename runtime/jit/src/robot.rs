@@ -129,7 +129,7 @@ pub(crate) struct State<'a> {
     pub a: &'a [f64],
     pub tau: &'a [f64],
     pub u: &'a [f64],
-    pub other: [&'a [f64]; 3],
+    pub other: &'a [&'a [f64]],
 }
 
 thread_local! {
@@ -394,7 +394,8 @@ impl Robot {
     ///
     /// A slice has the wrong length, a parameter has no value, or the function belongs to another mechanism.
     pub fn evaluate_into(&self, f: &Function, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
-        self.evaluate_many_into(f, 1, arguments, out)
+        let entry = self.own_entry(f)?;
+        self.call_entry(entry, &self.parameters, arguments, out)
     }
 
     /// Evaluates a function and returns its results; see [`evaluate_into`](Self::evaluate_into).
@@ -421,60 +422,100 @@ impl Robot {
         arguments: &[&[f64]],
         out: &mut [f64],
     ) -> Result<(), Error> {
-        match Arc::ptr_eq(&self.shared, &f.shared) {
-            true => self.call_by_index(&self.parameters, f.index, count, arguments, out),
-            false => Err(Error::OtherMechanism(f.name().to_string())),
-        }
-    }
-
-    /// Evaluates a function, given by its index, for several sets of arguments; see
-    /// [`evaluate_many_into`](Self::evaluate_many_into).
-    fn call_by_index(
-        &self,
-        parameters: &[f64],
-        index: usize,
-        count: usize,
-        arguments: &[&[f64]],
-        out: &mut [f64],
-    ) -> Result<(), Error> {
-        let entry = &self.shared.entries[index];
+        let entry = self.own_entry(f)?;
         let has_length_of_argument =
             |(list, length): (&&[f64], &usize)| list.len() == *length || list.len() == length * count;
         let fit = arguments.len() == entry.lengths.len()
             && arguments.iter().zip(&entry.lengths).all(has_length_of_argument)
             && out.len() == entry.length * count;
         if !fit || self.missing > 0 {
-            self.check_values()?;
-            return Err(length_error(entry, count, arguments, out.len()));
+            return Err(self.call_error(entry, count, arguments, out.len()));
         }
-        let outs = (0..count).map(|k| k * entry.length..(k + 1) * entry.length);
-        if let Plan::Constrained(kind) = entry.plan {
-            let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-            return outs.enumerate().try_for_each(|(k, range)| {
-                entry.select(k, arguments, &mut lists);
-                self.call_constrained(kind, &lists[..arguments.len()], &mut out[range])
-            });
+        let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        (0..count).try_for_each(|k| {
+            entry.select(k, arguments, &mut lists);
+            let out = &mut out[k * entry.length..(k + 1) * entry.length];
+            self.run_entry(entry, &self.parameters, &lists[..arguments.len()], out)
+        })
+    }
+
+    /// Returns the entry of a function of this mechanism.
+    #[inline]
+    fn own_entry(&self, f: &Function) -> Result<&Entry, Error> {
+        match Arc::ptr_eq(&self.shared, &f.shared) {
+            true => Ok(&self.shared.entries[f.index]),
+            false => Err(Error::OtherMechanism(f.name().to_string())),
         }
-        let run_over_states = |work: &mut [f64]| {
-            let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-            inputs[0] = parameters;
-            for (k, range) in outs.enumerate() {
-                entry.select(k, arguments, &mut inputs[1..]);
-                let inputs = &inputs[..=arguments.len()];
-                let values = Values { inputs, tables: &self.tables, interpreted: self.interpreted };
-                entry.run(&self.shared, values, &mut out[range], work);
-            }
-        };
-        match entry.work {
-            0 => run_over_states(&mut []),
-            count => WORK.with_borrow_mut(|work| {
-                if work.len() < count {
-                    work.resize(count, 0.0);
+    }
+
+    /// Evaluates a function for one set of arguments.
+    #[inline]
+    fn call_entry(
+        &self,
+        entry: &Entry,
+        parameters: &[f64],
+        arguments: &[&[f64]],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        // Most functions are one program with machine code.
+        if let Plan::Program(routine) = &entry.plan
+            && let Some(code) = routine.code()
+            && out.len() == entry.length
+            && self.missing == 0
+            && !self.interpreted
+            && code.call_if_lengths(parameters, arguments, &entry.lengths, &self.tables, out)
+        {
+            return Ok(());
+        }
+        self.call_any_entry(entry, parameters, arguments, out)
+    }
+
+    /// Evaluates a function for one set of arguments, after a check of their lengths.
+    #[inline(never)]
+    fn call_any_entry(
+        &self,
+        entry: &Entry,
+        parameters: &[f64],
+        arguments: &[&[f64]],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        let has_length_of_argument = |(list, length): (&&[f64], &usize)| list.len() == *length;
+        let fit = arguments.len() == entry.lengths.len()
+            && arguments.iter().zip(&entry.lengths).all(has_length_of_argument)
+            && out.len() == entry.length;
+        if !fit || self.missing > 0 {
+            return Err(self.call_error(entry, 1, arguments, out.len()));
+        }
+        self.run_entry(entry, parameters, arguments, out)
+    }
+
+    /// Evaluates a function whose arguments and results have the right lengths.
+    fn run_entry(
+        &self,
+        entry: &Entry,
+        parameters: &[f64],
+        arguments: &[&[f64]],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        let values = Values { parameters, arguments, tables: &self.tables, interpreted: self.interpreted };
+        match &entry.plan {
+            Plan::Program(routine) => routine.run(values, out, &mut []),
+            Plan::Constrained(kind) => return self.call_constrained(*kind, arguments, out),
+            _ => WORK.with_borrow_mut(|work| {
+                if work.len() < entry.work {
+                    work.resize(entry.work, 0.0);
                 }
-                run_over_states(work);
+                entry.run(&self.shared, values, out, work);
             }),
         }
         Ok(())
+    }
+
+    /// Returns the error for a call with missing values, or with arguments or results of the wrong length.
+    #[cold]
+    fn call_error(&self, entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
+        let missing = self.check_values().err();
+        missing.unwrap_or_else(|| length_error(entry, count, arguments, out))
     }
 
     /// Evaluates a function, given by its index, with the arguments that it takes from the state.
@@ -487,7 +528,7 @@ impl Robot {
         let entry = &self.shared.entries[index];
         let time = [state.t.unwrap_or(self.time)];
         let mut arguments: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-        let mut others = state.other.into_iter();
+        let mut others = state.other.iter().copied();
         for (list, argument) in arguments.iter_mut().zip(&entry.arguments) {
             *list = match argument {
                 Argument::T => &time,
@@ -501,13 +542,13 @@ impl Robot {
         }
         let arguments = &arguments[..entry.arguments.len()];
         if state.x.is_empty() {
-            return self.call_by_index(&self.parameters, index, 1, arguments, out);
+            return self.call_entry(entry, &self.parameters, arguments, out);
         }
         let mut parameters = self.parameters.clone();
         for (value, one) in state.x.iter().zip(&self.shared.states) {
             parameters[one.parameter] = *value;
         }
-        self.call_by_index(&parameters, index, 1, arguments, out)
+        self.call_entry(entry, &parameters, arguments, out)
     }
 
     pub(crate) fn state_call(&self, index: usize, state: State<'_>) -> Result<Vec<f64>, Error> {

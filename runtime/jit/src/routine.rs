@@ -20,8 +20,10 @@ pub(crate) struct Routine {
 /// Values with which a program is evaluated.
 #[derive(Clone, Copy)]
 pub(crate) struct Values<'a> {
-    /// Inputs of the program: the parameters, then the arguments of its function.
-    pub inputs: &'a [&'a [f64]],
+    /// Parameters of the mechanism, which are the first input of the program.
+    pub parameters: &'a [f64],
+    /// Arguments of the function, which are the further inputs of the program.
+    pub arguments: &'a [&'a [f64]],
     /// Interpolation tables that the program reads.
     pub tables: &'a [AnyTable],
     /// Whether programs are interpreted instead of compiled.
@@ -59,29 +61,40 @@ impl Routine {
         self.code.get_or_init(compile_program).is_some()
     }
 
+    /// Returns the machine code of the routine, if it has been generated.
+    #[inline]
+    pub fn code(&self) -> Option<&Code> {
+        self.code.get()?.as_ref()
+    }
+
     /// Evaluates the program by machine code or by the interpreter. Writes the function's results to
     /// `results` and the further outputs to `more`.
+    #[inline]
     pub fn run(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
-        let code = match values.interpreted {
-            true => None,
-            false => {
-                if self.code.get().is_none() {
-                    self.prepare();
-                }
-                self.code.get().and_then(Option::as_ref)
+        match self.code() {
+            Some(code) if !values.interpreted => {
+                code.call(values.parameters, values.arguments, values.tables, results, more);
             }
-        };
-        match code {
-            Some(code) => code.call(values.inputs, values.tables, results, more),
-            None => self.interpret_program(values, results, more),
+            _ => self.run_without_code(values, results, more),
+        }
+    }
+
+    /// Evaluates a program that is interpreted or that has no machine code yet.
+    #[cold]
+    fn run_without_code(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
+        match !values.interpreted && self.prepare() {
+            true => self.run(values, results, more),
+            false => self.interpret_program(values, results, more),
         }
     }
 
     fn interpret_program(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
         let Some(program) = self.program.get() else { return };
         let value_of_symbol = |symbol| {
-            let place = self.layout.locate(symbol);
-            let value = place.and_then(|(slot, index)| values.inputs.get(slot)?.get(index));
+            let value = self.layout.locate(symbol).and_then(|(slot, index)| match slot {
+                0 => values.parameters.get(index),
+                _ => values.arguments.get(slot - 1)?.get(index),
+            });
             value.copied().unwrap_or(f64::NAN)
         };
         let value_of_table = |lookup: Lookup, x| {

@@ -56,6 +56,8 @@ pub(crate) struct Constraints {
     pub determining: Vec<usize>,
     /// Number of independent constraints in nonsingular configurations.
     pub rank: usize,
+    /// Numbers of independent coordinates and velocities.
+    pub freedom: [usize; 2],
     /// Whether some constraints are redundant in every configuration.
     pub overdetermined: bool,
     /// Whether the elimination for the accelerations has pivots that are chosen in advance.
@@ -142,17 +144,16 @@ impl Shared {
         work: &mut [f64],
     ) {
         let entry = &self.entries[function];
-        let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
-        inputs[0] = values.inputs[0];
-        for (input, argument) in inputs[1..].iter_mut().zip(&entry.arguments) {
+        let mut lists: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        for (list, argument) in lists.iter_mut().zip(&entry.arguments) {
             let index_of_argument = || arguments.iter().position(|known| known == argument);
-            *input = match replaced.iter().find(|(known, _)| known == argument) {
+            *list = match replaced.iter().find(|(known, _)| known == argument) {
                 Some((_, list)) => list,
-                None => index_of_argument().and_then(|at| values.inputs.get(1 + at)).copied().unwrap_or(&[]),
+                None => index_of_argument().and_then(|at| values.arguments.get(at)).copied().unwrap_or(&[]),
             };
         }
-        let inputs = &inputs[..=entry.arguments.len()];
-        entry.run(self, Values { inputs, ..values }, out, work);
+        let arguments = &lists[..entry.arguments.len()];
+        entry.run(self, Values { arguments, ..values }, out, work);
     }
 
     /// Compiles a function and the functions that it calls to machine code. Returns false if one of them is

@@ -7,7 +7,7 @@ use linkwork::simulate::Overlaps;
 mod driver;
 mod method;
 
-use driver::{Driver, Given, Moving, Settings, on_large_stack};
+use driver::{Driver, Given, Moving, Settings};
 pub use method::Method;
 use method::STEP;
 
@@ -293,17 +293,14 @@ impl<'a, 'i> Simulation<'a, 'i> {
             inputs,
         };
         let mut driver = Driver { settings, controller, sink: sample, has_begun: false, stiff_from: None };
-        let mut go = || {
+        let go = || {
             let moving = Moving { driver: &mut driver, q: &q, v: &v };
             match is_contact_method && with_contacts {
                 true => robot.visit_contacts(moving)?,
                 false => robot.visit_padded_robot(moving)?,
             }
         };
-        match robot.needs_stack() {
-            true => on_large_stack(go)?,
-            false => go()?,
-        }
+        robot.with_stack(go)?;
         Ok(driver.stiff_from)
     }
 }

@@ -191,7 +191,7 @@ impl Space {
         work: &mut [f64],
     ) {
         let charts = &shared.charts;
-        let inputs = &values.inputs[1..];
+        let inputs = values.arguments;
         let Some([rates, speeds]) = self.speeds else {
             return match self.kind {
                 Kind::Integrate => integrate(charts, inputs[0], inputs[1], out),

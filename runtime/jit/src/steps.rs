@@ -145,7 +145,7 @@ impl Stepper {
             let change: f64 = self.stages.iter().zip(STAGES).map(|(s, (_, w))| w * s.acceleration[k]).sum();
             v_end[k] = v[k] + h / 6.0 * change;
         }
-        let state = State { q, other: [&self.displacement, &[], &[]], ..State::default() };
+        let state = State { q, other: &[&self.displacement], ..State::default() };
         self.robot.state_call_into(self.functions.integrate, state, q_end)?;
         match q_end.iter().chain(&*v_end).all(|x| x.is_finite()) {
             true => Ok(()),
@@ -176,7 +176,7 @@ impl Stepper {
                         stage.v[k] = v[k] + c * last.acceleration[k];
                     }
                     let dv = &stage.displacement;
-                    let state = State { q, v: &stage.v, other: [dv, &[], &[]], ..State::default() };
+                    let state = State { q, v: &stage.v, other: &[dv], ..State::default() };
                     robot.state_call_into(functions.integrate, state, &mut stage.q)?;
                     robot.state_call_into(functions.rate, state, &mut stage.rate)?;
                 }

@@ -70,6 +70,24 @@ fn scale_row<T: Real, const R: usize, const C: usize>(m: &mut SMatrix<T, R, C>, 
     }
 }
 
+/// Blocks of the linear system of a constrained motion: one row for each velocity, one column for each
+/// independent coordinate or speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IndependentBlocks<T, const NV: usize, const NP: usize, const NS: usize> {
+    /// Independent coordinates, as indices of their rates in `v`.
+    pub coordinates: [usize; NP],
+    /// Independent generalized speeds, as indices in `v`.
+    pub speeds: [usize; NS],
+    /// Derivatives of the displacements' rates with respect to the independent coordinates.
+    pub drift: SMatrix<T, NV, NP>,
+    /// Derivatives of the displacements' rates with respect to the independent speeds.
+    pub gamma: SMatrix<T, NV, NS>,
+    /// Derivatives of the accelerations with respect to the independent coordinates.
+    pub by_position: SMatrix<T, NV, NP>,
+    /// Derivatives of the accelerations with respect to the independent speeds.
+    pub by_speed: SMatrix<T, NV, NS>,
+}
+
 /// Derivatives of a motion that generated code provides.
 pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
     /// Derivatives of the accelerations with respect to `q`.
@@ -97,28 +115,66 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     pub fn independent<const NX: usize, const NP: usize, const NS: usize>(
         &self,
     ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {
-        let zero = SMatrix::<T, NC, NV>::zeros();
+        let [positions, speeds] = self.dependent_entries();
+        match positions.independent_count() == NP && speeds.independent_count() == NS {
+            true => Ok(self.assemble(&self.blocks_of_entries(&positions, &speeds))),
+            false => Err(ConstraintError::Singular),
+        }
+    }
+
+    /// Returns the blocks of the linearised motion in independent coordinates and generalized speeds, whose
+    /// numbers are known only at run time: columns behind the independent ones are zero, and indices behind
+    /// them are [`usize::MAX`].
+    pub fn independent_blocks(&self) -> IndependentBlocks<T, NV, NV, NV> {
+        let [positions, speeds] = self.dependent_entries();
+        self.blocks_of_entries(&positions, &speeds)
+    }
+
+    /// Returns the solutions of the constraints for the dependent coordinates and speeds.
+    fn dependent_entries(&self) -> [DependentEntries<T, NV, NC>; 2] {
         let mut on_configurations = self.jacobian;
         for k in self.holonomic..NC {
             scale_row(&mut on_configurations, k, T::zero());
         }
-        let positions = DependentEntries::new(on_configurations, zero, self.preferred);
-        let speeds = DependentEntries::new(self.jacobian, -self.rates_by_q, self.preferred);
-        let (coordinates, shape) = positions.independent_entries::<NP>()?;
-        let (free, gamma) = speeds.independent_entries::<NS>()?;
+        [
+            DependentEntries::new(on_configurations, SMatrix::zeros(), self.preferred),
+            DependentEntries::new(self.jacobian, -self.rates_by_q, self.preferred),
+        ]
+    }
+
+    fn blocks_of_entries<const NP: usize, const NS: usize>(
+        &self,
+        positions: &DependentEntries<T, NV, NC>,
+        speeds: &DependentEntries<T, NV, NC>,
+    ) -> IndependentBlocks<T, NV, NP, NS> {
+        let (coordinates, shape) = positions.independent_entries::<NP>();
+        let (free, gamma) = speeds.independent_entries::<NS>();
         let carried = speeds.particular_solution() * shape;
-        let (by_position, by_speed) = (self.by_q * shape + self.by_v * carried, self.by_v * gamma);
-        let drift = self.turning * shape + carried;
-        let rows = coordinates.iter().chain(&free);
+        IndependentBlocks {
+            coordinates,
+            speeds: free,
+            drift: self.turning * shape + carried,
+            gamma,
+            by_position: self.by_q * shape + self.by_v * carried,
+            by_speed: self.by_v * gamma,
+        }
+    }
+
+    /// Returns the linear system whose rows are the independent ones of the blocks.
+    fn assemble<const NX: usize, const NP: usize, const NS: usize>(
+        &self,
+        blocks: &IndependentBlocks<T, NV, NP, NS>,
+    ) -> Linearization<T, NX, NU, NP, NS> {
+        let IndependentBlocks { coordinates, speeds, drift, gamma, by_position, by_speed } = blocks;
         let mut a = SMatrix::<T, NX, NX>::zeros();
         let mut b = SMatrix::<T, NX, NU>::zeros();
-        for (i, row) in rows.copied().enumerate() {
+        for (i, row) in coordinates.iter().chain(speeds).copied().enumerate() {
             for j in 0..NX {
                 let value = match (i < NP, j < NP) {
-                    (true, true) => entry_or_zero(&drift, row, j),
-                    (true, false) => entry_or_zero(&gamma, row, j - NP),
-                    (false, true) => entry_or_zero(&by_position, row, j),
-                    (false, false) => entry_or_zero(&by_speed, row, j - NP),
+                    (true, true) => entry_or_zero(drift, row, j),
+                    (true, false) => entry_or_zero(gamma, row, j - NP),
+                    (false, true) => entry_or_zero(by_position, row, j),
+                    (false, false) => entry_or_zero(by_speed, row, j - NP),
                 };
                 if let Some(slot) = a.get_mut((i, j)) {
                     *slot = value;
@@ -130,7 +186,7 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
                 }
             }
         }
-        Ok(Linearization { a, b, coordinates, speeds: free })
+        Linearization { a, b, coordinates: *coordinates, speeds: *speeds }
     }
 }
 
@@ -178,25 +234,26 @@ impl<T: Real, const NV: usize, const NC: usize> DependentEntries<T, NV, NC> {
         Self { left, right, pivots }
     }
 
-    /// Returns the indices of the independent entries, and the matrix that maps them to all entries.
-    fn independent_entries<const N: usize>(
-        &self,
-    ) -> Result<([usize; N], SMatrix<T, NV, N>), ConstraintError> {
+    /// Returns the number of independent entries.
+    fn independent_count(&self) -> usize {
+        NV - self.pivots.iter().flatten().count()
+    }
+
+    /// Returns the indices of at most `N` independent entries, and the matrix that maps them to all entries.
+    /// Columns of entries that do not exist are zero.
+    fn independent_entries<const N: usize>(&self) -> ([usize; N], SMatrix<T, NV, N>) {
         let is_not_pivot = |j: &usize| !self.pivots.contains(&Some(*j));
-        if (0..NV).filter(is_not_pivot).count() != N {
-            return Err(ConstraintError::Singular);
-        }
-        let mut indices = [0; N];
+        let mut indices = [usize::MAX; N];
         indices.iter_mut().zip((0..NV).filter(is_not_pivot)).for_each(|(slot, j)| *slot = j);
         let shape = SMatrix::from_fn(|i, j| {
-            let index = indices.get(j).copied().unwrap_or_default();
+            let index = indices.get(j).copied().unwrap_or(usize::MAX);
             match self.pivots.iter().position(|p| *p == Some(i)) {
                 Some(row) => -entry_or_zero(&self.left, row, index),
                 None if i == index => T::one(),
                 None => T::zero(),
             }
         });
-        Ok((indices, shape))
+        (indices, shape)
     }
 
     /// Returns the matrix that maps `y` to the dependent entries, for independent entries of zero.

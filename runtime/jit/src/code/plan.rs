@@ -4,18 +4,18 @@
 //! no register for a value, the one whose next use is last goes to memory (Belady 1966), from where
 //! instructions read it. Inputs, constants, sines and cosines are always in memory.
 
+mod angles;
 mod registers;
 
 use super::pieces::Pieces;
 use crate::layout::Layout;
+pub use angles::AngleGroup;
 use linkwork_compiler::expr::Function;
 use linkwork_compiler::lower::{Angles, Op, Operand, Program};
 use std::collections::{BTreeMap, HashMap};
 
 /// Maximum number of lanes of a register.
-const WIDEST: usize = 4;
-/// Number of angles whose sines and cosines are computed together.
-pub const TOGETHER: usize = 8;
+pub const WIDEST: usize = 4;
 
 /// Location of a number in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub enum Memory {
     Input(usize, usize),
     /// Constant with this index.
     Constant(usize),
-    /// Entry of the array of angles, which are followed by their sines, then their cosines.
+    /// Entry of the array of angles, sines and cosines, which is laid out by groups: see [`AngleGroup`].
     Angle(usize),
     /// Output with this index.
     Output(usize),
@@ -39,6 +39,17 @@ pub enum Place {
     Register(u8),
     /// Location in memory.
     Memory(Memory),
+}
+
+#[cfg(any(test, target_arch = "aarch64"))]
+impl Place {
+    /// Returns the place of the number `k` places further on in memory.
+    fn following(self, k: usize) -> Place {
+        match self {
+            Place::Memory(Memory::Input(slot, index)) => Place::Memory(Memory::Input(slot, index + k)),
+            other => other,
+        }
+    }
 }
 
 /// A step of machine code. The numbers of lanes are one, two or four.
@@ -57,7 +68,7 @@ pub enum Step {
     /// An operation on places with its number of lanes. The result is in a register, also in that of an
     /// operand. No other register has a value if the operation is a call.
     Operation(Op, u8, [Place; 3], usize),
-    /// Computes sines and cosines of the angles.
+    /// Computes sines and cosines of all groups of angles. No register has a value except angles.
     Sines,
 }
 
@@ -67,15 +78,6 @@ pub fn is_call(op: &Op) -> bool {
         Op::Call(f, _) => !matches!(f, Function::Sqrt | Function::Abs),
         Op::Atan2(..) | Op::Pow(..) | Op::Extreme(..) | Op::Table(..) => true,
         _ => false,
-    }
-}
-
-/// Returns the number of angles, including padding, whose sines and cosines are computed for `count` angles.
-pub fn padded(count: usize) -> usize {
-    match count {
-        0..=2 => count,
-        3..=4 => 4,
-        _ => count.next_multiple_of(TOGETHER),
     }
 }
 
@@ -89,8 +91,8 @@ pub struct Allocation {
     pub tables: usize,
     /// Number of outputs of the program.
     pub outputs: usize,
-    /// Number of angles whose sines and cosines the program needs.
-    pub angles: usize,
+    /// Groups of angles whose sines and cosines the program needs.
+    pub angles: Vec<AngleGroup>,
     /// Number of entries of the program's workspace.
     pub work: usize,
 }
@@ -112,7 +114,7 @@ impl Allocation {
                 lengths: vec![0; layout.len()],
                 tables: 0,
                 outputs: program.outputs.len(),
-                angles: 0,
+                angles: Vec::new(),
                 work: 0,
             },
             known: HashMap::new(),
@@ -128,6 +130,11 @@ impl Allocation {
         // The angles follow the work space.
         planner.plan.work = planner.plan.work.next_multiple_of(WIDEST);
         Ok(planner.plan)
+    }
+
+    /// Returns the number of angles, including padding.
+    pub fn angle_count(&self) -> usize {
+        self.angles.iter().map(AngleGroup::width).sum()
     }
 }
 
@@ -168,60 +175,6 @@ struct Residence {
 }
 
 impl Planner<'_> {
-    /// Plans the computation of the angles, their sines and cosines.
-    fn angles(&mut self, angles: &Angles) -> Result<(), String> {
-        let widths = self.widths;
-        let width_of_angle = |angle: Operand| match angle {
-            Operand::Value(k) => widths[k],
-            Operand::Gather(k) => self.program.gathers[k].len(),
-            Operand::Tuple(k) => self.program.tuples[k].len(),
-            Operand::Const(_) | Operand::Symbol(_) => 1,
-        };
-        let list = angles.widest_first(self.program, width_of_angle);
-        let mut first = Vec::with_capacity(list.len());
-        let mut next = 0;
-        for angle in &list {
-            first.push(next);
-            next += width_of_angle(angle.angle);
-        }
-        let count = padded(next);
-        let Some(padding) = list.first().filter(|_| count > 0) else { return Ok(()) };
-        let mut stores = vec![Vec::new(); self.program.instructions.len()];
-        // Padding repeats the first angle: no exceptional value slows the others down.
-        let repeated = (next..count).map(|at| (padding.angle, at, 1));
-        let places = list.iter().zip(&first);
-        for (angle, at, width) in
-            places.map(|(angle, at)| (angle.angle, *at, width_of_angle(angle.angle))).chain(repeated)
-        {
-            match angle {
-                Operand::Value(k) => stores[k].push(Target::First(Memory::Angle(at), width)),
-                other => {
-                    let from = self.leaf(other)?;
-                    self.plan.steps.push(Step::Copy(from, Memory::Angle(at), width));
-                }
-            }
-        }
-        self.run(&angles.before, &stores)?;
-        self.plan.steps.push(Step::Sines);
-        self.plan.angles = count;
-        for k in 0..self.program.instructions.len() {
-            match self.program.instructions[k] {
-                Op::Call(f, operand) if angles.covered[k] => {
-                    let at = list.iter().position(|angle| angle.angle == operand);
-                    let at = first[at.ok_or("an angle is missing")?];
-                    self.sines.insert(k, if f == Function::Sin { count + at } else { 2 * count + at });
-                }
-                Op::Lane(lane @ 1.., Operand::Value(whole)) => {
-                    if let Some(at) = self.sines.get(&whole) {
-                        self.sines.insert(k, at + lane);
-                    }
-                }
-                _ => {}
-            }
-        }
-        Ok(())
-    }
-
     /// Plans the outputs.
     fn body(&mut self, results: usize) -> Result<(), String> {
         let (program, n) = (self.program, self.program.instructions.len());

@@ -1,7 +1,7 @@
 //! Tests with random programs: machine code equals an evaluation of one operation after the other, bit for
 //! bit.
 
-use super::plan::{is_call, padded};
+use super::plan::is_call;
 use super::{Code, write_sines_and_cosines};
 use crate::layout::Layout;
 use crate::table::AnyTable;
@@ -20,8 +20,11 @@ mod random;
 const PROGRAMS: u64 = 1000;
 /// Numbers of lanes of programs with lanes.
 const LANES: [usize; 7] = [2, 3, 4, 5, 6, 7, 8];
-/// Numbers of parameters, coordinates and velocities.
-const INPUTS: [usize; 3] = [3, 9, 5];
+/// Arguments of the programs: more than there are registers for their addresses.
+const ARGUMENTS: [Argument; 7] =
+    [Argument::Q, Argument::V, Argument::A, Argument::Tau, Argument::U, Argument::T, Argument::Momenta(5)];
+/// Numbers of parameters, and of values of each argument.
+const INPUTS: [usize; 8] = [3, 9, 5, 5, 5, 5, 1, 5];
 const CONSTANTS: [f64; 8] = [0.0, -0.0, 1.0, -1.0, 0.5, 9.81, -1e-3, 1e6];
 const VALUES: [f64; 6] = [0.0, -0.0, 1e5, f64::NAN, f64::INFINITY, 5e-324];
 
@@ -39,7 +42,17 @@ impl Random {
             0 => Operand::Const(CONSTANTS[self.index_below(CONSTANTS.len())]),
             1 => symbol(Quantity::Parameter(self.index_below(INPUTS[0]))),
             2 | 3 => symbol(Quantity::Configuration(self.index_below(INPUTS[1]))),
-            4 => symbol(Quantity::Velocity(self.index_below(INPUTS[2]))),
+            4 => {
+                let k = self.index_below(INPUTS[2]);
+                symbol(match self.index_below(6) {
+                    0 => Quantity::Velocity(k),
+                    1 => Quantity::Acceleration(k),
+                    2 => Quantity::Force(k),
+                    3 => Quantity::Input(k),
+                    4 => Quantity::Time,
+                    _ => Quantity::Momentum(k),
+                })
+            }
             _ => Operand::Value(before - 1 - self.index_below(before.min(reach))),
         }
     }
@@ -242,20 +255,12 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
     };
     let before = values(program, &value, table, &HashMap::new());
     let angles = Angles::find_angles(program);
-    let list = angles.widest_first(program, |_| 1);
-    let count = padded(list.len());
-    let mut array = vec![0.0; 3 * count];
-    for (at, entry) in array[..count].iter_mut().enumerate() {
-        *entry = value(&before, list[if at < list.len() { at } else { 0 }].angle);
-    }
-    if count > 0 {
-        write_sines_and_cosines(array.as_mut_ptr(), count as u64);
-    }
     let mut known = HashMap::new();
     for (k, op) in program.instructions.iter().enumerate().filter(|(k, _)| angles.covered[*k]) {
         let Op::Call(f, operand) = *op else { continue };
-        let at = list.iter().position(|angle| angle.angle == operand).expect("the angle is in the list");
-        known.insert(k, array[if f == Function::Sin { count + at } else { 2 * count + at }]);
+        let mut array = [value(&before, operand), 0.0, 0.0];
+        write_sines_and_cosines(array.as_mut_ptr(), 1);
+        known.insert(k, array[if f == Function::Sin { 1 } else { 2 }]);
     }
     let all = values(program, &value, table, &known);
     program.outputs.iter().map(|output| value(&all, *output)).collect()
@@ -270,7 +275,7 @@ fn agree(
 ) {
     let count = std::env::var("LINKWORK_PROGRAMS").ok().and_then(|count| count.parse().ok());
     let first = std::env::var("LINKWORK_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
-    let layout = Layout::new(&[Argument::Q, Argument::V]).expect("two arguments");
+    let layout = Layout::new(&ARGUMENTS).expect("seven arguments");
     let table = Table::new([&[-1.0, 0.0, 2.0]], &[1.0, -0.5, 3.0]).map(Table::smooth);
     let tables = [AnyTable::from(table.expect("increasing points"))];
     for seed in first..first + count.unwrap_or(PROGRAMS) {
@@ -283,7 +288,7 @@ fn agree(
             let inputs = inputs.each_ref().map(Vec::as_slice);
             let mut found = vec![f64::NAN; program.outputs.len()];
             let (first, more) = found.split_at_mut(results);
-            code.call(&inputs, &tables, first, more);
+            code.call(inputs[0], &inputs[1..], &tables, first, more);
             let expected = evaluate(&oracle, &layout, &inputs, &tables[0]);
             for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
                 let equal = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();

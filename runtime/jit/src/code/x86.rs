@@ -1,9 +1,12 @@
 //! Machine code for x86-64 with AVX2 and FMA, in the calling convention of System V.
 
 mod encoding;
+mod general;
+mod sines;
 
 use super::plan::{Allocation, Memory, Place, Step, is_call};
 use encoding::*;
+use general::{CALLING, LEAF, Pointer, Registers};
 use linkwork_compiler::expr::{Extreme, Function as Elementary};
 use linkwork_compiler::lower::Op;
 
@@ -19,18 +22,8 @@ pub fn is_supported() -> bool {
 /// Function that returns the address of a function by name, for calls from generated code.
 type Helpers = fn(&str) -> Option<*const u8>;
 
-/// Constants, from [`BIAS`] bytes below.
-const CONSTANTS: u8 = 3;
 /// Register with the address of workspace and angles, plus [`BIAS`] bytes.
 const FRAME: u8 = RBP;
-const MORE: u8 = 12;
-const RESULTS: u8 = 13;
-const INPUTS: u8 = 14;
-const TABLES: u8 = 15;
-/// Registers whose values calls preserve, in the order in which they are pushed.
-const SAVED: [u8; 6] = [CONSTANTS, FRAME, MORE, RESULTS, INPUTS, TABLES];
-/// Registers that hold the addresses of inputs.
-const POINTERS: [u8; 9] = [0, 1, 2, 6, 7, 8, 9, 10, 11];
 
 /// Distance of an address register's value from the start of its memory, bytes: displacements of one byte are
 /// signed, so that this centres their range.
@@ -47,15 +40,21 @@ pub fn write(plan: &mut Allocation, results: usize, helpers: Helpers) -> Result<
     plan.constants.resize(masks, 0.0);
     plan.constants.extend([1 << 63; 4].map(f64::from_bits));
     plan.constants.extend([!(1 << 63); 4].map(f64::from_bits));
+    if !plan.angles.is_empty() {
+        plan.constants.extend(sines::constants());
+    }
     if plan.constants.len().max(plan.outputs) > 1 << 24 {
         return Err("a program is too long".to_string());
     }
     let plan = &*plan;
-    let mut writer =
-        Writer { code: Assembler::default(), plan, results, masks, helpers, pointers: Vec::new() };
+    let calls = |step: &Step| matches!(step, Step::Operation(op, _, _, 1) if is_call(op));
+    let registers = if plan.steps.iter().any(calls) { CALLING } else { LEAF };
+    let (code, pointers) = (Assembler::default(), Vec::new());
+    let mut writer = Writer { code, plan, results, masks, helpers, registers, pointers, uses: 0, slow: None };
     let frame = writer.enter()?;
     plan.steps.iter().try_for_each(|step| writer.step(*step))?;
     writer.leave(frame);
+    writer.large_angles()?;
     Ok(writer.code.bytes)
 }
 
@@ -66,20 +65,25 @@ struct Writer<'a> {
     /// Index of the sign masks among the constants.
     masks: usize,
     helpers: Helpers,
-    /// Inputs whose addresses are in registers, in the order of [`POINTERS`].
-    pointers: Vec<usize>,
+    registers: Registers,
+    /// Inputs whose addresses are in registers, in the order of [`Registers::pointers`].
+    pointers: Vec<Pointer>,
+    /// Number of addresses of inputs that were used.
+    uses: usize,
+    /// Jump to the code for large angles, which follows that of the function.
+    slow: Option<sines::Jump>,
 }
 
 impl Writer<'_> {
     /// Writes the prologue of the function. Returns the size of its stack frame, bytes.
     fn enter(&mut self) -> Result<i32, String> {
-        for register in SAVED {
-            self.code.general(0x50, register);
-        }
-        let numbers = self.plan.work + 3 * self.plan.angles;
-        // Six registers and the address of the caller: eight bytes more align the stack. The work space in it
-        // is aligned to registers.
-        let frame = i32::try_from((8 * numbers).next_multiple_of(16) + ALIGNMENT as usize + 8);
+        let Registers { constants, more, results, inputs, tables, saved, .. } = self.registers;
+        saved.iter().for_each(|register| self.code.general(0x50, *register));
+        let numbers = self.plan.work + 3 * self.plan.angle_count();
+        // The saved registers and the address of the caller: with them the stack is aligned to 16 bytes. The
+        // work space in it is aligned to registers.
+        let odd = 8 * (1 + saved.len()) % 16;
+        let frame = i32::try_from((8 * numbers).next_multiple_of(16) + ALIGNMENT as usize + odd);
         let frame = frame.ok().filter(|frame| *frame < 1 << 20).ok_or("a program has too many values")?;
         for _ in 0..frame / PAGE {
             self.code.add_to_stack(-PAGE);
@@ -88,20 +92,19 @@ impl Writer<'_> {
         self.code.add_to_stack(-(frame % PAGE));
         self.code.address_of(FRAME, RSP, BIAS + ALIGNMENT - 1);
         self.code.bytes.extend([0x48, 0x83, 0xE5, -ALIGNMENT as i8 as u8]); // and rbp, -32
-        self.code.address_of(CONSTANTS, RSI, BIAS);
-        self.code.copy(RESULTS, 1); // rcx
-        self.code.copy(MORE, 8);
-        self.code.copy(INPUTS, RDI);
-        self.code.copy(TABLES, RDX);
+        self.code.address_of(constants, RSI, BIAS);
+        for (to, from) in [(results, RCX), (more, 8), (inputs, RDI), (tables, RDX)] {
+            if to != from {
+                self.code.copy(to, from);
+            }
+        }
         Ok(frame)
     }
 
     fn leave(&mut self, frame: i32) {
         self.code.clear_upper_halves();
         self.code.add_to_stack(frame);
-        for register in SAVED.into_iter().rev() {
-            self.code.general(0x58, register);
-        }
+        self.registers.saved.iter().rev().for_each(|register| self.code.general(0x58, *register));
         self.code.bytes.push(0xC3);
     }
 
@@ -124,18 +127,10 @@ impl Writer<'_> {
             Step::Fill(constant, first, count) => self.fill(constant, first, count),
             Step::Operation(op, to, places, 1) if is_call(&op) => self.call_of(op, to, places)?,
             Step::Operation(op, to, places, width) => {
-                let places = places.map(|place| match place {
-                    Place::Register(register) => Rm::Register(register),
-                    Place::Memory(memory) => self.memory(memory),
-                });
+                let places = places.map(|place| self.operand(place));
                 self.operation(op, to, places, width)?;
             }
-            Step::Sines => {
-                let Rm::Memory(base, at) = self.memory(Memory::Angle(0)) else { return Ok(()) };
-                self.code.address_of(RDI, base, at);
-                self.code.immediate(RSI, self.plan.angles as u64);
-                self.call("sines")?;
-            }
+            Step::Sines => self.sines()?,
         }
         Ok(())
     }
@@ -146,8 +141,10 @@ impl Writer<'_> {
             Op::Mul(..) => self.commutative(MULTIPLY, to, a, b, width),
             Op::Sub(..) => self.ordered(SUBTRACT, to, a, b, width),
             Op::Div(..) => self.ordered(DIVIDE, to, a, b, width),
-            Op::Neg(_) => self.commutative(XOR, to, a, constant(self.masks), width),
-            Op::Call(Elementary::Abs, _) => self.commutative(AND, to, a, constant(self.masks + 4), width),
+            Op::Neg(_) => self.commutative(XOR, to, a, self.constant(self.masks), width),
+            Op::Call(Elementary::Abs, _) => {
+                self.commutative(AND, to, a, self.constant(self.masks + 4), width)
+            }
             Op::Call(Elementary::Sqrt, _) => {
                 let other = match a {
                     // The form on lanes has no second operand.
@@ -290,7 +287,7 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Min, ..) => ("min", 2),
             Op::Extreme(Extreme::Max, ..) => ("max", 2),
             Op::Table(lookup, ..) => {
-                self.code.copy(RDI, TABLES);
+                self.code.copy(RDI, self.registers.tables);
                 self.code.immediate(RSI, lookup.table_index() as u64);
                 let orders = (0..lookup.variable_count())
                     .fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
@@ -300,12 +297,10 @@ impl Writer<'_> {
             _ => return Err("an operation calls nothing".to_string()),
         };
         self.pointers.clear();
-        self.pointers.extend([usize::MAX; 5]);
+        // The registers of the arguments hold no addresses.
+        self.pointers.extend([(); 5].map(|()| Pointer { slot: usize::MAX, last: usize::MAX }));
         for (register, place) in (0..).zip(&places[..count]) {
-            let from = match *place {
-                Place::Register(register) => Rm::Register(register),
-                Place::Memory(memory) => self.memory(memory),
-            };
+            let from = self.operand(*place);
             self.code.load(register, from, 1);
         }
         self.call(name)?;
@@ -340,28 +335,25 @@ impl Writer<'_> {
         }
     }
 
+    /// Returns the operand of an instruction for a place.
+    fn operand(&mut self, place: Place) -> Rm {
+        match place {
+            Place::Register(register) => Rm::Register(register),
+            Place::Memory(memory) => self.memory(memory),
+        }
+    }
+
     /// Returns the address operand of a number in memory; loads the address of an input that is in no
     /// register.
     fn memory(&mut self, memory: Memory) -> Rm {
         let offset = |index: usize| 8 * index as i32;
         match memory {
-            Memory::Constant(k) => constant(k),
+            Memory::Constant(k) => self.constant(k),
             Memory::Work(k) => Rm::Memory(FRAME, offset(k) - BIAS),
             Memory::Angle(k) => Rm::Memory(FRAME, offset(self.plan.work + k) - BIAS),
-            Memory::Output(k) if k < self.results => Rm::Memory(RESULTS, offset(k)),
-            Memory::Output(k) => Rm::Memory(MORE, offset(k - self.results)),
-            Memory::Input(slot, index) => {
-                let known = self.pointers.iter().position(|known| *known == slot);
-                let at = known.unwrap_or_else(|| {
-                    // The last register is overwritten if there are too few.
-                    let at = self.pointers.len().min(POINTERS.len() - 1);
-                    self.pointers.truncate(at);
-                    self.pointers.push(slot);
-                    self.code.load_general(POINTERS[at], INPUTS, offset(slot));
-                    at
-                });
-                Rm::Memory(POINTERS[at], offset(index))
-            }
+            Memory::Output(k) if k < self.results => Rm::Memory(self.registers.results, offset(k)),
+            Memory::Output(k) => Rm::Memory(self.registers.more, offset(k - self.results)),
+            Memory::Input(slot, index) => Rm::Memory(self.pointer(slot), offset(index)),
         }
     }
 
@@ -369,8 +361,8 @@ impl Writer<'_> {
         let to = self.memory(to);
         self.code.instruction(on_lanes(STORE, width), from, 0, to);
     }
-}
 
-fn constant(index: usize) -> Rm {
-    Rm::Memory(CONSTANTS, 8 * index as i32 - BIAS)
+    fn constant(&self, index: usize) -> Rm {
+        Rm::Memory(self.registers.constants, 8 * index as i32 - BIAS)
+    }
 }

@@ -158,7 +158,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         self.add_free_rates(state, 1.0, &mut more);
         let names = Self::CONSTRAINTS;
         slipping_solution(&self.sliding_rows(), &self.constraint_groups(), &names, |sides: &[f64; NV]| {
-            let state = State { other: [&sides[..slipping], &[], &[]], ..state };
+            let state = State { other: &[&sides[..slipping]], ..state };
             self.evaluate_elimination(Internal::ConstrainedDynamics, state, &more)
         })
     }
@@ -173,7 +173,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         bias: &[f64; NV],
     ) -> SVector<f64, NV> {
         let (n, rows) = (self.robot().nv(), self.constraint_count());
-        let state = State { other: [&force[..n], &bias[..rows], &[]], ..self.state_without_velocity(t, q) };
+        let state = State { other: &[&force[..n], &bias[..rows]], ..self.state_without_velocity(t, q) };
         let more = SVector::from(*force);
         self.solution_by_elimination(Internal::ConstraintCorrection, false, state, &more)
             .unwrap_or_else(|| {

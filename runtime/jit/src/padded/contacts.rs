@@ -5,9 +5,11 @@ use crate::error::Error;
 use crate::internal::Internal;
 use crate::names::{List, numbers_of_names};
 use crate::robot::{Robot, State};
+use linkwork::__private::{differentiate_step, held_derivatives};
 use linkwork::constraint::Projected;
-use linkwork::contact::{self, Assumed, Law, Responses, Restitution, Rows, Touched, Visitor};
-use linkwork::integrate::{Features, Hooks};
+use linkwork::contact::{self, Assumed, Law, Responses, Restitution, Rows, Touch, Touched, Visitor};
+use linkwork::discrete::Transition;
+use linkwork::integrate::{self, Features, Hooks, TimeStepping};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{ByMotion, ConstraintError, Contacts, Mechanism};
 use std::borrow::Borrow;
@@ -26,7 +28,7 @@ pub struct PaddedContacts<
     const NR: usize,
     R = Robot,
 > {
-    plain: Padded<NQ, NV, NU, R>,
+    pub(super) plain: Padded<NQ, NV, NU, R>,
 }
 
 impl Robot {
@@ -70,15 +72,6 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
     fn contact_rate_count(&self) -> usize {
         self.robot().shared.contact_rates
     }
-}
-
-macro_rules! forward {
-    ($($name:ident($($argument:ident: $type:ty),*) -> $result:ty;)*) => {$(
-        #[inline]
-        fn $name(&self, $($argument: $type),*) -> $result {
-            self.plain.$name($($argument),*)
-        }
-    )*};
 }
 
 type Vector<const N: usize> = SVector<f64, N>;
@@ -211,6 +204,32 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         write_block(&mut all.velocities, n, &found[..n * rates]);
         write_block(&mut all.rates, rates, &found[n * rates..]);
         all
+    }
+
+    fn held_derivatives(
+        &self,
+        t: f64,
+        state: (&Vector<NQ>, &Vector<NV>),
+        u: &Vector<NU>,
+        touches: &[Touch; NK],
+        gains: [f64; 2],
+    ) -> Option<ByMotion<f64, NV, NU>> {
+        match self.plain.has_contact_derivatives() {
+            true => held_derivatives(self, t, state, u, touches, gains),
+            false => None,
+        }
+    }
+
+    fn differentiate_step(
+        &self,
+        method: &TimeStepping<f64>,
+        t: f64,
+        state: (&Vector<NQ>, &Vector<NV>),
+        u: &Vector<NU>,
+        into: &mut Transition<f64, NQ, NV, NU>,
+    ) -> Option<Result<(), integrate::Error>> {
+        let is_available = self.plain.has_contact_derivatives();
+        is_available.then(|| differentiate_step(self, method, t, state, u, into))
     }
 
     fn contact_laws(&self) -> [Law<f64>; NK] {

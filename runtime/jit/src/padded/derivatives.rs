@@ -8,6 +8,7 @@ use linkwork::__private::{
     displacement_rate_derivatives_in_speeds, free_integrate_derivatives, free_tangent_rate_derivatives,
     integrate_derivatives_in_speeds, put_block, slipping_response,
 };
+use linkwork::constraint::Visitor;
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{ByMotion, Constrained, Derivatives, Mechanism};
 use linkwork_compiler::mechanism::Chart;
@@ -16,7 +17,10 @@ use std::borrow::Borrow;
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
 /// Returns `N` consecutive entries of a vector, from index `first` on.
-fn consecutive_entries<const N: usize, const NV: usize>(v: &SVector<f64, NV>, first: usize) -> [f64; N] {
+pub(super) fn consecutive_entries<const N: usize, const NV: usize>(
+    v: &SVector<f64, NV>,
+    first: usize,
+) -> [f64; N] {
     std::array::from_fn(|k| v[first + k])
 }
 
@@ -28,7 +32,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Evaluates a function whose results are matrices with as many rows as there are velocities.
-    fn evaluate_matrices<const K: usize>(
+    pub(super) fn evaluate_matrices<const K: usize>(
         &self,
         f: Internal,
         state: State<'_>,
@@ -47,7 +51,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Evaluates a function whose results are square matrices, and writes them to the first rows and columns
     /// of the given larger matrices.
-    fn evaluate_square_matrices<const K: usize>(
+    pub(super) fn evaluate_square_matrices<const K: usize>(
         &self,
         f: Internal,
         state: State<'_>,
@@ -113,7 +117,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         (first, second)
     }
 
-    fn has_speeds(&self) -> bool {
+    pub(super) fn has_speeds(&self) -> bool {
         self.robot().shared.has_speeds
     }
 
@@ -151,7 +155,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns the derivatives of the equations of motion with constraints.
-    fn motion_derivatives(
+    pub(crate) fn motion_derivatives(
         &self,
         t: f64,
         q: &SVector<f64, NQ>,
@@ -163,7 +167,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let rows = self.robot().shared.constraints.names.len();
         let state = State {
             a: self.velocity_entries(a),
-            other: [&lambda.as_slice()[..rows], &[], &[]],
+            other: &[&lambda.as_slice()[..rows]],
             ..self.state_with_velocity(t, q, v)
         };
         let lengths = [n, n, rows, rows, rows, n];
@@ -201,7 +205,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let (slipping, groups) = (self.sliding_rows(), self.constraint_groups());
         let (n, rows, sliding) = (self.robot().nv(), constraints.names.len(), constraints.slipping.len());
         let solve = slipping_response(&slipping, &groups, &lambda, |force, bias, sides| {
-            let other = [&force[..n], &bias[..rows], &sides[..sliding]];
+            let other = &[&force[..n], &bias[..rows], &sides[..sliding]];
             let state = State { other, ..self.state_with_velocity(t, q, v) };
             self.evaluate_elimination(Internal::SlippingResponse, state, &SVector::from(*force))
         });
@@ -364,5 +368,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
             [Square::zeros(); 2],
         )
         .into()
+    }
+
+    fn visit_constraints<V: Visitor<f64, NQ, NV, NU>>(&self, visitor: V) -> Option<V::Output> {
+        let slips = !self.robot().shared.constraints.slipping.is_empty();
+        let is_available = self.has_function(Internal::MotionDerivatives) && !slips;
+        is_available.then(|| visitor.visit(self))
     }
 }

@@ -14,18 +14,6 @@ use linkwork::simulate::Overlaps;
 use linkwork::{Mechanism, simulate};
 use std::cell::{Cell, RefCell};
 
-/// Stack size of the thread on which large mechanisms are simulated, bytes.
-const STACK: usize = 64 << 20;
-
-/// Runs a function on a thread with a large stack, and waits for it.
-pub(super) fn on_large_stack(run: impl FnOnce() -> Result<(), Error> + Send) -> Result<(), Error> {
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
-        let thread = thread.spawn_scoped(scope, run).map_err(|error| Error::Internal(error.to_string()))?;
-        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
-}
-
 /// Inputs of a simulation that do not depend on the state.
 #[derive(Clone, Copy)]
 pub(super) enum Given<'a> {

@@ -161,7 +161,7 @@ impl Planner<'_> {
 
     /// Releases the register of a value that is not used again. Returns its number of lanes and its first
     /// entry of the work space.
-    fn forget(&mut self, k: usize) -> Option<(usize, usize)> {
+    pub(super) fn forget(&mut self, k: usize) -> Option<(usize, usize)> {
         let Residence { register, memory } = self.places[k].take()?;
         if let Some(register) = register {
             self.values[usize::from(register)] = None;

@@ -1,10 +1,12 @@
 //! Encoding of instructions for x86-64 with AVX2 and FMA.
 
-// General registers. Addresses with the first eight take fewer bytes; those from `RBX` survive calls.
+// General registers. Addresses with the first eight take fewer bytes.
 pub const RAX: u8 = 0;
+pub const RCX: u8 = 1;
+pub const RDX: u8 = 2;
+pub const RBX: u8 = 3;
 pub const RSP: u8 = 4;
 pub const RBP: u8 = 5;
-pub const RDX: u8 = 2;
 pub const RSI: u8 = 6;
 pub const RDI: u8 = 7;
 
@@ -50,6 +52,16 @@ pub const SQUARE_ROOT: Encoding = scalar(0x51);
 pub const MOVE: Encoding = packed(0x28);
 pub const AND: Encoding = packed(0x54);
 pub const XOR: Encoding = packed(0x57);
+pub const OR: Encoding = packed(0x56);
+/// Comparison of lanes, followed by a byte for the kind of comparison.
+pub const COMPARE: Encoding = packed(0xC2);
+/// Shift of whole lanes by a constant, followed by a byte. The field of the register is part of the opcode.
+pub const SHIFT: Encoding = packed(0x73);
+/// Sets the flag of zero if no bit of both operands is set.
+pub const TEST: Encoding = Encoding { opcode: 0x17, map: 2, prefix: 1, wide: false, long: false };
+/// Lanes of the second operand where the sign of a mask is set, otherwise of the first; followed by a byte
+/// with the mask's register.
+pub const BLEND: Encoding = Encoding { opcode: 0x4B, map: 3, prefix: 1, wide: false, long: false };
 /// Moves of lanes: copies of a number to two lanes, and to four.
 pub const COPY_TO_TWO: Encoding = Encoding { opcode: 0x12, map: 1, prefix: 3, wide: false, long: false };
 /// Second lanes of two registers, and first lanes.
@@ -68,8 +80,8 @@ pub const STORE_FOUR: Encoding = Encoding { opcode: 0x11, map: 1, prefix: 1, wid
 pub fn on_lanes(code: Encoding, width: usize) -> Encoding {
     match width {
         1 => code,
-        // The opcodes of fused products differ by one.
-        _ => Encoding { opcode: code.opcode - u8::from(code.map == 2), prefix: 1, long: width == 4, ..code },
+        // The opcodes of fused products, which alone have the bit W, differ by one.
+        _ => Encoding { opcode: code.opcode - u8::from(code.wide), prefix: 1, long: width == 4, ..code },
     }
 }
 
