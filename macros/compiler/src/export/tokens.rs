@@ -62,6 +62,17 @@ fn word_in_single_precision(word: &str, after: &str) -> String {
     if is_call { format!("{word}f") } else { word.to_string() }
 }
 
+/// Returns true if a text contains a word as a whole, and not as a member of a struct.
+pub fn contains_word(text: &str, word: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.match_indices(word).any(|(at, _)| {
+        let before = text.get(..at).and_then(|t| t.chars().next_back());
+        let after = text.get(at + word.len()..).and_then(|t| t.chars().next());
+        let is_member = text.get(..at).is_some_and(|before| before.ends_with("->"));
+        !is_member && !before.is_some_and(is_letter) && !after.is_some_and(is_letter)
+    })
+}
+
 /// Returns the length of the number that a text begins with.
 pub fn number_length(text: &str) -> usize {
     let mut exponent = false;

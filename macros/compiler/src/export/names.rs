@@ -1,243 +1,34 @@
 //! Conversion of the user's names to C identifiers.
 
-/// Keywords of C and C++, and macros of headers and compilers.
-const RESERVED: &[&str] = &[
-    "alignas",
-    "alignof",
-    "and",
-    "and_eq",
-    "asm",
-    "auto",
-    "bitand",
-    "bitor",
-    "bool",
-    "break",
-    "case",
-    "catch",
-    "char",
-    "class",
-    "compl",
-    "complex",
-    "concept",
-    "const",
-    "consteval",
-    "constexpr",
-    "constinit",
-    "const_cast",
-    "continue",
-    "co_await",
-    "co_return",
-    "co_yield",
-    "decltype",
-    "default",
-    "delete",
-    "do",
-    "double",
-    "dynamic_cast",
-    "else",
-    "enum",
-    "errno",
-    "explicit",
-    "export",
-    "extern",
-    "false",
-    "float",
-    "for",
-    "fortran",
-    "friend",
-    "goto",
-    "i386",
-    "if",
-    "imaginary",
-    "inline",
-    "int",
-    "linux",
-    "long",
-    "mutable",
-    "namespace",
-    "near",
-    "far",
-    "new",
-    "noexcept",
-    "not",
-    "not_eq",
-    "nullptr",
-    "operator",
-    "or",
-    "or_eq",
-    "private",
-    "protected",
-    "public",
-    "register",
-    "reinterpret_cast",
-    "requires",
-    "restrict",
-    "return",
-    "short",
-    "signed",
-    "sizeof",
-    "static",
-    "static_assert",
-    "static_cast",
-    "struct",
-    "switch",
-    "template",
-    "this",
-    "thread_local",
-    "throw",
-    "true",
-    "try",
-    "typedef",
-    "typeid",
-    "typename",
-    "typeof",
-    "union",
-    "unix",
-    "unsigned",
-    "using",
-    "virtual",
-    "void",
-    "volatile",
-    "wchar_t",
-    "while",
-    "xor",
-    "xor_eq",
-    "math_errhandling",
-];
+/// Keywords of C and C++, and macros of headers and compilers, separated by spaces.
+const RESERVED: &str = "\
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl complex \
+    concept const consteval constexpr constinit const_cast continue co_await co_return co_yield \
+    decltype default delete do double dynamic_cast else enum errno explicit export extern false float \
+    for fortran friend goto i386 if imaginary inline int linux long mutable namespace near far new \
+    noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast \
+    requires restrict return short signed sizeof static static_assert static_cast struct switch \
+    template this thread_local throw true try typedef typeid typename typeof union unix unsigned using \
+    virtual void volatile wchar_t while xor xor_eq math_errhandling";
 
-/// Names of functions and macros in the included headers, except those that the generated code calls.
-const OF_HEADERS: &[&str] = &[
-    "abs",
-    "acosh",
-    "asinh",
-    "atanh",
-    "bcmp",
-    "bcopy",
-    "bzero",
-    "canonicalize",
-    "casadi_int",
-    "casadi_real",
-    "cbrt",
-    "ceil",
-    "clock",
-    "daddl",
-    "div",
-    "drem",
-    "erf",
-    "erfc",
-    "exp10",
-    "exp2",
-    "explicit_bzero",
-    "expm1",
-    "fdim",
-    "ffs",
-    "ffsl",
-    "ffsll",
-    "finite",
-    "floor",
-    "fmaxmag",
-    "fminmag",
-    "fmod",
-    "fpclassify",
-    "frexp",
-    "fromfp",
-    "gamma",
-    "hypot",
-    "ilogb",
-    "index",
-    "iseqsig",
-    "isfinite",
-    "isgreater",
-    "isgreaterequal",
-    "isinf",
-    "isless",
-    "islessequal",
-    "islessgreater",
-    "isnan",
-    "isnormal",
-    "isunordered",
-    "j0",
-    "j1",
-    "jn",
-    "ldexp",
-    "lgamma",
-    "lgamma_r",
-    "lgammaf_r",
-    "lgammal_r",
-    "llogb",
-    "llrint",
-    "llround",
-    "log10",
-    "log1p",
-    "log2",
-    "logb",
-    "lrint",
-    "lround",
-    "memccpy",
-    "memchr",
-    "memcmp",
-    "memcpy",
-    "memmove",
-    "memset",
-    "modf",
-    "nan",
-    "nearbyint",
-    "nextafter",
-    "nextdown",
-    "nexttoward",
-    "nextup",
-    "pow10",
-    "remainder",
-    "remquo",
-    "rindex",
-    "rint",
-    "round",
-    "roundeven",
-    "scalb",
-    "scalbln",
-    "scalbn",
-    "setpayload",
-    "signbit",
-    "signgam",
-    "significand",
-    "sincos",
-    "stpcpy",
-    "stpncpy",
-    "strcasecmp",
-    "strcat",
-    "strchr",
-    "strcmp",
-    "strcoll",
-    "strcpy",
-    "strcspn",
-    "strdup",
-    "strerror",
-    "strerror_r",
-    "strlen",
-    "strncasecmp",
-    "strncat",
-    "strncmp",
-    "strncpy",
-    "strndup",
-    "strnlen",
-    "strpbrk",
-    "strrchr",
-    "strsep",
-    "strsignal",
-    "strspn",
-    "strstr",
-    "strtok",
-    "strtok_r",
-    "strxfrm",
-    "tgamma",
-    "time",
-    "totalorder",
-    "trunc",
-    "ufromfp",
-    "y0",
-    "y1",
-    "yn",
-];
+/// Names of functions and macros in the included headers, except those that the generated code calls,
+/// separated by spaces.
+const OF_HEADERS: &str = "\
+    abs acosh asinh atanh bcmp bcopy bzero canonicalize casadi_int casadi_real cbrt ceil clock daddl \
+    div drem erf erfc exp10 exp2 explicit_bzero expm1 fdim ffs ffsl ffsll finite floor fmaxmag fminmag \
+    fmod fpclassify frexp fromfp gamma hypot ilogb index iseqsig isfinite isgreater isgreaterequal \
+    isinf isless islessequal islessgreater isnan isnormal isunordered j0 j1 jn ldexp lgamma lgamma_r \
+    lgammaf_r lgammal_r llogb llrint llround log10 log1p log2 logb lrint lround memccpy memchr memcmp \
+    memcpy memmove memset modf nan nearbyint nextafter nextdown nexttoward nextup pow10 remainder \
+    remquo rindex rint round roundeven scalb scalbln scalbn setpayload signbit signgam significand \
+    sincos stpcpy stpncpy strcasecmp strcat strchr strcmp strcoll strcpy strcspn strdup strerror \
+    strerror_r strlen strncasecmp strncat strncmp strncpy strndup strnlen strpbrk strrchr strsep \
+    strsignal strspn strstr strtok strtok_r strxfrm tgamma time totalorder trunc ufromfp y0 y1 yn";
+
+/// Returns true if a list of names, separated by spaces, contains a name.
+fn contains_name(list: &str, name: &str) -> bool {
+    list.split_whitespace().any(|known| known == name)
+}
 
 /// Replaces characters that are invalid in identifiers: ASCII punctuation by underscores, other characters by
 /// their Unicode numbers.
@@ -261,7 +52,7 @@ pub fn identifier_from_name(name: &str) -> String {
         text.insert(0, 'x');
     }
     let shouts = text.len() > 2 && text.chars().all(|c| !c.is_ascii_lowercase());
-    if shouts || RESERVED.contains(&text.as_str()) {
+    if shouts || contains_name(RESERVED, &text) {
         text.push('_');
     }
     text
@@ -274,7 +65,8 @@ pub fn prefix_identifier(name: &str) -> String {
     if text == "lw" || text.starts_with("lw_") {
         text.insert(0, 'x');
     }
-    let is_of_header = |name: &str| OF_HEADERS.contains(&name) || super::scalar::FUNCTIONS.contains(&name);
+    let is_of_header =
+        |name: &str| contains_name(OF_HEADERS, name) || super::tokens::FUNCTIONS.contains(&name);
     // The mathematical library has each function in three precisions, and type names have these endings.
     let plain = text.strip_suffix(['f', 'l']).unwrap_or(&text);
     if is_of_header(&text) || is_of_header(plain) || text.ends_with("_t") || text.ends_with("_l") {

@@ -1,3 +1,49 @@
+//// lw_signum
+/* Returns one with the sign of a number, also for zeros. */
+static inline double lw_signum(double x) {
+    return x != x ? x : copysign(1.0, x);
+}
+//// lw_atmosphere
+/* Returns temperature (K), pressure (Pa) and temperature gradient (K/m) of the standard atmosphere (ISO 2533:1975,
+ * U.S. Standard Atmosphere 1976) at a geopotential height (m). */
+static void lw_atmosphere(double h, double *temperature, double *pressure, double *rate) {
+    static const double base[8] = {0.0, 11000.0, 20000.0, 32000.0, 47000.0, 51000.0, 71000.0, 84852.0};
+    static const double lapse[8] = {-6.5e-3, 0.0, 1.0e-3, 2.8e-3, 0.0, -2.8e-3, -2.0e-3, 0.0};
+    const double fall = 9.80665 / 287.05287;
+    double t = 288.15, p = 101325.0;
+    for (int k = 0; k < 8; ++k) {
+        const double end = k < 7 ? base[k + 1] : HUGE_VAL;
+        const double depth = fmin(h, end) - base[k];
+        const double next = t + depth * lapse[k];
+        p *= lapse[k] == 0.0 ? exp(-fall * depth / t) : pow(next / t, -fall / lapse[k]);
+        t = next;
+        if (h < end || k == 7) {
+            *temperature = t;
+            *pressure = p;
+            *rate = lapse[k];
+            return;
+        }
+    }
+}
+//// lw_isa_temperature
+static double lw_isa_temperature(double h) {
+    double temperature, pressure, rate;
+    lw_atmosphere(h, &temperature, &pressure, &rate);
+    return temperature;
+}
+//// lw_isa_lapse_rate
+static double lw_isa_lapse_rate(double h) {
+    double temperature, pressure, rate;
+    lw_atmosphere(h, &temperature, &pressure, &rate);
+    return rate;
+}
+//// lw_isa_pressure
+static double lw_isa_pressure(double h) {
+    double temperature, pressure, rate;
+    lw_atmosphere(h, &temperature, &pressure, &rate);
+    return pressure;
+}
+//// lw_weights_around
 /* Computes the weights of the four points around the cell of an axis that contains x, for a derivative of the given order. Returns
  * the index of the cell. */
 static int lw_weights_around(const double *points, int count, double x, int order, int smooth, int extrapolated,
@@ -71,7 +117,7 @@ static int lw_weights_around(const double *points, int count, double x, int orde
     }
     return cell;
 }
-
+//// lw_tabulated
 /* Returns the derivative of a table with respect to its variables, with the given orders. */
 static double lw_tabulated(const @PREFIX@_table *table, int variables, const double *x, const int *orders) {
     double weights[3][4] = {{0.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}};
@@ -97,17 +143,17 @@ static double lw_tabulated(const @PREFIX@_table *table, int variables, const dou
     }
     return sum;
 }
-
+//// lw_tabulated_1
 static inline double lw_tabulated_1(const @PREFIX@_table *table, double x, int order) {
     return lw_tabulated(table, 1, &x, &order);
 }
-
+//// lw_tabulated_2
 static inline double lw_tabulated_2(const @PREFIX@_table *table, double x, double y, int by_x, int by_y) {
     const double at[2] = {x, y};
     const int orders[2] = {by_x, by_y};
     return lw_tabulated(table, 2, at, orders);
 }
-
+//// lw_tabulated_3
 static inline double lw_tabulated_3(const @PREFIX@_table *table, double x, double y, double z, int by_x, int by_y, int by_z) {
     const double at[3] = {x, y, z};
     const int orders[3] = {by_x, by_y, by_z};

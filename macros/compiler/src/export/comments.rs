@@ -1,6 +1,5 @@
-//! Documentation comments of the C header.
+//! Documentation comments of exported code, in the form of C.
 
-use super::function::{Given, Outline};
 use crate::catalogue::Argument;
 use crate::mechanism::Supplied;
 
@@ -64,7 +63,7 @@ pub fn wrap_paragraph(text: &str, first: &str, others: &str) -> String {
     out
 }
 
-/// Returns the description of a function argument for the C header.
+/// Returns the description of a function argument for the documentation.
 pub fn argument_description(a: Argument) -> &'static str {
     match a {
         Argument::T => "time, s",
@@ -86,36 +85,17 @@ pub fn count_in_words(n: usize) -> String {
     if n == 1 { "1 number".to_string() } else { format!("{n} numbers") }
 }
 
-/// Returns the comment of a function: its documentation, then its arguments and results with their sizes.
-pub fn function_comment(
-    docs: &[String],
-    arguments: &[Argument],
-    results: &[Given],
-    o: &Outline<'_>,
-) -> String {
+/// Returns the comment of a function: its documentation, then the names of its arrays with their meaning.
+pub fn function_comment<'a>(docs: &[String], arrays: impl Iterator<Item = (&'a str, String)>) -> String {
     let mut text = String::new();
     for (k, paragraph) in docs.iter().enumerate() {
-        let first = if k == 0 { "/* " } else { " * " };
-        text.push_str(&wrap_paragraph(&without_links(paragraph), first, " * "));
+        text.push_str(&wrap_paragraph(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
     }
-    text.push_str(" *\n");
-    let array_length_text = |a: &Argument| match a {
-        Argument::T => String::new(),
-        a => format!(", {}", count_in_words(o.length(*a))),
-    };
-    for a in arguments.iter().filter(|a| !matches!(a, Argument::Into(..) | Argument::Called(_))) {
-        let line = format!("{}{}", argument_description(*a), array_length_text(a));
-        text.push_str(&wrap_paragraph(&line, &format!(" * {:9} ", a.argument_name()), " *           "));
+    text.push_str(if docs.is_empty() { "/*\n" } else { " *\n" });
+    for (name, about) in arrays {
+        text.push_str(&wrap_paragraph(&about, &format!(" * {name:9} "), " *           "));
     }
-    for (name, rows, columns) in results {
-        let line = match columns {
-            1 => format!("out: {}", count_in_words(*rows)),
-            _ => format!("out: {rows} by {columns}, column by column"),
-        };
-        text.push_str(&wrap_paragraph(&line, &format!(" * {name:9} "), " *           "));
-    }
-    text.push_str(" */\n");
-    text
+    text + " */\n"
 }
 
 #[cfg(test)]

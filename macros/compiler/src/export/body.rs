@@ -3,8 +3,7 @@
 //! arguments.
 
 use super::pieces::{Piece, Statement};
-use super::scalar::numeric_literal;
-use super::support::Support;
+use super::tokens::numeric_literal;
 use crate::catalogue::Argument;
 use crate::expr::{Extreme, Function as Elementary, Lookup, Symbol};
 use crate::lower::{Angle, Angles, Op, Operand, Program};
@@ -27,7 +26,13 @@ pub struct Scope<'a> {
     pub parameters: &'a [String],
     /// Members of the C parameter struct that are tables.
     pub tables: &'a [String],
+    /// Whether values are read and computed right before their first use, for processors that keep all values
+    /// in registers.
+    pub is_late: bool,
 }
+
+/// Name in place of a value that does not exist. Code that contains it is refused.
+pub const MISSING: &str = "lw_missing";
 
 struct Writer<'a> {
     program: &'a Program,
@@ -37,21 +42,14 @@ struct Writer<'a> {
     pieces: Vec<Option<Piece>>,
     /// Arguments and parameters that are already local constants, if each is read before its first use.
     read: Vec<Symbol>,
-    support: &'a mut Support,
 }
 
 /// Writes a program: input values, statements, and assignments of the results. Returns the expression of the
 /// first result, for functions that return it.
-pub fn write_program(
-    out: &mut String,
-    program: &Program,
-    scope: &Scope<'_>,
-    places: Places<'_>,
-    support: &mut Support,
-) -> String {
+pub fn write_program(out: &mut String, program: &Program, scope: &Scope<'_>, places: Places<'_>) -> String {
     let pieces = vec![None; program.instructions.len()];
-    let mut w = Writer { program, scope, statements: Vec::new(), pieces, read: Vec::new(), support };
-    if w.support.is_kernel {
+    let mut w = Writer { program, scope, statements: Vec::new(), pieces, read: Vec::new() };
+    if scope.is_late {
         w.write_late();
     } else {
         write_inputs(out, program, scope);
@@ -126,9 +124,8 @@ impl Writer<'_> {
                 let has_value = |a: &&Angle| a.sine == Some(k) || a.cosine == Some(k);
                 let Some(angle) = angles.list.iter().find(has_value) else { continue };
                 let text = self.operand_text(angle.angle).text;
-                let function = self.support.sine_cosine_function(1);
                 let mut text = format!(
-                    "    double sine{k}, cosine{k};\n    {function}({text}, &sine{k}, &cosine{k});\n"
+                    "    double sine{k}, cosine{k};\n    lw_sin_cos({text}, &sine{k}, &cosine{k});\n"
                 );
                 let mut names = Vec::new();
                 for (value, name) in [(angle.sine, "sine"), (angle.cosine, "cosine")] {
@@ -183,17 +180,16 @@ impl Writer<'_> {
         let padded = if count > 2 { count.next_multiple_of(TOGETHER) } else { count };
         let mut texts: Vec<String> = list.iter().map(|angle| self.operand_text(angle.angle).text).collect();
         texts.resize(padded, "0.0".to_string());
-        let function = self.support.sine_cosine_function(if count > 2 { TOGETHER } else { 1 });
         let mut text = format!("    double sine[{padded}], cosine[{padded}];\n");
         if count > 2 {
             let _ = writeln!(text, "    const double angle[{padded}] = {{{}}};", texts.join(", "));
             for first in (0..padded).step_by(TOGETHER) {
                 let at = if first == 0 { String::new() } else { format!(" + {first}") };
-                let _ = writeln!(text, "    {function}(angle{at}, sine{at}, cosine{at});");
+                let _ = writeln!(text, "    lw_sin_cos_4(angle{at}, sine{at}, cosine{at});");
             }
         } else {
             for (k, angle) in texts.iter().enumerate() {
-                let _ = writeln!(text, "    {function}({angle}, &sine[{k}], &cosine[{k}]);");
+                let _ = writeln!(text, "    lw_sin_cos({angle}, &sine[{k}], &cosine[{k}]);");
             }
         }
         let mut names = Vec::new();
@@ -215,22 +211,16 @@ impl Writer<'_> {
             Operand::Const(c) => Piece::plain_expression(numeric_literal(c)),
             Operand::Symbol(s) => match local_name(Quantity::from_symbol(s), self.scope) {
                 Some(name) => Piece { needs: self.reading_statement(s), ..Piece::plain_expression(name) },
-                None => self.missing_value_text(),
+                None => Piece::plain_expression(MISSING.to_string()),
             },
             // Programs without lanes contain neither tuples nor gathers.
-            Operand::Tuple(_) | Operand::Gather(_) => self.missing_value_text(),
+            Operand::Tuple(_) | Operand::Gather(_) => Piece::plain_expression(MISSING.to_string()),
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
                 level: 3,
             }),
         }
-    }
-
-    /// Returns the text for a value that does not exist; the file is then refused.
-    fn missing_value_text(&mut self) -> Piece {
-        self.support.missing = true;
-        Piece::plain_expression("missing".to_string())
     }
 
     fn instruction_text(&mut self, op: Op) -> Piece {
@@ -243,43 +233,27 @@ impl Writer<'_> {
             Op::Sub(a, b) => self.infix_operation([a, b], "-", (1, 2)),
             Op::Mul(a, b) => self.infix_operation([a, b], "*", (2, 3)),
             Op::Div(a, b) => self.infix_operation([a, b], "/", (2, 3)),
-            Op::MulAdd(a, b, c) => self.call_text(Support::MUL_ADD, &[a, b, c]),
-            Op::MulSub(a, b, c) => self.call_text(Support::MUL_SUB, &[a, b, c]),
-            Op::NegMulAdd(a, b, c) => self.call_text(Support::NEG_MUL_ADD, &[a, b, c]),
-            Op::Call(f, a) => {
-                let name = self.elementary_function_call(f);
-                self.call_text(&name, &[a])
-            }
+            Op::MulAdd(a, b, c) => self.call_text("lw_mul_add", &[a, b, c]),
+            Op::MulSub(a, b, c) => self.call_text("lw_mul_sub", &[a, b, c]),
+            Op::NegMulAdd(a, b, c) => self.call_text("lw_neg_mul_add", &[a, b, c]),
+            Op::Call(f, a) => self.call_text(&elementary_function_name(f), &[a]),
             Op::Atan2(a, b) => self.call_text("atan2", &[a, b]),
             Op::Pow(a, b) => self.call_text("pow", &[a, b]),
             Op::Extreme(Extreme::Min, a, b) => self.call_text("fmin", &[a, b]),
             Op::Extreme(Extreme::Max, a, b) => self.call_text("fmax", &[a, b]),
             Op::Table(lookup, a, b, c) => self.table_lookup_text(lookup, [a, b, c]),
             // Rejected by `check`.
-            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => self.missing_value_text(),
-        }
-    }
-
-    fn elementary_function_call(&mut self, f: Elementary) -> String {
-        match f {
-            Elementary::Ln => "log".to_string(),
-            Elementary::Abs => "fabs".to_string(),
-            Elementary::Signum => self.support.sign_function(),
-            Elementary::IsaTemperature | Elementary::IsaLapseRate | Elementary::IsaPressure => {
-                self.support.atmosphere_function(f.function_name())
-            }
-            other => other.function_name().to_string(),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::plain_expression(MISSING.to_string()),
         }
     }
 
     fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3]) -> Piece {
-        self.support.tabulated = true;
         let count = lookup.variable_count();
         let pieces: Vec<Piece> = x.iter().take(count).map(|o| self.operand_text(*o)).collect();
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let orders: Vec<String> = lookup.derivative_orders().iter().map(ToString::to_string).collect();
         let Some(table) = self.scope.tables.get(lookup.table_index()) else {
-            return self.missing_value_text();
+            return Piece::plain_expression(MISSING.to_string());
         };
         let text = format!("lw_tabulated_{count}(&self->{table}, {}, {})", x.join(", "), orders.join(", "));
         Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
@@ -296,6 +270,21 @@ impl Writer<'_> {
         let list: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let text = format!("{function}({})", list.join(", "));
         Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
+    }
+}
+
+/// Returns the name of an elementary function in C.
+fn elementary_function_name(f: Elementary) -> String {
+    match f {
+        Elementary::Ln => "log".to_string(),
+        Elementary::Abs => "fabs".to_string(),
+        Elementary::Signum
+        | Elementary::IsaTemperature
+        | Elementary::IsaLapseRate
+        | Elementary::IsaPressure => {
+            format!("lw_{}", f.function_name())
+        }
+        other => other.function_name().to_string(),
     }
 }
 
