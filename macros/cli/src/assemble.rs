@@ -1,6 +1,7 @@
 //! Initial states that satisfy the constraints, with as many of the given entries as possible.
 
 use crate::Stop;
+use linkwork::nalgebra::DMatrix;
 use linkwork_compiler::mechanism::{Chart, Model};
 use linkwork_jit::Robot;
 use std::f64::consts::PI;
@@ -77,6 +78,27 @@ impl Assembly<'_, '_> {
         };
         let arguments: Option<Vec<&[f64]>> = f.arguments().iter().map(find_argument_values).collect();
         self.robot.evaluate(&f, &arguments?).ok()
+    }
+
+    /// Returns true if every velocity that the constraints permit has a positive kinetic energy: if
+    /// `M + Jᵀ J` is positive definite, with the mass matrix `M` and the Jacobian `J` of the constraints.
+    ///
+    /// # Errors
+    ///
+    /// The mass matrix cannot be evaluated.
+    pub fn has_inertia(&self, q: &[f64]) -> Result<bool, Stop> {
+        let matrix = self.robot.mass_matrix(q)?;
+        let (rows, columns) = (self.model.constraints.len(), matrix.ncols());
+        if matrix.clone().cholesky().is_some() {
+            return Ok(true);
+        }
+        let jacobian = self.evaluate_function("constraint_jacobian", &[("q", q)]);
+        let jacobian = jacobian.filter(|entries| entries.len() == rows * columns);
+        let sum = jacobian.map(|entries| {
+            let jacobian = DMatrix::from_vec(rows, columns, entries);
+            matrix + jacobian.transpose() * jacobian
+        });
+        Ok(sum.is_some_and(|sum| sum.cholesky().is_some()))
     }
 
     /// Returns which velocities affect no constraint, at this configuration and near it. The first list has

@@ -8,7 +8,7 @@ use crate::library;
 use crate::motion::named_option_values;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::export::c::{self, Options};
+use linkwork_compiler::export::{Options, identifier_from_name, prefix_identifier, snake_case_prefix};
 use linkwork_compiler::syntax::{Inertias, ScalarType};
 use linkwork_compiler::{Source, expand, export_c, export_cuda, export_wgsl};
 use std::path::{Path, PathBuf};
@@ -89,7 +89,7 @@ fn prepare_source(source: &mut Source, matches: &ArgMatches) -> bool {
 /// Returns the prefix of names. Rejects a prefix that is not an identifier of the target.
 pub fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop> {
     let prefix = text_option(matches, "prefix").unwrap_or_default().to_string();
-    let usable = c::prefix_identifier(&prefix);
+    let usable = prefix_identifier(&prefix);
     if prefix.is_empty() || usable == prefix {
         return Ok(prefix);
     }
@@ -115,9 +115,8 @@ fn write_all(matches: &ArgMatches, prefix: &str, texts: &[(&str, &String)]) -> R
 pub fn export_library_crate(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let given_prefix = text_option(matches, "prefix").map(ToString::to_string);
-    let prefix = c::identifier_from_name(
-        &given_prefix.unwrap_or_else(|| c::snake_case_prefix(&input.declaration.name)),
-    );
+    let prefix =
+        identifier_from_name(&given_prefix.unwrap_or_else(|| snake_case_prefix(&input.declaration.name)));
     let made = library::generate_crate(&input, &prefix, matches)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| PathBuf::from(&prefix));
     for (path, text) in &made.files {

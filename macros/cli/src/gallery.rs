@@ -44,14 +44,33 @@ pub fn write_gallery(matches: &ArgMatches) -> Result<(), Stop> {
 /// Returns the name and the page of the mechanism of a line.
 fn page_of_line(list: &Path, line: &str) -> Result<(String, Page), Stop> {
     let mut words = split_quoted_words(line)?;
-    if let (Some(file), Some(folder)) = (words.first_mut(), list.parent()) {
-        *file = folder.join(&*file).display().to_string();
+    if let Some(folder) = list.parent() {
+        resolve_paths(&mut words, folder);
     }
     let all = ["view".to_string(), "--live".to_string()].into_iter().chain(words);
     let matches = commands::view_command()
         .try_get_matches_from(all)
         .map_err(|error| Stop::Failure(error.to_string().trim_end().to_string()))?;
     view::mechanism_page(&matches)
+}
+
+/// Makes the paths of a line relative to the folder of the list: the file, and the values of `--table` and
+/// `--meshes`.
+fn resolve_paths(words: &mut [String], folder: &Path) {
+    let resolve = |path: &str| folder.join(path).display().to_string();
+    for k in 0..words.len() {
+        let option = if k == 0 { "" } else { words[k - 1].as_str() };
+        words[k] = match (option, words[k].split_once('=')) {
+            ("", _) | ("--meshes", _) => resolve(&words[k]),
+            ("--table", Some((name, file))) => format!("{name}={}", resolve(file)),
+            (_, Some(("--meshes", folder))) => format!("--meshes={}", resolve(folder)),
+            (_, Some(("--table", table))) => match table.split_once('=') {
+                Some((name, file)) => format!("--table={name}={}", resolve(file)),
+                None => continue,
+            },
+            _ => continue,
+        };
+    }
 }
 
 /// Splits a line at spaces outside of double quotes.

@@ -266,7 +266,12 @@ fn mechanisms_of_rust_file(path: &Path) -> Result<Vec<Input>, Stop> {
     let package = whole.ancestors().find(|folder| folder.join("Cargo.toml").is_file());
     let folder = package.or(whole.parent()).unwrap_or(&whole).to_path_buf();
     if found.is_empty() {
-        return Err(Stop::Failure(format!("{}: there is no struct with `#[mechanism]`", path.display())));
+        let note = match text.contains("macro_rules!") && text.contains("#[mechanism") {
+            true => " outside of macros, which the command does not expand",
+            false => "",
+        };
+        let why = format!("{}: there is no struct with `#[mechanism]`{note}", path.display());
+        return Err(Stop::Failure(why));
     }
     let input_from_declaration = |declaration| Input {
         declaration,

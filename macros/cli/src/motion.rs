@@ -329,8 +329,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let m = Assembly { robot: &self.robot, model: self.model };
         let (name, [in_q, in_v]) = (&self.model.name, &self.given);
         let is_singular = |q: &[f64]| self.robot.regularity_of_speeds(q) <= SINGULAR;
-        let has_inertia = self.robot.mass_matrix(&self.q)?.cholesky().is_some();
-        if !has_inertia && !is_singular(&self.q) {
+        if !is_singular(&self.q) && !m.has_inertia(&self.q)? {
             return Err(Stop::Failure(format!(
                 "the mass matrix of `{name}` is singular at the beginning: with these parameters a moving \
                  body has no inertia"

@@ -94,7 +94,7 @@ pub fn derive_above(attribute: proc_macro2::Span) -> Diagnostic {
 /// in `cx` if the mechanism or the options are not supported.
 pub fn export_c(
     source: &Source,
-    options: &export::c::Options,
+    options: &export::Options,
     cx: &mut Diagnostics,
 ) -> Option<export::c::Files> {
     let graph = Graph::new();
@@ -103,8 +103,7 @@ pub fn export_c(
     let passes = passes::Passes { lanes: reproducible, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options =
-        &export::c::Options { left_out: rust_only_functions(source), reproducible, ..options.clone() };
+    let options = &export::Options { left_out: rust_only_functions(source), reproducible, ..options.clone() };
     export::c::export_c_source(&model, &output, &tables, options)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
@@ -114,13 +113,13 @@ pub fn export_c(
 /// errors in `cx` if the mechanism or the options are not supported.
 pub fn export_cuda(
     source: &Source,
-    options: &export::c::Options,
+    options: &export::Options,
     cx: &mut Diagnostics,
 ) -> Option<export::cuda::KernelFiles> {
     let graph = Graph::new();
     let (model, output) = compile_for_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options = &export::c::Options { left_out: rust_only_functions(source), ..options.clone() };
+    let options = &export::Options { left_out: rust_only_functions(source), ..options.clone() };
     export::cuda::export_cuda_kernels(&model, &output, &tables, options)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
@@ -133,7 +132,7 @@ pub fn export_wgsl(source: &Source, prefix: &str, cx: &mut Diagnostics) -> Optio
     let (model, output) = compile_for_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
     let prefix = prefix.to_string();
-    let options = export::c::Options { prefix, left_out: rust_only_functions(source), ..Default::default() };
+    let options = export::Options { prefix, left_out: rust_only_functions(source), ..Default::default() };
     export::wgsl::export_wgsl_shaders(&model, &output, &tables, &options)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
@@ -157,7 +156,7 @@ pub fn export_fmu(
         return None;
     }
     let tables = source.mechanism.shell.table_names();
-    let options = export::c::Options { prefix: prefix.to_string(), ..Default::default() };
+    let options = export::Options { prefix: prefix.to_string(), ..Default::default() };
     export::fmu::export_fmu(&model, &output, &tables, &options, start, has_derivatives)
         .map_err(|unfit| report_unsupported_export(&model, unfit, cx))
         .ok()
@@ -254,34 +253,34 @@ fn rust_only_functions(source: &Source) -> Vec<String> {
 }
 
 /// Reports why a mechanism or the options of an export are not supported.
-fn report_unsupported_export(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut Diagnostics) {
+fn report_unsupported_export(model: &mechanism::Model<'_>, unfit: export::Unfit, cx: &mut Diagnostics) {
     let (what, help) = match unfit {
-        export::c::Unfit::NoParameter(name) => (
+        export::Unfit::NoParameter(name) => (
             format!("there is no parameter `{name}` to be fixed"),
             match model.parameters.is_empty() {
                 true => "the mechanism has no parameters".to_string(),
                 false => format!("there are {}", model.parameters.join(", ")),
             },
         ),
-        export::c::Unfit::SingleCasadi => (
+        export::Unfit::SingleCasadi => (
             "CasADi has no functions of single precision".to_string(),
             "export them in double precision".to_string(),
         ),
-        export::c::Unfit::Irreproducible(what) => (
+        export::Unfit::Irreproducible(what) => (
             format!("{what} has no reproducible arithmetic in C"),
             "remove it or `arithmetic = reproducible`; functions in Rust are reproducible".to_string(),
         ),
-        export::c::Unfit::CasadiSpeeds => (
+        export::Unfit::CasadiSpeeds => (
             "functions for CasADi have no declared speeds".to_string(),
             "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the \
              rates of coordinates: remove `#[speed(…)]`, or export plain C"
                 .to_string(),
         ),
-        export::c::Unfit::Missing => (
+        export::Unfit::Missing => (
             "internal error: a value of the functions in C is missing".to_string(),
             "please report this with the declaration of the mechanism".to_string(),
         ),
-        export::c::Unfit::Lanes(of) => (
+        export::Unfit::Lanes(of) => (
             format!("internal error: `{of}` was derived with lanes"),
             "please report this with the declaration of the mechanism".to_string(),
         ),

@@ -1,6 +1,7 @@
 //! Fighter: rates in a published state, trimmed flight, and its linear motion.
 
 use crate::assert_eigenvalue;
+use linkwork::Table;
 use linkwork::nalgebra::{DMatrix, SVector, UnitQuaternion};
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;
@@ -63,6 +64,56 @@ fn state_rates_match_the_book() {
         let digits = if (3..6).contains(&k) { ROUNDED } else { 3e-7 };
         assert!((found - published).abs() <= digits * published.abs(), "expected {published}, found {found}");
     }
+}
+
+/// Checks that a file of the command's option `--table` contains a table, point by point.
+fn check_table_file<const N: usize>(name: &str, table: &Table<N>) {
+    let path = format!("{}/src/fighter/tables/{name}.csv", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("a file of the table");
+    let parse_row =
+        |line: &str| -> Vec<f64> { line.split(',').map(|field| field.parse().expect("a number")).collect() };
+    let rows: Vec<Vec<f64>> = text.lines().skip(1).map(parse_row).collect();
+    assert_eq!(rows.len(), table.values().len(), "{name}");
+    for (k, row) in rows.iter().enumerate() {
+        assert_eq!(row[N], table.values()[k], "{name}: {row:?}");
+        let mut rest = k;
+        for axis in (0..N).rev() {
+            let points = table.axes()[axis];
+            assert_eq!(row[axis], points[rest % points.len()], "{name}: {row:?}");
+            rest /= points.len();
+        }
+    }
+}
+
+/// Checks that the files from which the gallery's page is written contain the tables of the F-16.
+#[test]
+fn files_contain_the_tables() {
+    let f = &Fighter::F16;
+    let of_two = [
+        ("cx", &f.cx),
+        ("cl", &f.cl),
+        ("cm", &f.cm),
+        ("cn", &f.cn),
+        ("cl_aileron", &f.cl_aileron),
+        ("cl_rudder", &f.cl_rudder),
+        ("cn_aileron", &f.cn_aileron),
+        ("cn_rudder", &f.cn_rudder),
+    ];
+    let of_attack = [
+        ("cz", &f.cz),
+        ("cx_q", &f.cx_q),
+        ("cy_r", &f.cy_r),
+        ("cy_p", &f.cy_p),
+        ("cz_q", &f.cz_q),
+        ("cl_r", &f.cl_r),
+        ("cl_p", &f.cl_p),
+        ("cm_q", &f.cm_q),
+        ("cn_r", &f.cn_r),
+        ("cn_p", &f.cn_p),
+    ];
+    of_two.iter().for_each(|(name, table)| check_table_file(name, table));
+    of_attack.iter().for_each(|(name, table)| check_table_file(name, table));
+    check_table_file("thrust", &f.thrust);
 }
 
 struct LevelFlight {

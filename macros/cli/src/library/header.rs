@@ -1,7 +1,7 @@
 //! C header of an exported library.
 
 use super::{Function, Kind, LibraryData};
-use linkwork_compiler::export::{in_comment, in_comment_lines};
+use linkwork_compiler::export::{comment_safe_text, wrap_paragraph};
 use std::fmt::Write;
 
 /// Returns the text of the C header of an exported library.
@@ -35,7 +35,7 @@ pub fn header_text(known: &LibraryData<'_, '_>) -> String {
         let _ = writeln!(text, " *\n * {title}:");
         for (k, name) in names.iter().enumerate() {
             let unit = units.get(k).map_or("", String::as_str);
-            let line = format!(" *   {k:3}  {:30} {}", in_comment(name), in_comment(unit));
+            let line = format!(" *   {k:3}  {:30} {}", comment_safe_text(name), comment_safe_text(unit));
             let _ = writeln!(text, "{}", line.trim_end());
         }
     }
@@ -67,7 +67,7 @@ fn write_frames(text: &mut String, known: &LibraryData<'_, '_>, upper: &str) {
     text.push_str("/* Frames by number. */\nenum {\n");
     for (k, (name, says)) in names.iter().zip(&spoken).enumerate() {
         let comma = if k + 1 < names.len() { "," } else { "" };
-        let _ = writeln!(text, "    {upper}_FRAME_{name} = {k}{comma} /* {} */", in_comment(says));
+        let _ = writeln!(text, "    {upper}_FRAME_{name} = {k}{comma} /* {} */", comment_safe_text(says));
     }
     text.push_str("};\n\n");
 }
@@ -80,7 +80,7 @@ fn write_function(text: &mut String, f: &Function, known: &LibraryData<'_, '_>, 
     }
     for (k, paragraph) in docs.iter().enumerate() {
         let first = if k == 0 { "/* " } else { " * " };
-        text.push_str(&in_comment_lines(paragraph, first, " * "));
+        text.push_str(&wrap_paragraph(paragraph, first, " * "));
     }
     text.push_str(if docs.is_empty() { "/*\n" } else { " *\n" });
     for (name, kind) in &f.arguments {

@@ -53,7 +53,7 @@ fn casadi_functions_have_correct_values_and_jacobians() {
         println!("skipped: there is no CasADi (LINKWORK_PYTHON names a Python that has it)");
         return;
     };
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/casadi.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/casadi_functions.py");
     let run = Command::new(python).arg(script).current_dir(&folder).output().expect("Python starts");
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
 }

@@ -4,21 +4,43 @@ use super::{rows_of_log, run_linkwork, test_folder};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Program for Node that opens the simulation of a page, advances it, and prints its state.
-const PROGRAM: &str = r#"
-const [, file, time, tolerance] = process.argv;
-const html = require("fs").readFileSync(file, "utf8");
-const [motion] = JSON.parse(html.match(/<script type="application\/json">(.*?)<\/script>/s)[1]);
+/// Function for Node that opens the simulation of a page.
+const OPEN: &str = r#"
+const fs = require("fs");
 globalThis.document = { querySelectorAll: () => [] };
 globalThis.matchMedia = () => ({ addEventListener() {} });
-const code = html.slice(html.lastIndexOf("<script>") + 8, html.lastIndexOf("</script>"));
-const { Simulation } = new Function(code + "; return linkwork;")();
-Simulation.open({ ...motion.simulated, module: motion.module }).then(sim => {
+function open(file) {
+  const html = fs.readFileSync(file, "utf8");
+  const [motion] = JSON.parse(html.match(/<script type="application\/json">(.*?)<\/script>/s)[1]);
+  const code = html.slice(html.lastIndexOf("<script>") + 8, html.lastIndexOf("</script>"));
+  const { Simulation } = new Function(code + "; return linkwork;")();
+  return Simulation.open({ ...motion.simulated, module: motion.module });
+}
+const fail = error => { console.error(error); process.exit(1); };
+"#;
+
+/// Program for Node that advances the simulation of a page, and prints its state.
+const ADVANCE: &str = r#"
+const [, file, time, tolerance] = process.argv;
+open(file).then(sim => {
   sim.tolerance = +tolerance;
   sim.reluctant = Infinity;
   sim.advance(+time);
   console.log(JSON.stringify([...sim.q, ...sim.v, ...sim.x, ...sim.energies()]));
-}).catch(error => { console.error(error); process.exit(1); });
+}).catch(fail);
+"#;
+
+/// Program for Node that advances the simulations of all pages of a folder, and prints the names of those
+/// that have moved on to finite states.
+const ADVANCE_ALL: &str = r#"
+(async () => {
+  for (const file of fs.readdirSync("pages").filter(file => file !== "index.html")) {
+    const sim = await open("pages/" + file).catch(fail);
+    try { sim.advance(0.1); } catch (error) { fail(file + ": " + error); }
+    const all = [sim.t, ...sim.q, ...sim.v, ...sim.x, ...sim.energies()];
+    if (all.every(Number.isFinite) && Math.abs(sim.t - 0.1) < 1e-9) console.log(file);
+  }
+})();
 "#;
 
 /// Returns the first of these programs that is installed.
@@ -39,9 +61,10 @@ fn simulate_page(here: &Path, given: &[&str], seconds: &str, tolerance: &str) ->
         println!("skipped: no Node on the path");
         return None;
     };
-    let command =
-        Command::new(node).args(["-e", PROGRAM, "page.html", seconds, tolerance]).current_dir(here).output();
-    let output = command.unwrap();
+    let program = format!("{OPEN}{ADVANCE}");
+    let mut command = Command::new(node);
+    command.args(["-e", &program, "page.html", seconds, tolerance]).current_dir(here);
+    let output = command.output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     Some(text.trim().trim_matches(['[', ']']).split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect())
@@ -72,19 +95,45 @@ fn pages_and_the_command_compute_equal_trajectories() {
     ];
     for (file, values) in cases {
         let set: Vec<&str> = values.split(' ').flat_map(|value| ["--set", value]).collect();
-        let given = [&[file], &set[..]].concat();
-        let Some(found) = simulate_page(&here, &given, "0.5", "1e-12") else { return };
-        let times = ["--duration", "0.5", "--every", "0.5", "--tolerance", "1e-13"];
-        let (status, log, stderr) = run_linkwork(&here, &[&["simulate"], &given[..], &times].concat());
-        assert_eq!(status, 0, "{stderr}");
-        let rows = rows_of_log(&log);
-        // The command prints inputs behind the state; the page prints energies.
-        let expected = &rows.last().unwrap()[1..];
-        let states = found.len() - 3;
-        assert!(states <= expected.len(), "{file}");
-        for (a, b) in found[..states].iter().zip(expected) {
-            assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{file}: {found:?} {expected:?}");
-        }
+        compare_page_with_command(&here, &[&[file], &set[..]].concat(), 1e-9);
+    }
+}
+
+/// Checks that a page and the command compute the same state after half a second.
+fn compare_page_with_command(here: &Path, given: &[&str], tolerance: f64) {
+    let Some(found) = simulate_page(here, given, "0.5", "1e-12") else { return };
+    let times = ["--duration", "0.5", "--every", "0.5", "--tolerance", "1e-13"];
+    let (status, log, stderr) = run_linkwork(here, &[&["simulate"], given, &times].concat());
+    assert_eq!(status, 0, "{stderr}");
+    let rows = rows_of_log(&log);
+    // The command prints inputs behind the state; the page prints energies.
+    let expected = &rows.last().unwrap()[1..];
+    let states = found.len() - 3;
+    assert!(states <= expected.len(), "{given:?}");
+    for (a, b) in found[..states].iter().zip(expected) {
+        assert!((a - b).abs() <= tolerance * b.abs().max(1.0), "{given:?}: {found:?} {expected:?}");
+    }
+}
+
+/// Checks that pages of the gallery and the command compute the same trajectories: of a chain of five
+/// pendulums, of a platform with six loops, of a ball on a surface, whose coordinates have no inertia, and
+/// of an aircraft with tables.
+#[test]
+fn pages_of_the_gallery_and_the_command_compute_equal_trajectories() {
+    let here = test_folder("live_gallery");
+    let list = std::fs::read_to_string(format!("{MODELS}/gallery.txt")).unwrap();
+    for (start, tolerance) in [
+        ("src/pendulum_chain.rs --struct Quintuple", 1e-9),
+        ("src/stewart_platform.rs", 1e-9),
+        ("src/ball_in_dish.rs", 1e-9),
+        // Steps that cross the edges of linear tables have larger errors.
+        ("src/fighter.rs", 1e-7),
+    ] {
+        let line = list.lines().find(|line| line.starts_with(start)).expect("a line of the gallery");
+        let gravity = if line.contains("--set g=") { "" } else { " --set g=9.81" };
+        let line = format!("{line}{gravity}").replace("src/", &format!("{MODELS}/src/"));
+        let words: Vec<&str> = line.split_whitespace().collect();
+        compare_page_with_command(&here, &words, tolerance);
     }
 }
 
@@ -259,6 +308,36 @@ fn page_simulates_in_a_browser() {
     assert!(time > 0.0, "{time}");
 }
 
+/// Checks that the gallery has a page of every mechanism of the models, and that each page simulates.
+#[test]
+fn gallery_has_pages_of_all_models() {
+    let here = test_folder("live_models");
+    let list = format!("{MODELS}/gallery.txt");
+    let (status, _, stderr) = run_linkwork(&here, &["gallery", &list, "--out", "pages"]);
+    assert_eq!(status, 0, "{stderr}");
+    let models = std::fs::read_to_string(format!("{MODELS}/src/lib.rs")).unwrap();
+    let exports = models.lines().filter_map(|line| line.strip_prefix("pub use ")?.split_once("::"));
+    let names: Vec<&str> = exports.flat_map(|(_, names)| names.split(['{', '}', ',', ';', ' '])).collect();
+    // Two further variants of the arm `Panda`.
+    let is_listed = |name: &&&str| !name.is_empty() && !["LoadedPanda", "PandaArm"].contains(*name);
+    assert!(names.contains(&"Pendulum"));
+    for name in names.iter().filter(is_listed) {
+        assert!(here.join(format!("pages/{name}.html")).is_file(), "there is no page of {name}");
+    }
+    let Some(node) = first_program_on_path(&["node"]) else {
+        println!("skipped: no Node on the path");
+        return;
+    };
+    let program = format!("{OPEN}{ADVANCE_ALL}");
+    let output = Command::new(node).args(["-e", &program]).current_dir(&here).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let moved = String::from_utf8(output.stdout).unwrap();
+    for file in std::fs::read_dir(here.join("pages")).unwrap() {
+        let file = file.unwrap().file_name().into_string().unwrap();
+        assert!(file == "index.html" || moved.lines().any(|line| line == file), "{file} does not move");
+    }
+}
+
 /// Checks that each line of a list has a page and an entry of the index, and the message for a wrong line.
 #[test]
 fn gallery_index_lists_every_page() {
@@ -273,6 +352,16 @@ fn gallery_index_lists_every_page() {
     for page in ["DoublePendulum.html", "DoublePendulum-4.html"] {
         assert!(index.contains(&format!("<a href=\"{page}\">")) && here.join("pages").join(page).is_file());
     }
+    // Files of tables are relative to the list, too.
+    std::fs::create_dir_all(here.join("week")).unwrap();
+    let spring = "#[mechanism] struct Spring { law: Table<1>, #[body(mass = 1)] block: Body, \
+                  #[joint(ground -> block, along = x)] rail: Sleeve, \
+                  #[acts(on = rail, value = -law(rail))] force: Force }";
+    std::fs::write(here.join("week/spring.rs"), spring).unwrap();
+    std::fs::write(here.join("week/law.csv"), "-1,-2\n1,2\n").unwrap();
+    std::fs::write(here.join("week/list.txt"), "spring.rs --table law=law.csv\n").unwrap();
+    let (status, _, stderr) = run_linkwork(&here, &["gallery", "week/list.txt", "--out", "pages"]);
+    assert_eq!(status, 0, "{stderr}");
     std::fs::write(here.join("bad.txt"), "double.rs --set q.elbw=1\n").unwrap();
     let (status, _, stderr) = run_linkwork(&here, &["gallery", "bad.txt"]);
     assert!(status == 2 && stderr.contains("bad.txt:1: `--set`: there is no `q.elbw`"), "{stderr}");

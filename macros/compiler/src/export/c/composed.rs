@@ -1,259 +1,189 @@
 //! Results that consist of several matrices, and results that loops compose at run time.
 
-use super::body::{Scope, write_program};
-use super::function::{Outline, element_of_output, is_zero};
-use super::support::Support;
+use super::super::body::{Scope, write_program};
+use super::super::mechanism::{ExportedMechanism, is_zero};
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
 /// Writes the body of a C function whose result is assembled from the outputs of its program.
-pub fn write_composed_body(
-    body: &mut String,
-    f: &Function,
-    scope: &Scope<'_>,
-    o: &Outline<'_>,
-    support: &mut Support,
-) {
+pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i: &ExportedMechanism<'_>) {
+    let write = |body: &mut String, places: &dyn Fn(usize) -> Option<String>| {
+        write_program(body, &f.program, scope, places);
+    };
     match f.shape {
         Shape::Inverse(n) => {
-            let parts = Parts::new(f, n, 0);
-            parts.declare_structure(body);
-            write_program(body, &f.program, scope, &|k| parts.element_of_output(k, "result", &[]), support);
-            parts.complete_inverse(body, "result", support);
+            let inverse = InverseOutputs::new(body, f, "result", n, &[]);
+            write(body, &|k| Some(inverse.element_of_output(k)));
+            inverse.complete(body);
         }
-        Shape::Accelerated(n) => write_accelerated_body(body, f, n, scope, support),
+        Shape::Accelerated(n) => {
+            let inverse = InverseOutputs::new(body, f, "inverse", n, &[("result", n)]);
+            write(body, &|k| Some(inverse.element_of_output(k)));
+            inverse.complete(body);
+            if let InverseForm::BlockArrow { trunk, .. } = inverse.form {
+                let _ = writeln!(
+                    body,
+                    "    lw_solve({n}, {}, inverse, trunk, limb, beside, result);",
+                    trunk.len()
+                );
+            }
+        }
         Shape::Forward(n) => {
-            let parts = Parts::new(f, n, 2 * n * n);
-            parts.declare_structure(body);
-            let forces = [("by_q", n, n), ("by_v", n, n)];
+            let inverse = InverseOutputs::new(body, f, "by_tau", n, &[("by_q", n * n), ("by_v", n * n)]);
             // The accelerations, which are the last outputs, are not returned.
             let mut program = f.program.clone();
-            program.outputs.truncate(3 * n * n + parts.additional_output_count());
+            program.outputs.truncate(inverse.output_count());
             program.remove_unused();
-            write_program(body, &program, scope, &|k| parts.element_of_output(k, "by_tau", &forces), support);
-            parts.complete_inverse(body, "by_tau", support);
-            write_acceleration_conversion(body, f, n, support);
+            write_program(body, &program, scope, &|k| Some(inverse.element_of_output(k)));
+            inverse.complete(body);
+            write_acceleration_conversion(body, f, n);
         }
-        Shape::CalledForward(n) => called_forward(body, f, n, scope, o, support),
+        Shape::CalledForward(n) => called_forward(body, f, n, scope, i),
         Shape::Linear(n, m) => {
-            let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", at_least_one(n * n));
-            let parts = Parts::new(f, n, 2 * n * n);
-            parts.declare_structure(body);
-            let rest = 3 * n * n + parts.additional_output_count();
-            let forces = [("by_q", n, n), ("by_v", n, n)];
-            let places = |k: usize| match k < rest {
-                true => parts.element_of_output(k, "inverse", &forces),
-                false => assembled_place(n, m, k - rest),
-            };
-            write_program(body, &f.program, scope, &places, support);
-            parts.complete_inverse(body, "inverse", support);
-            write_inverse_products(body, n, "inverse", &[("by_q", n), ("by_v", n)], support);
-            assemble(body, n, m, support);
+            if n > 0 {
+                let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", n * n);
+            }
+            let inverse = InverseOutputs::new(body, f, "inverse", n, &[("by_q", n * n), ("by_v", n * n)]);
+            let rest = inverse.output_count();
+            write(body, &|k| match k < rest {
+                true => Some(inverse.element_of_output(k)),
+                false => Some(assembled_place(n, m, k - rest)),
+            });
+            inverse.complete(body);
+            write_inverse_products(body, n, "inverse", "by_q", n);
+            write_inverse_products(body, n, "inverse", "by_v", n);
+            write_assembly(body, n, m);
         }
-        Shape::CalledLinear(n, m) => called_linear(body, f, (n, m), scope, o, support),
+        Shape::CalledLinear(n, m) => called_linear(body, f, (n, m), scope, i),
         _ => {}
     }
 }
 
-/// Returns the size of a C array, which must be at least one.
-fn at_least_one(n: usize) -> usize {
-    n.max(1)
-}
-
-/// Representation of the inverse mass matrix by program outputs, beginning with output `first`.
-struct Parts<'a> {
+/// InverseOutputs mass matrix that the outputs of a program determine, after the outputs of other arrays.
+struct InverseOutputs<'a> {
     form: &'a InverseForm,
+    name: &'static str,
     n: usize,
-    first: usize,
+    /// Velocities of the trunk, whose rows are stored in an array of their own.
+    trunk: &'a [usize],
+    /// Arrays of the outputs before the inverse, with their lengths.
+    before: Vec<(&'static str, usize)>,
 }
 
-impl<'a> Parts<'a> {
-    fn new(f: &'a Function, n: usize, first: usize) -> Parts<'a> {
-        Parts { form: &f.structure.inverse, n, first }
-    }
-
-    fn trunk_velocities(&self) -> &[usize] {
-        match self.form {
+impl<'a> InverseOutputs<'a> {
+    /// Describes the inverse that a function stores in an array, and declares the arrays of its structure.
+    fn new(
+        body: &mut String,
+        f: &'a Function,
+        name: &'static str,
+        n: usize,
+        before: &[(&'static str, usize)],
+    ) -> InverseOutputs<'a> {
+        let form = &f.structure.inverse;
+        let trunk: &[usize] = match form {
             InverseForm::Explicit => &[],
             InverseForm::LowRankUpdate(trunk) | InverseForm::BlockArrow { trunk, .. } => trunk,
-        }
-    }
-
-    /// Returns the number of outputs after the columns of the inverse.
-    fn additional_output_count(&self) -> usize {
-        self.n * self.trunk_velocities().len()
-    }
-
-    fn declare_structure(&self, body: &mut String) {
-        let trunk: Vec<String> = self.trunk_velocities().iter().map(ToString::to_string).collect();
+        };
+        let inverse = InverseOutputs { form, name, n, trunk, before: before.to_vec() };
         if trunk.is_empty() {
-            return;
+            return inverse;
         }
-        let _ = writeln!(body, "    static const int trunk[{}] = {{{}}};", trunk.len(), trunk.join(", "));
-        if let InverseForm::BlockArrow { limbs, .. } = self.form {
-            let index_of_limb = |k: usize| {
-                limbs
-                    .iter()
-                    .position(|limb| limb.contains(&k))
-                    .map_or("-1".to_string(), |limb| limb.to_string())
-            };
-            let all: Vec<String> = (0..self.n).map(index_of_limb).collect();
-            let _ = writeln!(body, "    static const int limb[{}] = {{{}}};", self.n, all.join(", "));
+        let list: Vec<String> = trunk.iter().map(ToString::to_string).collect();
+        let _ = writeln!(body, "    static const int trunk[{}] = {{{}}};", trunk.len(), list.join(", "));
+        if let InverseForm::BlockArrow { limbs, .. } = form {
+            let limb_of = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
+            let all: Vec<String> =
+                (0..n).map(|k| limb_of(k).map_or("-1".to_string(), |limb| limb.to_string())).collect();
+            let _ = writeln!(body, "    static const int limb[{n}] = {{{}}};", all.join(", "));
         }
-        let _ = writeln!(body, "    double beside[{}];", self.additional_output_count());
+        let _ = writeln!(body, "    double beside[{}];", n * trunk.len());
+        inverse
     }
 
-    /// Returns the array element for an output: in the results before the inverse, the inverse or its
-    /// additional values.
-    fn element_of_output(
-        &self,
-        k: usize,
-        inverse: &str,
-        before: &[(&'static str, usize, usize)],
-    ) -> Option<String> {
-        if k < self.first {
-            return element_of_output(before, k);
+    /// Returns the number of outputs of the arrays before the inverse, the inverse and its further values.
+    fn output_count(&self) -> usize {
+        let before: usize = self.before.iter().map(|(_, length)| length).sum();
+        before + self.n * self.n + self.n * self.trunk.len()
+    }
+
+    /// Returns the array element for an output.
+    fn element_of_output(&self, mut k: usize) -> String {
+        for (name, length) in self.before.iter().chain(&[(self.name, self.n * self.n)]) {
+            if k < *length {
+                return format!("{name}[{k}]");
+            }
+            k -= length;
         }
-        let (k, square) = (k - self.first, self.n * self.n);
-        Some(if k < square { format!("{inverse}[{k}]") } else { format!("beside[{}]", k - square) })
+        format!("beside[{k}]")
     }
 
     /// Writes the statements that complete the inverse mass matrix from its factored form.
-    fn complete_inverse(&self, body: &mut String, inverse: &str, support: &mut Support) {
-        let (n, width) = (self.n, self.trunk_velocities().len());
+    fn complete(&self, body: &mut String) {
+        let (n, width, name) = (self.n, self.trunk.len(), self.name);
         let _ = match self.form {
-            InverseForm::Explicit => Ok(()),
-            InverseForm::LowRankUpdate(_) => {
-                support.completed |= width > 0;
-                match width {
-                    0 => Ok(()),
-                    _ => writeln!(body, "    lw_complete({n}, {width}, {inverse}, trunk, beside);"),
-                }
+            InverseForm::LowRankUpdate(_) if width > 0 => {
+                writeln!(body, "    lw_complete({n}, {width}, {name}, trunk, beside);")
             }
             InverseForm::BlockArrow { .. } => {
-                support.inverted = true;
-                writeln!(body, "    lw_invert({n}, {width}, {inverse}, trunk, limb, beside);")
+                writeln!(body, "    lw_invert({n}, {width}, {name}, trunk, limb, beside);")
             }
+            _ => Ok(()),
         };
     }
 }
 
-fn write_accelerated_body(
-    body: &mut String,
-    f: &Function,
-    n: usize,
-    scope: &Scope<'_>,
-    support: &mut Support,
-) {
-    let parts = Parts::new(f, n, n);
-    parts.declare_structure(body);
-    let before = [("result", n, 1)];
-    write_program(body, &f.program, scope, &|k| parts.element_of_output(k, "inverse", &before), support);
-    parts.complete_inverse(body, "inverse", support);
-    if let InverseForm::BlockArrow { trunk, .. } = &f.structure.inverse {
-        support.solved = true;
-        let _ = writeln!(body, "    lw_solve({n}, {}, inverse, trunk, limb, beside, result);", trunk.len());
-    }
-}
-
-/// Writes the product of the negative inverse with each factor, which the product overwrites.
-fn write_inverse_products(
-    body: &mut String,
-    n: usize,
-    inverse: &str,
-    factors: &[(&str, usize)],
-    support: &mut Support,
-) {
-    for (factor, columns) in factors.iter().filter(|(_, columns)| *columns > 0) {
-        support.products = true;
+/// Writes the product of the negative inverse with a factor, which the product overwrites.
+fn write_inverse_products(body: &mut String, n: usize, inverse: &str, factor: &str, columns: usize) {
+    if columns > 0 {
         let _ = writeln!(body, "    lw_minus_products({n}, {columns}, {inverse}, {factor});");
     }
 }
 
 /// Writes the conversion from force derivatives to acceleration derivatives; columns in `known` are already
 /// converted.
-fn write_acceleration_conversion(body: &mut String, f: &Function, n: usize, support: &mut Support) {
+fn write_acceleration_conversion(body: &mut String, f: &Function, n: usize) {
     for (matrix, known) in ["by_q", "by_v"].into_iter().zip(&f.structure.known) {
         let mut first = 0;
         while first < n {
             let end = (first..n).find(|column| known.contains(column)).unwrap_or(n);
             let from = if first == 0 { matrix.to_string() } else { format!("{matrix} + {}", first * n) };
-            write_inverse_products(body, n, "by_tau", &[(&from, end - first)], support);
+            write_inverse_products(body, n, "by_tau", &from, end - first);
             first = end + 1;
         }
     }
 }
 
-fn called_forward(
-    body: &mut String,
-    f: &Function,
-    n: usize,
-    scope: &Scope<'_>,
-    o: &Outline<'_>,
-    support: &mut Support,
-) {
+fn called_forward(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, i: &ExportedMechanism<'_>) {
     let _ = writeln!(
         body,
         "    double a[{}];\n    {};\n    {};",
-        at_least_one(n),
-        o.function_call("accelerations_and_inverse", &["q", "v", "tau"], &["a", "by_tau"]),
-        o.function_call("inverse_dynamics_derivatives", &["q", "v", "a"], &["by_q", "by_v"])
+        n.max(1),
+        i.call("accelerations_and_inverse", &["q", "v", "tau", "a", "by_tau"]),
+        i.call("inverse_dynamics_derivatives", &["q", "v", "a", "by_q", "by_v"])
     );
-    write_acceleration_conversion(body, f, n, support);
+    write_acceleration_conversion(body, f, n);
     let columns = ["by_q", "by_v"].into_iter().zip(&f.structure.known);
     let columns: Vec<(&str, usize)> =
         columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, *column))).collect();
     let place =
         |k: usize| columns.get(k / n).map(|(matrix, column)| format!("{matrix}[{}]", column * n + k % n));
-    write_program(body, &f.program, scope, &place, support);
+    write_program(body, &f.program, scope, &place);
 }
 
 /// Returns the array element for an output: derivatives with respect to inputs, then the block for
 /// displacements.
-fn assembled_place(n: usize, m: usize, k: usize) -> Option<String> {
-    Some(match k < n * m {
+fn assembled_place(n: usize, m: usize, k: usize) -> String {
+    match k < n * m {
         true => format!("by_input[{}]", k / n * 2 * n + n + k % n),
         false => format!("by_state[{}]", (k - n * m) / n * 2 * n + (k - n * m) % n),
-    })
+    }
 }
 
-/// Writes the composition of the system matrices. Values that the program has already stored are preserved.
-fn assemble(body: &mut String, n: usize, m: usize, support: &mut Support) {
-    if n == 0 {
-        return;
-    }
-    let _ = writeln!(
-        body,
-        "    for (int j = 0; j < {n}; ++j) {{
-        for (int i = 0; i < {n}; ++i) {{
-            by_state[j * {twice} + {n} + i] = by_q[j * {n} + i];
-            by_state[({n} + j) * {twice} + i] = i == j ? 1.0 : 0.0;
-            by_state[({n} + j) * {twice} + {n} + i] = by_v[j * {n} + i];
-        }}
-    }}",
-        twice = 2 * n
-    );
-    if m > 0 {
-        support.products = true;
-        let _ = writeln!(
-            body,
-            "    double of_inputs[{}];
-    for (int j = 0; j < {m}; ++j) {{
-        for (int i = 0; i < {n}; ++i) {{
-            of_inputs[j * {n} + i] = by_input[j * {twice} + {n} + i];
-        }}
-    }}
-    lw_minus_products({n}, {m}, inverse, of_inputs);
-    for (int j = 0; j < {m}; ++j) {{
-        for (int i = 0; i < {n}; ++i) {{
-            by_input[j * {twice} + i] = 0.0;
-            by_input[j * {twice} + {n} + i] = -of_inputs[j * {n} + i];
-        }}
-    }}",
-            n * m,
-            twice = 2 * n
-        );
+/// Writes the composition of the system matrices.
+fn write_assembly(body: &mut String, n: usize, m: usize) {
+    if n > 0 {
+        let _ = writeln!(body, "    lw_assemble({n}, {m}, by_q, by_v, inverse, by_state, by_input);");
     }
 }
 
@@ -263,33 +193,32 @@ fn called_linear(
     f: &Function,
     (n, m): (usize, usize),
     scope: &Scope<'_>,
-    o: &Outline<'_>,
-    support: &mut Support,
+    i: &ExportedMechanism<'_>,
 ) {
     let _ = writeln!(
         body,
-        "    double by_q[{0}], by_v[{0}], inverse[{0}], tau[{1}], more_by_q[{0}], more_by_v[{0}];",
-        at_least_one(n * n),
-        at_least_one(n)
+        "    double by_q[{0}], by_v[{0}], inverse[{0}], tau[{1}], more[2 * {0}];",
+        (n * n).max(1),
+        n.max(1)
     );
     let rest = n + 2 * n * n;
-    let before = [("tau", n, 1), ("more_by_q", n, n), ("more_by_v", n, n)];
-    let places =
-        |k: usize| if k < rest { element_of_output(&before, k) } else { assembled_place(n, m, k - rest) };
-    write_program(body, &f.program, scope, &places, support);
-    let call =
-        o.function_call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "inverse"]);
+    write_program(body, &f.program, scope, &|k| match k {
+        k if k < n => Some(format!("tau[{k}]")),
+        k if k < rest => Some(format!("more[{}]", k - n)),
+        k => Some(assembled_place(n, m, k - rest)),
+    });
+    let call = i.call("forward_dynamics_derivatives", &["q", "v", "tau", "by_q", "by_v", "inverse"]);
     let _ = writeln!(body, "    {call};");
     if (n..rest).any(|k| !is_zero(f, k)) {
-        write_inverse_products(body, n, "inverse", &[("more_by_q", n), ("more_by_v", n)], support);
+        write_inverse_products(body, n, "inverse", "more", 2 * n);
         let _ = writeln!(
             body,
-            "    for (int k = 0; k < {}; ++k) {{\n        by_q[k] -= more_by_q[k];\n        by_v[k] \
-             -= more_by_v[k];\n    }}",
+            "    for (int k = 0; k < {0}; ++k) {{\n        by_q[k] -= more[k];\n        \
+             by_v[k] -= more[{0} + k];\n    }}",
             n * n
         );
     } else {
-        body.push_str("    (void)(more_by_q);\n    (void)(more_by_v);\n");
+        body.push_str("    (void)(more);\n");
     }
-    assemble(body, n, m, support);
+    write_assembly(body, n, m);
 }

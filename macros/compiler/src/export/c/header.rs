@@ -1,10 +1,8 @@
 //! Text of the C header of a mechanism.
 
-use super::function::{Outline, function_declaration, result_arrays};
-use super::source::{LIMITS, Selection, reaction_arguments};
-use super::{docs, frames, manifold, names, tables};
-use crate::catalogue::REACTION;
-use crate::derive::Output;
+use super::super::comments::{comment_safe_text, wrap_paragraph};
+use super::super::mechanism::ExportedMechanism;
+use super::functions::function_head;
 use crate::mechanism::Model;
 use std::fmt::Write;
 
@@ -16,12 +14,7 @@ fn write_entry_lines(text: &mut String, title: &str, names: &[String], units: &[
     let _ = writeln!(text, " *\n * {title}:");
     for (k, name) in names.iter().enumerate() {
         let unit = units.get(k).map_or("", String::as_str);
-        let _ = writeln!(
-            text,
-            " *   {k:3}  {:30} {}",
-            docs::comment_safe_text(name),
-            docs::comment_safe_text(unit)
-        );
+        let _ = writeln!(text, " *   {k:3}  {:30} {}", comment_safe_text(name), comment_safe_text(unit));
     }
 }
 
@@ -42,51 +35,58 @@ pub fn list_state_entries(model: &Model<'_>) -> String {
 }
 
 /// Returns the C macros for the sizes of the mechanism.
-pub fn size_macros(model: &Model<'_>, output: &Output, o: &Outline<'_>) -> String {
-    let upper = o.prefix.to_ascii_uppercase();
+pub fn size_macros(i: &ExportedMechanism<'_>) -> String {
+    let upper = i.prefix.to_ascii_uppercase();
     let mut text = "/* Numbers of a configuration, of a velocity, and of the inputs. */\n".to_string();
-    for (name, n) in [("NQ", model.nq()), ("NV", model.nv()), ("NU", model.nu())] {
+    for (name, n) in [("NQ", i.nq()), ("NV", i.nv()), ("NU", i.nu())] {
         let _ = writeln!(text, "#define {upper}_{name} {n}");
     }
-    if !output.frames.is_empty() {
-        let _ = writeln!(
-            text,
-            "#define {upper}_FRAMES {}\n#define {upper}_LINKS {}",
-            output.frames.len(),
-            output.links.len()
-        );
+    let (frames, links) = (i.output.frames.len(), i.output.links.len());
+    if frames > 0 {
+        let _ = writeln!(text, "#define {upper}_FRAMES {frames}\n#define {upper}_LINKS {links}");
     }
     text
 }
 
-/// Returns the C types of tables and of the parameter struct.
-pub fn parameter_types(model: &Model<'_>, o: &Outline<'_>) -> String {
-    let mut text = tables::table_type_definition(o);
-    if o.has_own() {
-        text.push_str("/* The parameters, which every function takes first. */\n");
-        let _ = writeln!(text, "typedef struct {} {{", o.prefix);
-        for (k, member) in o.parameters.iter().enumerate() {
-            let unit = model.units.parameters.get(k).map_or("", String::as_str);
-            let _ = writeln!(text, "    double {member}; /* {} */", docs::comment_safe_text(unit));
-        }
-        text.push_str(&tables::table_member_declarations(o, &model.units.tables));
-        let _ = writeln!(text, "}} {};\n", o.prefix);
+/// Returns the C types of tables and of the parameter struct, with the units of their members.
+pub fn parameter_types(i: &ExportedMechanism<'_>) -> String {
+    let (p, units) = (&i.prefix, &i.model.units);
+    if !i.has_own() {
+        return String::new();
     }
-    text
+    let table_type = if i.tables.is_empty() {
+        String::new()
+    } else {
+        include_str!("templates/table_type.h").replace("@PREFIX@", p)
+    };
+    let mut text = format!(
+        "{table_type}/* The parameters, which every function takes first. */\ntypedef struct {p} {{\n"
+    );
+    for (k, member) in i.parameters.iter().enumerate() {
+        let unit = units.parameters.get(k).map_or("", String::as_str);
+        let _ = writeln!(text, "    double {member}; /* {} */", comment_safe_text(unit));
+    }
+    for (k, member) in i.tables.iter().enumerate() {
+        let units = units.tables.get(k).map_or(&[][..], Vec::as_slice);
+        let (value, variables) = units.split_last().map_or(("", &[][..]), |(v, rest)| (v.as_str(), rest));
+        let about = comment_safe_text(&format!("{value} of {}", variables.join(", ")));
+        let _ = writeln!(text, "    {p}_table {member}; /* {about} */");
+    }
+    text + &format!("}} {p};\n\n")
 }
 
-/// Returns the names of the frames, as parts of constants and as in the mechanism.
-pub fn frame_names(model: &Model<'_>) -> Vec<(String, String)> {
-    let names: Vec<String> = model.frames.iter().map(|frame| frame.name.clone()).collect();
-    names::preprocessor_names(&names).into_iter().zip(names).collect()
-}
-
-/// Returns the documentation of the output that a reaction provides.
-pub fn reaction_docs(name: &str) -> String {
-    format!(
-        "The output `{name}` in the motion that state and inputs determine. A reaction is the force or \
-         torque that the parent of a joint exerts on its child, at the origin of the joint's frame."
-    )
+/// Returns the C constants for the indices of the frames.
+pub fn frame_index_constants(i: &ExportedMechanism<'_>) -> String {
+    let upper = i.prefix.to_ascii_uppercase();
+    let constant = |(k, (name, about)): (usize, &(String, String))| {
+        format!("    {upper}_FRAME_{name} = {k}, /* {} */\n", comment_safe_text(about))
+    };
+    let frames = if i.output.frames.is_empty() { Vec::new() } else { i.frame_names() };
+    let constants: String = frames.iter().enumerate().map(constant).collect();
+    match frames.is_empty() {
+        true => String::new(),
+        false => format!("/* Frames by number. */\nenum {{\n{constants}}};\n\n"),
+    }
 }
 
 /// Comment of the C header about recommended compiler options.
@@ -103,55 +103,35 @@ const REPRODUCIBLE_FLAGS: &str = "
 ";
 
 /// Returns the text of the header of a mechanism.
-pub fn header_text(
-    model: &Model<'_>,
-    output: &Output,
-    chosen: &Selection<'_>,
-    o: &Outline<'_>,
-    reproducible: bool,
-) -> String {
-    let upper = o.prefix.to_ascii_uppercase();
+pub fn header_text(i: &ExportedMechanism<'_>, reproducible: bool) -> String {
     let mut text = format!(
         "/* The mechanism `{}`, generated by Linkwork.\n *\n * SI units, angles in radians. Vectors are \
          plain arrays, matrices are stored column by column. Functions have no\n * state, allocate no memory \
          and call only the mathematical library: any number of\n * threads may call them. Quaternions are \
          stored x y z w.\n{}",
-        docs::comment_safe_text(&model.name),
-        list_state_entries(model)
+        comment_safe_text(&i.model.name),
+        list_state_entries(i.model)
     );
-    if !chosen.left_out.is_empty() {
+    if !i.left_out.is_empty() {
         text.push_str(" *\n * Not in C:\n");
-        chosen.left_out.iter().for_each(|line| text.push_str(&docs::wrap_paragraph(line, " *   ", " *   ")));
+        i.left_out.iter().for_each(|line| text.push_str(&wrap_paragraph(line, " *   ", " *   ")));
     }
     text.push_str(" *");
     text.push_str(if reproducible { REPRODUCIBLE_FLAGS } else { FLAGS });
-    let guard = format!("{upper}_H");
-    let _ = writeln!(text, "#ifndef {guard}\n#define {guard}\n");
-    text.push_str(&size_macros(model, output, o));
-    text.push_str("\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
-    text.push_str(&parameter_types(model, o));
-    for f in &chosen.public {
-        let _ = writeln!(text, "{}", function_declaration(f, o));
+    let guard = format!("{}_H", i.prefix.to_ascii_uppercase());
+    let _ = writeln!(text, "#ifndef {guard}\n#define {guard}\n\n{}", size_macros(i));
+    text.push_str("#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
+    text.push_str(&parameter_types(i));
+    let mut has_constants = false;
+    for f in &i.functions {
+        if f.of_frame && !std::mem::replace(&mut has_constants, true) {
+            text.push_str(&frame_index_constants(i));
+            text.push_str(
+                "/* Functions of a frame return 0, and 1 without a result if there is no such frame. */\n\n",
+            );
+        }
+        let results = if f.returns { &[][..] } else { &f.results };
+        let _ = writeln!(text, "{}{};\n", f.comment(results), function_head(i, f));
     }
-    for f in &chosen.reactions {
-        let name = names::replace_invalid_characters(f.name.strip_prefix(REACTION).unwrap_or_default());
-        let arguments = reaction_arguments(model);
-        text.push_str(&docs::function_comment(
-            &[reaction_docs(&name)],
-            &arguments,
-            &result_arrays(f.shape),
-            o,
-        ));
-        let _ = writeln!(text, "{};\n", o.signature_for_shape(&name, &arguments, f.shape));
-    }
-    if chosen.limits.is_some() {
-        text.push_str(
-            "/* Limits of the coordinates, and maximum magnitudes of velocities and forces, NV numbers each \
-             in the order of v;\n * infinite for a missing limit. */\n",
-        );
-        let _ = writeln!(text, "{};\n", o.signature_with_results("void", "limits", &[], &LIMITS));
-    }
-    text.push_str(&manifold::manifold_declarations(o));
-    text.push_str(&frames::frame_declarations(o, &frame_names(model)));
-    text
+    text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
 }

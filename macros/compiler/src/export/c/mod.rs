@@ -1,34 +1,20 @@
 //! Export to C99: a source file and a header of a mechanism, which need only the mathematical library.
 //!
 //! Vectors are plain arrays, and matrices are stored by columns. The functions are reentrant: they store
-//! nothing between calls and allocate no memory.
+//! nothing between calls and allocate no memory. Code that does not depend on the mechanism is in
+//! `templates`; the template engine and the bodies of straight-line functions are shared with other
+//! languages.
 
-mod batch;
-mod body;
 mod casadi;
 mod composed;
-mod docs;
-mod frames;
-mod function;
+mod functions;
 mod header;
-mod in_speeds;
-mod manifold;
-mod names;
-mod own_functions;
-mod pieces;
-mod scalar;
-mod signatures;
+mod helpers;
+mod kinematics;
 mod source;
-mod steps;
-mod support;
-mod tables;
 
-pub(super) use batch::{Array, Batch};
-pub(super) use docs::{comment_safe_text, without_links, wrap_paragraph};
-pub(super) use function::contains_word;
-pub(super) use names::replace_invalid_characters;
-pub use names::{identifier_from_name, prefix_identifier, preprocessor_names, snake_case_prefix};
-pub(super) use scalar::{in_single_precision, number_length};
-pub(super) use signatures::{CodeParts, Signatures, code_parts};
-pub(super) use source::bodies_without_calls;
-pub use source::{Files, Options, Unfit, export_c_source};
+pub(super) use functions::{is_calling, result_program};
+pub(super) use header::{frame_index_constants, list_state_entries, parameter_types, size_macros};
+pub(super) use kinematics::chart_statements;
+pub(super) use source::kernel_definitions;
+pub use source::{Files, export_c_source};

@@ -1,12 +1,12 @@
 //! C++ functions that launch the CUDA kernels.
 
+use super::super::signatures::ExportedSignature;
 use super::Kernels;
-use crate::export::c::{Batch, wrap_paragraph};
 use std::fmt::Write;
 
 /// Returns the text of the header that launches the kernels.
 pub fn header_text(kernels: &Kernels<'_>) -> String {
-    let p = &kernels.parts.prefix;
+    let p = &kernels.i.prefix;
     let upper = p.to_ascii_uppercase();
     let mut text = include_str!("templates/launch.cuh").replace("@PREFIX@", p).replace("@UPPER@", &upper);
     kernels.functions.iter().for_each(|f| write_launch_function(&mut text, kernels, f));
@@ -15,30 +15,22 @@ pub fn header_text(kernels: &Kernels<'_>) -> String {
 }
 
 /// Writes the function that launches a kernel, with its documentation.
-fn write_launch_function(text: &mut String, kernels: &Kernels<'_>, f: &Batch) {
-    let p = &kernels.parts.prefix;
+fn write_launch_function(text: &mut String, kernels: &Kernels<'_>, f: &ExportedSignature) {
+    let p = &kernels.i.prefix;
     let upper = p.to_ascii_uppercase();
     let _ = writeln!(text, "{}", kernels.kernel_condition(f));
-    for (k, paragraph) in f.docs.iter().enumerate() {
-        text.push_str(&wrap_paragraph(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
-    }
-    text.push_str(if f.docs.is_empty() { "/*\n" } else { " *\n" });
-    for (array, of) in f.arguments.iter().map(|a| (a, "")).chain(f.results.iter().map(|a| (a, "out: "))) {
-        let says = format!("{of}{}", array.about);
-        text.push_str(&wrap_paragraph(&says, &format!(" * {:9} ", array.name), " *           "));
-    }
-    text.push_str(" */\n");
+    text.push_str(&f.comment(&f.results));
     let mut declared = vec!["long long states".to_string()];
     let mut passed = vec!["states".to_string()];
     let view_argument = |kind: &str, name: &str| {
         (format!("lw_view<{kind}> {name}"), format!("{name}.at, {name}.entry_of(states), {name}.state"))
     };
-    if kernels.has_own() {
+    if kernels.i.has_own() {
         let (argument, values) = view_argument("const double", "parameters");
         declared.push(argument);
         passed.push(values);
     }
-    for name in &kernels.parts.tables {
+    for name in &kernels.i.tables {
         declared.push(format!("{p}_device::{p}_table table_{name}"));
         passed.push(format!("table_{name}"));
     }

@@ -1,15 +1,13 @@
 //! Kernels that CUDA has in addition to the functions in C: products of row vectors with Jacobians.
 
-use super::{Array, Batch, CodeParts};
+use super::super::mechanism::ExportedMechanism;
+use super::super::signatures::{Array, ExportedSignature};
+use super::super::template::Template;
 use crate::catalogue::{Id, InverseForm};
-use crate::derive::Output;
-use crate::mechanism::Model;
 
 /// Products of row vectors with the Jacobians of inverse and forward dynamics.
 pub struct Products<'a> {
-    parts: &'a CodeParts,
-    nv: usize,
-    time: bool,
+    i: &'a ExportedMechanism<'a>,
     has: [bool; 2],
     /// Whether a function returns all columns of the inverse mass matrix without further steps.
     explicit_inverse: bool,
@@ -20,18 +18,16 @@ const NAMES: [&str; 2] = ["inverse_dynamics_vjp", "forward_dynamics_vjp"];
 
 impl<'a> Products<'a> {
     /// Determines the vector–Jacobian products that a mechanism has.
-    pub fn from_model(model: &Model<'_>, output: &Output, parts: &'a CodeParts) -> Products<'a> {
-        let has_function = |name: &str| parts.functions.iter().any(|f| f.name == name);
-        let is_plain = model.acceleration_forces.is_empty();
+    pub fn from_interface(i: &'a ExportedMechanism<'a>) -> Products<'a> {
+        let has_function = |name: &str| i.signature(name).is_some();
+        let is_plain = i.model.acceleration_forces.is_empty();
         let has_inverse = has_function("inverse_dynamics_derivatives") && has_function("mass_matrix");
         let has_forward =
             has_inverse && has_function("forward_dynamics") && has_function("mass_matrix_inverse");
-        let has = [has_inverse, has_forward].map(|has| has && is_plain && model.nv() > 0);
-        let inverse = output.functions.iter().find(|f| f.id == Id::MassMatrixInverse);
+        let has = [has_inverse, has_forward].map(|has| has && is_plain && i.nv() > 0);
+        let inverse = i.find(Id::MassMatrixInverse);
         Products {
-            parts,
-            nv: model.nv(),
-            time: model.time,
+            i,
             has: [0, 1].map(|k| has[k] && !has_function(NAMES[k])),
             explicit_inverse: inverse.is_some_and(|f| matches!(f.structure.inverse, InverseForm::Explicit)),
             reason: (!is_plain && has_inverse).then_some("forces depend on accelerations"),
@@ -45,49 +41,45 @@ impl<'a> Products<'a> {
     }
 
     /// Returns the signatures of the vector–Jacobian products.
-    pub fn product_batches(&self) -> Vec<Batch> {
+    pub fn product_signatures(&self) -> Vec<ExportedSignature> {
         let mut all = Vec::new();
         for (k, name) in NAMES.iter().enumerate().filter(|(k, _)| self.has[*k]) {
             let of = ["inverse_dynamics", "forward_dynamics"][k];
-            let Some(function) = self.parts.functions.iter().find(|f| f.name == of) else { continue };
-            let mut batch = Batch { name: (*name).to_string(), ..function.clone() };
-            batch.arguments.push(Array::new("w", self.nv));
+            let Some(function) = self.i.signature(of) else { continue };
+            let mut product = ExportedSignature { name: (*name).to_string(), ..function.clone() };
+            product.arguments.push(Array::vector("w", self.i.nv()));
             let by = ["by_q", "by_v", ["by_a", "by_tau"][k]];
-            batch.results = by.map(|name| Array::new(name, self.nv)).to_vec();
-            batch.docs = vec![format!(
+            product.results = by.map(|name| Array::vector(name, self.i.nv())).to_vec();
+            product.docs = vec![format!(
                 "Products of a row vector `w` with the Jacobians of `{of}` by its arguments: the gradient of \
                  a loss by them, with `w` the gradient of the loss by the result. The gradient by `q` is \
                  along displacements, as `integrate` takes them."
             )];
-            all.push(batch);
+            all.push(product);
         }
         all
     }
 
-    /// Writes the definitions of the vector–Jacobian products.
-    pub fn write_product_definitions(&self, out: &mut String) {
-        let p = &self.parts.prefix;
-        let has_own = !(self.parts.parameters.is_empty() && self.parts.tables.is_empty());
-        let own_declared = if has_own { format!("const {p} *self, ") } else { String::new() };
+    /// Returns the definitions of the vector–Jacobian products.
+    pub fn product_definitions(&self) -> String {
+        let choose = |holds: bool, text: &'static str| if holds { text } else { "" };
+        let inverse = match self.explicit_inverse {
+            true => include_str!("templates/product_with_inverse.cu"),
+            false => include_str!("templates/product_with_stored_inverse.cu"),
+        };
+        let (has_own, time) = (self.i.has_own(), self.i.model.time);
+        let mut template = Template::default();
+        template.add_value("INVERSE", &inverse);
+        template.add_value("OWN_DECLARED", &choose(has_own, "const @PREFIX@ *self, "));
+        template.add_value("OWN", &choose(has_own, "self, "));
+        template.add_value("T_DECLARED", &choose(time, "double t, "));
+        template.add_value("T", &choose(time, "t, "));
+        template.add_value("PREFIX", &self.i.prefix);
+        template.add_value("NV", &self.i.nv());
         let texts = [
             include_str!("templates/inverse_dynamics_vjp.cu"),
             include_str!("templates/forward_dynamics_vjp.cu"),
         ];
-        out.push('\n');
-        for (text, _) in texts.iter().zip(self.has).filter(|(_, has)| *has) {
-            let inverse = match self.explicit_inverse {
-                true => include_str!("templates/product_with_inverse.cu"),
-                false => include_str!("templates/product_with_stored_inverse.cu"),
-            };
-            let text = text
-                .replace("@INVERSE@", inverse)
-                .replace("@OWN_DECLARED@", &own_declared)
-                .replace("@OWN@", if has_own { "self, " } else { "" })
-                .replace("@T_DECLARED@", if self.time { "double t, " } else { "" })
-                .replace("@T@", if self.time { "t, " } else { "" })
-                .replace("@PREFIX@", p)
-                .replace("@NV@", &self.nv.to_string());
-            out.push_str(&text);
-        }
+        texts.iter().zip(self.has).filter(|(_, has)| *has).map(|(text, _)| template.fill(text)).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! FMUs for co-simulation whose binary contains the run-time library.
 
-use super::super::c::{prefix_identifier, snake_case_prefix};
+use super::super::names::{prefix_identifier, snake_case_prefix};
 use super::description;
 use super::model::{array_definition, charts_definition, escape_character, names_definition};
 use super::values::StartValues;

@@ -10,7 +10,8 @@ mod units;
 mod values;
 mod variables;
 
-use super::c::{self, Signatures, Unfit};
+use super::c;
+use super::mechanism::{ExportedMechanism, Options, Unfit};
 use crate::derive::Output;
 use crate::mechanism::Model;
 pub use library::export_library_fmu;
@@ -86,12 +87,12 @@ pub fn export_fmu(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
-    options: &c::Options,
+    options: &Options,
     start: &StartValues,
     has_derivatives: bool,
 ) -> Result<FmuFiles, Unfit> {
     let code = c::export_c_source(model, output, tables, options)?;
-    let signatures = Signatures::new(model, output, tables, &options.prefix);
+    let signatures = ExportedMechanism::new(model, output, tables, options)?;
     let variables = Variables::new(model, &signatures, start, has_derivatives);
     let identifier = code.prefix.clone();
     let model_text = model::model_header(model, output, &signatures, &variables, start);

@@ -1,7 +1,9 @@
 //! The header `lw_model.h`: sizes, names and start values of a mechanism, and the functions in C under the
 //! names that the handwritten sources call.
 
-use super::super::c::{Signatures, comment_safe_text, contains_word};
+use super::super::comments::comment_safe_text;
+use super::super::mechanism::ExportedMechanism;
+use super::super::tokens::contains_word;
 use super::values::{StartValues, TableValues};
 use super::variables::{OutputFunction, VariableRole, Variables};
 use crate::derive::Output;
@@ -10,7 +12,7 @@ use std::fmt::Write;
 
 /// Writer of the header that adapts the exported C functions to the FMU's interface.
 struct HeaderWriter<'a> {
-    signatures: &'a Signatures,
+    signatures: &'a ExportedMechanism<'a>,
     text: String,
 }
 
@@ -18,7 +20,7 @@ struct HeaderWriter<'a> {
 pub fn model_header(
     model: &Model<'_>,
     output: &Output,
-    signatures: &Signatures,
+    signatures: &ExportedMechanism<'_>,
     variables: &Variables,
     start: &StartValues,
 ) -> String {
@@ -77,7 +79,7 @@ impl HeaderWriter<'_> {
     /// Returns the number of results of a function; zero if it does not exist.
     fn result_length(&self, name: &str) -> usize {
         let found = self.signatures.functions.iter().find(|f| f.name == name);
-        found.map_or(0, |f| f.results.iter().map(|array| array.length).sum())
+        found.map_or(0, |f| f.results.iter().map(|array| array.length()).sum())
     }
 
     /// Writes names and start values, and the columns of states and parameters among all parameters.
@@ -99,7 +101,7 @@ impl HeaderWriter<'_> {
 
     /// Writes the type of the parameters, and the function that sets them.
     fn write_parameters(&mut self, variables: &Variables, start: &StartValues) {
-        let Signatures { prefix, parameters, tables, .. } = self.signatures;
+        let ExportedMechanism { prefix, parameters, tables, .. } = self.signatures;
         if parameters.is_empty() && tables.is_empty() {
             self.text.push_str("typedef struct {\n    char none;\n} lw_mechanism;\n\n");
         } else {
@@ -248,10 +250,10 @@ impl HeaderWriter<'_> {
         text + "    }\n"
     }
 
-    /// Returns the call of a function in C, with its own arguments; empty if it does not exist. A number that it
-    /// returns is assigned to the result.
+    /// Returns the call of a function in C, with its own arguments; empty if it does not exist. A number that
+    /// it returns is assigned to the result.
     fn c_function_call(&self, name: &str, results: &[&str]) -> String {
-        let Signatures { prefix, functions, parameters, tables, .. } = self.signatures;
+        let ExportedMechanism { prefix, functions, parameters, tables, .. } = self.signatures;
         let Some(f) = functions.iter().find(|f| f.name == name) else { return String::new() };
         let own = !(parameters.is_empty() && tables.is_empty());
         let given = f.arguments.iter().map(|array| array.name.as_str());

@@ -1,6 +1,7 @@
 //! Variables of an FMU, in the order of their value references.
 
-use super::super::c::Signatures;
+use super::super::mechanism::ExportedMechanism;
+use super::super::names::replace_invalid_characters;
 use super::units;
 use super::values::StartValues;
 use crate::mechanism::Model;
@@ -42,9 +43,9 @@ pub struct OutputFunction {
 
 impl OutputFunction {
     /// Finds the functions of an output, with those of its derivatives by parameters if others have them.
-    fn new(name: &str, signatures: &Signatures, has_sensitivities: bool) -> OutputFunction {
+    fn new(name: &str, signatures: &ExportedMechanism<'_>, has_sensitivities: bool) -> OutputFunction {
         let find_function = |name: &str| signatures.functions.iter().find(|f| f.name == name);
-        let size = find_function(name).map_or(0, |f| f.results.iter().map(|array| array.length).sum());
+        let size = find_function(name).map_or(0, |f| f.results.iter().map(|array| array.length()).sum());
         let has_parameters = signatures.parameters.is_empty()
             || !has_sensitivities
             || find_function(&format!("{name}_by_parameters")).is_some();
@@ -85,7 +86,7 @@ impl Variables {
     /// Lists the variables of a mechanism, with or without derivatives.
     pub fn new(
         model: &Model<'_>,
-        signatures: &Signatures,
+        signatures: &ExportedMechanism<'_>,
         start: &StartValues,
         is_differentiable: bool,
     ) -> Variables {
@@ -98,7 +99,8 @@ impl Variables {
         let name_of_state_rate = |k: &usize| format!("{}_rate", signatures.parameters[*k]);
         let rates: Vec<OutputFunction> =
             start.states.iter().map(|k| output_function(&name_of_state_rate(k))).collect();
-        let mut outputs: Vec<OutputFunction> = signatures.outputs.iter().map(output_function).collect();
+        let mut outputs: Vec<OutputFunction> =
+            signatures.output_names().iter().map(output_function).collect();
         outputs.retain(|output| rates.iter().all(|rate| rate.name != output.name));
         outputs.sort_by_key(|output| !output.is_differentiable);
         let accelerations =
@@ -186,10 +188,8 @@ impl Variables {
             );
         }
         for output in self.outputs.clone() {
-            let at = model
-                .outputs
-                .iter()
-                .position(|known| super::super::c::replace_invalid_characters(&known.name) == output.name);
+            let at =
+                model.outputs.iter().position(|known| replace_invalid_characters(&known.name) == output.name);
             let unit = at.map_or("any", |at| unit_at_index(&u.outputs, at));
             let name = at.map_or(&output.name, |at| &model.outputs[at].name);
             for k in 0..output.size {
