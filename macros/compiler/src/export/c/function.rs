@@ -8,7 +8,6 @@ use super::support::Support;
 use crate::catalogue::{Argument, Called, Id, Shape};
 use crate::derive::Function;
 use crate::lower::Operand;
-use crate::mechanism::Quantity;
 use std::fmt::Write;
 
 /// Sizes and names that all exported C functions share.
@@ -238,7 +237,7 @@ pub fn element_of_output(results: &[Given], mut k: usize) -> Option<String> {
 /// Writes the call of a function whose results are inputs of the program, if the program uses them.
 fn write_call(body: &mut String, f: &Function, called: Called, o: &Outline<'_>) {
     let argument = Argument::Called(called);
-    if !f.program.used_symbols().iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some()) {
+    if !f.reads_results_of(called) {
         return;
     }
     let (name, [forces, derivatives]) = (argument.argument_name(), o.passive);

@@ -14,7 +14,7 @@ use super::{frames, manifold, names, steps};
 use crate::catalogue::{Argument, Called, Id, InverseForm, REACTION, Shape, TOUCHED};
 use crate::derive::{Function, Output};
 use crate::lower::{Op, Program};
-use crate::mechanism::{Model, Quantity, Supplied};
+use crate::mechanism::{Model, Supplied};
 use std::fmt::Write;
 
 /// Options of the export to C.
@@ -270,6 +270,10 @@ impl<'a> Selection<'a> {
         let has_frames = !output.frames.is_empty();
         for f in &output.functions {
             match f.id {
+                _ if f.reads_results_of(Called::ContactFeatures) => {
+                    chosen.left_out.push(format!("{}: contacts of polytopes with each other", f.name));
+                }
+                Id::PolytopePoses => {}
                 Id::RateMatrix if has_frames || has_derivatives => chosen.hidden.push(f),
                 Id::RateAccelerations if has_frames => chosen.hidden.push(f),
                 Id::SpeedMatrix | Id::RateChanges if has_derivatives => chosen.hidden.push(f),
@@ -448,11 +452,7 @@ fn body_without_calls(f: &Function, o: &Outline<'_>, support: &mut Support) -> O
         Shape::Forward(_) | Shape::Linear(..) | Shape::Accelerated(_) => true,
         shape => shape.is_assembled_from_calls(),
     };
-    let calls = f.program.used_symbols().iter().any(|s| {
-        let is_called_argument =
-            |called: &Called| Argument::Called(*called).index(Quantity::from_symbol(*s)).is_some();
-        Called::ALL.iter().any(is_called_argument)
-    });
+    let calls = Called::ALL.into_iter().any(|called| f.reads_results_of(called));
     if is_composed || calls {
         return None;
     }
