@@ -104,6 +104,7 @@ mod light;
 mod observer;
 mod overlap;
 mod phase;
+mod polytopes;
 mod problem;
 mod response;
 mod selection;
@@ -133,6 +134,10 @@ pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{
     ContactPhase, PhaseState, PhasedMechanism, projected_onto_contacts as kept, velocity_after_impact,
+};
+#[doc(hidden)]
+pub use polytopes::{
+    Polytope, PolytopeEdge, PolytopeFace, PolytopePair, contact_features, write_contact_features,
 };
 #[doc(hidden)]
 pub use response::responses;

@@ -208,7 +208,10 @@ pub mod __private {
         stabilized_derivatives, with_curvature,
     };
     pub use crate::contact::Columns as ContactDerivatives;
-    pub use crate::contact::{differentiate_step, held_derivatives};
+    pub use crate::contact::{
+        Polytope, PolytopeEdge, PolytopeFace, PolytopePair, contact_features, differentiate_step,
+        held_derivatives, write_contact_features,
+    };
     pub use crate::derivatives::acceleration_derivatives;
     pub use crate::first_order::columns;
     pub use crate::frame::{Index, Message, identity_placement, join, origin, placement, six, sum, twist};

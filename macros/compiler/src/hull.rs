@@ -58,6 +58,11 @@ pub enum HullError {
 }
 
 impl HullFace {
+    /// Returns the indices of the vertices of the face, in increasing order.
+    pub fn corner_indices(&self) -> Vec<usize> {
+        (0..MAX_VERTICES).filter(|k| self.corners >> k & 1 == 1).collect()
+    }
+
     /// Returns the distance of a point from the plane, positive outside of the hull.
     fn distance_from_plane(&self, p: Point) -> f64 {
         dot(self.normal, p) - self.offset

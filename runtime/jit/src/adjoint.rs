@@ -68,6 +68,7 @@ impl Function {
             _ => None,
         };
         let kind = match (program, entry.name.as_str()) {
+            (Some(_), _) if entry.takes_features => return Err(missing_adjoint_error()),
             (Some(program), _) => {
                 let inputs = parameters + arguments.iter().sum::<usize>();
                 let given = Argument::Given(FACTORS, Supplied::ResultFactor, entry.length);

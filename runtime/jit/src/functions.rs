@@ -5,6 +5,7 @@ use crate::frames::Access;
 use crate::inverse::Inverse;
 use crate::kernels::{self, Columns};
 use crate::merge::Merged;
+use crate::polytopes::takes_features;
 use crate::routine::{Routine, Values};
 use crate::shared::Shared;
 use crate::space::Space;
@@ -49,6 +50,8 @@ pub(crate) struct Entry {
     pub length: usize,
     /// Number of values in the workspace that an evaluation of the function needs.
     pub work: usize,
+    /// Whether the programs take features of polytopes in contact as their last input.
+    pub takes_features: bool,
     pub plan: Plan,
 }
 
@@ -138,6 +141,15 @@ impl Entry {
 
     /// Evaluates the function and writes its results to `out`. The lengths of all slices must be correct.
     pub fn run(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
+        match self.takes_features {
+            true => shared.with_features(values, &self.arguments, |values| {
+                self.run_plan(shared, values, out, work);
+            }),
+            false => self.run_plan(shared, values, out, work),
+        }
+    }
+
+    fn run_plan(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match &self.plan {
             Plan::Program(routine) => routine.run(values, out, &mut []),
             Plan::Frame(access, frame, routine) => {
@@ -308,7 +320,10 @@ impl Maker<'_, '_> {
         let arguments: Vec<Argument> = f.arguments.iter().copied().filter(is_passed).collect();
         let (n, m) = (self.model.nv(), self.model.nu());
         let program = self.whole(&f.program);
-        let routine_with_results = |results: usize| Routine::new(program.clone(), &arguments, results);
+        let takes_features = takes_features(&program);
+        let features = takes_features.then_some(Argument::Called(Called::ContactFeatures));
+        let inputs: Vec<Argument> = arguments.iter().copied().chain(features).collect();
+        let routine_with_results = |results: usize| Routine::new(program.clone(), &inputs, results);
         let outputs = program.outputs.len();
         let new_inverse = || Inverse::new(&f.structure.inverse, n);
         let is_zero_entry = |first: usize| {
@@ -333,7 +348,7 @@ impl Maker<'_, '_> {
                 let columns = self.multiplied_columns(f, &is_zero_entry(0));
                 // The accelerations, which come last, have a function of their own.
                 let kept: Vec<usize> = (0..3 * n * n + inverse.further_length()).collect();
-                let routine = Routine::new(program.clone().with_outputs(&kept), &arguments, 3 * n * n)?;
+                let routine = Routine::new(program.clone().with_outputs(&kept), &inputs, 3 * n * n)?;
                 (Plan::Forward { routine, inverse, columns, n }, work)
             }
             Shape::Accelerated(_) | Shape::Symmetric(_) => return None,
@@ -382,14 +397,15 @@ impl Maker<'_, '_> {
             Shape::Record(Record::InputDerivatives(..)) => {
                 // The forces have a function of their own.
                 let program = program.clone().with_outputs(&(n..outputs).collect::<Vec<_>>());
-                (Plan::Program(Routine::new(program, &arguments, outputs - n)?), 0)
+                (Plan::Program(Routine::new(program, &inputs, outputs - n)?), 0)
             }
             _ => (Plan::Program(routine_with_results(outputs)?), 0),
         };
         let results = matrices_of_shape(f.shape, outputs);
         let documentation = f.docs.join("\n\n");
         let rank = rank_of_shape(f.shape);
-        Some(Entry { hidden, work, rank, ..Entry::new(name, documentation, arguments, results, plan) })
+        let entry = Entry::new(name, documentation, arguments, results, plan);
+        Some(Entry { hidden, work, rank, takes_features, ..entry })
     }
 
     /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse mass matrix.
@@ -486,6 +502,7 @@ impl Entry {
             rank: 1,
             length,
             work: 0,
+            takes_features: false,
             plan,
         }
     }
@@ -514,6 +531,7 @@ fn is_internal(id: Id) -> bool {
             | Id::ContactResponses
             | Id::ContactDerivatives
             | Id::ConstraintCurvature
+            | Id::PolytopePoses
             | Id::RateMatrix
             | Id::SpeedMatrix
             | Id::RateChanges

@@ -25,6 +25,7 @@ mod merge;
 mod methods;
 mod names;
 mod padded;
+mod polytopes;
 mod robot;
 mod roll_out;
 mod routine;

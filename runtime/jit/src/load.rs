@@ -7,6 +7,7 @@ use crate::frames::Frames;
 use crate::functions::Maker;
 use crate::internal::INTERNAL;
 use crate::methods::METHODS;
+use crate::polytopes::Polytopes;
 use crate::robot::Robot;
 use crate::shared::{Constraints, Contact, FirstOrder, Quantity, Requirement, Shared, Sizes};
 use crate::space::Space;
@@ -350,6 +351,7 @@ fn shared_mechanism(
         constraints: constraints_of(model),
         contact_rates: model.contacts.iter().map(|contact| contact.rates.len()).sum(),
         contacts: contacts_of_model(model),
+        polytopes: Polytopes::of_model(model),
         states,
         charts: output.charts.clone(),
         frames,

@@ -463,6 +463,7 @@ impl Robot {
             && out.len() == entry.length
             && self.missing == 0
             && !self.interpreted
+            && !entry.takes_features
             && code.call_if_lengths(parameters, arguments, &entry.lengths, &self.tables, out)
         {
             return Ok(());
@@ -499,7 +500,7 @@ impl Robot {
     ) -> Result<(), Error> {
         let values = Values { parameters, arguments, tables: &self.tables, interpreted: self.interpreted };
         match &entry.plan {
-            Plan::Program(routine) => routine.run(values, out, &mut []),
+            Plan::Program(routine) if !entry.takes_features => routine.run(values, out, &mut []),
             Plan::Constrained(kind) => return self.call_constrained(*kind, arguments, out),
             _ => WORK.with_borrow_mut(|work| {
                 if work.len() < entry.work {

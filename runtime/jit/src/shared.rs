@@ -4,6 +4,7 @@ use crate::about::About;
 use crate::frames::Frames;
 use crate::functions::Entry;
 use crate::layout::Layout;
+use crate::polytopes::Polytopes;
 use crate::routine::Values;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::Chart;
@@ -113,6 +114,7 @@ pub(crate) struct Shared {
     pub contacts: Vec<Contact>,
     /// Number of contact velocities of all contacts.
     pub contact_rates: usize,
+    pub polytopes: Polytopes,
     pub states: Vec<FirstOrder>,
     pub charts: Vec<Chart>,
     pub frames: Frames,

@@ -102,6 +102,9 @@ impl Robot {
         if shared.kinematic {
             return Err(refused("it has no masses (`inertia = none`), so it has no equations of motion"));
         }
+        if !shared.polytopes.is_empty() {
+            return Err(refused("it has contacts of hulls with hulls, boxes, capsules or cylinders"));
+        }
         let module = self.web_module(drawing).map_err(Error::Internal)?;
         let mut fields = self.web_structure();
         let parameters = self.parameter_values();

@@ -119,6 +119,8 @@ pub enum Slipping {}
 /// | `cuboid(a, b, c)`: three points of a face and an edge | `cylinder(radius, axis)` |
 /// | `cuboid(a, b, c)`: sixteen points of the rim and of edges | `cylinder(radius, length, axis)` |
 /// | `hull(points)` or `hull("foot.stl")`, a convex hull: its vertices | `plane(normal)`, `terrain(height)` |
+/// | `hull(points)`, `cuboid(a, b, c)`: at most twelve points of faces, and one of edges | `hull(points)` |
+/// | `capsule(…)`, `cylinder(radius, axis)`: two points of a face, and one of edges | `hull(points)` |
 /// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away, which move as the points of the body that are there | `plane(normal)` |
 /// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
 /// | a point, `sphere(radius)`, the ends of a `capsule(…)`, the corners of a `cuboid(…)` | `terrain(height)` |
@@ -128,6 +130,11 @@ pub enum Slipping {}
 /// is the distance of surfaces that nearly touch. Gaps and normals are discontinuous where the contact
 /// features change: simulate such bodies with [`TimeStepping`](crate::integrate::TimeStepping), with steps of
 /// a millisecond or less.
+///
+/// A hull in contact with hulls, boxes, capsules and unbounded cylinders has points that are numbers, and so
+/// are the lengths of the box or the capsule. The smallest gap of their contact points is the distance of the
+/// surfaces, or the negative of the depth of their penetration. Contact points that are not used have larger
+/// gaps than any distance of the surfaces. These contacts are rigid.
 ///
 /// The height of a terrain is an expression of `u` and `w`, the position along the body's x and y axes, and
 /// of parameters: `ground.terrain(0.1 * sin(3 * u))`, or `ground.terrain(heights(u, w))` with a

@@ -4,7 +4,7 @@ use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{self, A, Q, V};
 use super::shape::{Record, Shape};
-use crate::mechanism::Supplied;
+use crate::mechanism::{PAIR_POSE, Supplied};
 use crate::syntax::Word;
 
 const TOUCHING: &[Need] = &[Need::Contacts];
@@ -54,6 +54,12 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(Id::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
         timeless: true,
         shape: Shape::Array(3 * f.contacts.count),
+        ..Declaration::default()
+    })
+    .without_batch(),
+    Row::derived_row(Id::PolytopePoses, "__polytope_poses", &[Need::Polytopes], |f| Declaration {
+        arguments: vec![Q],
+        shape: Shape::Vector(PAIR_POSE * f.polytopes),
         ..Declaration::default()
     })
     .without_batch(),

@@ -22,6 +22,8 @@ pub enum Need {
     NoSlipping,
     /// The mechanism has unilateral contacts.
     Contacts,
+    /// Features of polytopes determine contacts.
+    Polytopes,
     /// The mechanism has parameters.
     Parameters,
     /// Values of the robot file, such as inertias, are parameters of the struct.
@@ -59,6 +61,7 @@ impl Need {
             Need::Slipping,
             Need::NoSlipping,
             Need::Contacts,
+            Need::Polytopes,
             Need::Parameters,
             Need::FileParameters,
             Need::FileInertials,
@@ -90,9 +93,12 @@ impl Need {
             Need::FileParameters => "HasFileParameters",
             Need::FileInertials => "HasFileInertials",
             Need::Equilibria => "DeclaresEquilibria",
-            Need::Limits | Need::Terrain | Need::Calls | Need::PassiveCalls | Need::FewContacts => {
-                return None;
-            }
+            Need::Limits
+            | Need::Terrain
+            | Need::Calls
+            | Need::PassiveCalls
+            | Need::FewContacts
+            | Need::Polytopes => return None,
         })
     }
 }
@@ -142,6 +148,8 @@ pub struct Facts {
     pub conserved: usize,
     /// Numbers of unilateral contacts and contact velocities.
     pub contacts: ContactSizes,
+    /// Number of pairs of polytopes whose features determine contacts.
+    pub polytopes: usize,
     /// Number of bounds in the declared limits.
     pub limits: usize,
     /// Number of values in the declared drawing.
@@ -203,6 +211,7 @@ impl Facts {
             requests,
             constraints,
             contacts: ContactSizes { count: model.contacts.len(), rates: model.contact_rates().len() },
+            polytopes: model.polytopes.len(),
             limits: model.limit_values().len(),
             equilibria: model.equilibria.len(),
             drawing: model.drawing_numbers().len(),
@@ -224,6 +233,7 @@ impl Facts {
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
             Need::NoSlipping => self.constraints.is_none_or(|c| c.slipping == 0),
             Need::Contacts => self.contacts.count > 0,
+            Need::Polytopes => self.polytopes > 0,
             Need::Parameters => self.parameters > 0,
             Need::FileParameters => self.requests.file_parameters,
             Need::FileInertials => self.requests.file_inertials,

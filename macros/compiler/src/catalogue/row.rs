@@ -40,6 +40,7 @@ pub enum Id {
     ContactLaws,
     ContactResponses,
     ContactDerivatives,
+    PolytopePoses,
     CentroidalMomentumMatrix,
     CentroidalMomentumBias,
     Hamiltonian,

@@ -31,24 +31,35 @@ pub enum Argument {
     Called(Called),
 }
 
-/// A function of configuration and velocity that other functions call first.
+/// A function that other functions call first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Called {
     /// The generated function that computes the passive forces.
     PassiveForces,
     /// The generated function that computes the derivatives of the passive forces.
     PassiveDerivatives,
+    /// The generated function that returns the features of polytopes in contact.
+    ContactFeatures,
 }
 
 impl Called {
     /// All functions that other generated functions call.
-    pub const ALL: [Called; 2] = [Called::PassiveForces, Called::PassiveDerivatives];
+    pub const ALL: [Called; 3] = [Called::PassiveForces, Called::PassiveDerivatives, Called::ContactFeatures];
 
     /// Returns the name of the called function.
     pub const fn function_name(self) -> &'static str {
         match self {
             Called::PassiveForces => "__passive_forces",
             Called::PassiveDerivatives => "__passive_derivatives",
+            Called::ContactFeatures => "__contact_features",
+        }
+    }
+
+    /// Returns the arguments of the called function, except time.
+    pub const fn arguments(self) -> &'static [Argument] {
+        match self {
+            Called::PassiveForces | Called::PassiveDerivatives => &[Argument::Q, Argument::V],
+            Called::ContactFeatures => &[Argument::Q],
         }
     }
 }
@@ -85,6 +96,7 @@ impl Argument {
             Argument::Momenta(_) => "p",
             Argument::Called(Called::PassiveForces) => "passive",
             Argument::Called(Called::PassiveDerivatives) => "change",
+            Argument::Called(Called::ContactFeatures) => "feature",
         }
     }
 
@@ -103,7 +115,8 @@ impl Argument {
             | (Argument::Factors(_), Quantity::Given(Supplied::Factor, k))
             | (Argument::Momenta(_), Quantity::Momentum(k))
             | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
-            | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),
+            | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k))
+            | (Argument::Called(Called::ContactFeatures), Quantity::ContactFeature(k)) => Some(k),
             _ => None,
         }
     }

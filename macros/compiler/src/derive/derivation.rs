@@ -261,6 +261,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::ContactBias => {
                 unstructured_program(self.contact_program(&constraints::contact_biases(model)))
             }
+            Id::PolytopePoses => self.lower_unstructured(&model.polytope_poses()),
             Id::ContactLaws => self.lower_unstructured(&constraints::contact_laws(model)),
             Id::ContactResponses => unstructured_program(self.contact_responses()),
             Id::ContactDerivatives => unstructured_program(self.contact_derivatives()),

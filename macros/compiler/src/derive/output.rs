@@ -60,6 +60,12 @@ impl Function {
         self.docs.is_empty()
     }
 
+    /// Returns true if the program reads results of another function.
+    pub fn reads_results_of(&self, called: Called) -> bool {
+        let symbols = self.program.used_symbols();
+        symbols.iter().any(|s| Argument::Called(called).index(Quantity::from_symbol(*s)).is_some())
+    }
+
     /// Returns true if the program, and its version in lanes, has the number of outputs that the result takes
     /// and reads only arguments of the function.
     fn has_expected_outputs(&self) -> bool {

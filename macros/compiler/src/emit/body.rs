@@ -206,12 +206,9 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
         };
         let name = match argument {
             Argument::Called(f) => {
-                format!(
-                    "self.{}{}({}q, v)",
-                    f.function_name(),
-                    s.call_suffix(),
-                    if s.time { "t, " } else { "" }
-                )
+                let arguments = s.with_time_argument(f.arguments());
+                let names: Vec<&str> = arguments.iter().map(|a| a.argument_name()).collect();
+                format!("self.{}{}({})", f.function_name(), s.call_suffix(), names.join(", "))
             }
             _ => argument.argument_name().to_string(),
         };

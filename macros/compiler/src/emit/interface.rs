@@ -3,6 +3,7 @@
 use super::constraints::Constraints;
 use super::contacts::UnilateralContact;
 use super::limits::CoordinateLimits;
+use super::polytopes::ContactPolytopes;
 use super::signature::Signature;
 use super::validate::ParameterCondition;
 use crate::catalogue::{Argument, Facts, Row};
@@ -30,6 +31,8 @@ pub struct Interface<'a> {
     pub constraints: Constraints,
     /// Unilateral contacts.
     pub contacts: Vec<UnilateralContact>,
+    /// Polytopes whose features determine contacts.
+    pub polytopes: ContactPolytopes,
     /// Limits of the coordinates.
     pub limits: Vec<CoordinateLimits>,
     /// Conditions that values of the parameters must satisfy.

@@ -62,6 +62,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     }
     constraints::write_constants(&mut methods, &interface.constraints);
     contacts::write_constants(&mut methods, &interface.contacts);
+    interface.polytopes.write_methods(&mut methods, interface.facts.requests.batch, &s);
     if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
         reactions::write_methods(&mut methods, interface, &output.functions, &s);

@@ -50,6 +50,7 @@ pub fn write_prepared(
     }
     constraints::write_constants(&mut methods, &i.constraints);
     contacts::write_constants(&mut methods, &i.contacts);
+    i.polytopes.write_methods(&mut methods, i.facts.requests.batch, s);
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
     match content.numbers {
         Some(_) => {

@@ -3,7 +3,7 @@
 use super::handwritten::{METHODS, all_signatures};
 use super::names;
 use super::signatures::{ExportedSignature, reaction_name};
-use crate::catalogue::{Argument, Id, REACTION, Shape, TOUCHED};
+use crate::catalogue::{Argument, Called, Id, REACTION, Shape, TOUCHED};
 use crate::derive::{Function, Output};
 use crate::lower::{Op, Operand, Program};
 use crate::mechanism::{Chart, Model, Supplied};
@@ -122,6 +122,10 @@ impl<'a> ExportedMechanism<'a> {
         let is_contact_force = |a: &Argument| matches!(a, Argument::Given(_, Supplied::ContactForces, _));
         let (has_frames, has_derivatives) = (!self.output.frames.is_empty(), self.has_derivatives());
         match f.id {
+            _ if f.reads_results_of(Called::ContactFeatures) => {
+                self.left_out.push(format!("{}: contacts of polytopes with each other", f.name));
+            }
+            Id::PolytopePoses => {}
             Id::RateMatrix if has_frames || has_derivatives => self.hidden.push(f),
             Id::RateAccelerations if has_frames => self.hidden.push(f),
             Id::SpeedMatrix | Id::RateChanges if has_derivatives => self.hidden.push(f),

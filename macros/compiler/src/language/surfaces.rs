@@ -88,7 +88,8 @@ table! {
         /// A cylinder between two hemispheres, by radius and distance of their centres.
         Capsule = surface_row("capsule", &[RADIUS, LENGTH, AXIS], &[None, Some(Sphere), Some(Capsule)], &[]);
         /// Surface `hull`: the convex hull of points.
-        Hull = surface_row("hull", &[Argument::new("points", ArgumentKind::Points)], &[Some(Sphere)], &[]);
+        Hull = surface_row("hull", &[Argument::new("points", ArgumentKind::Points)],
+            &[Some(Sphere), Some(Capsule), Some(Cuboid), Some(Cylinder), Some(Hull)], &[]);
     }
 }
 

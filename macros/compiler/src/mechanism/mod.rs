@@ -15,6 +15,7 @@ mod link;
 mod model;
 mod motion;
 mod passive;
+mod polytope;
 mod pose;
 mod quantity;
 mod requirement;
@@ -34,6 +35,9 @@ pub use link::{Link, LinkId, NamedFrame, Space};
 pub use model::{Diagram, Model, Origin, OutputValue, Released, Uses};
 pub use motion::{Chart, Coordinate, Motion};
 pub use passive::PassiveForces;
+pub use polytope::{
+    PAIR_FEATURES, PAIR_POSE, POINT_FEATURES, Polytope, PolytopeEdge, PolytopeFace, PolytopePair,
+};
 pub use pose::Pose;
 pub use quantity::{Quantity, Supplied};
 pub use requirement::{Requirement, Rule};

@@ -11,6 +11,7 @@ use super::limit::Limit;
 use super::link::{Link, NamedFrame, Space};
 use super::motion::Chart;
 use super::passive::PassiveForces;
+use super::polytope::PolytopePair;
 use super::requirement::Requirement;
 use super::speeds::Speeds;
 use super::units::Units;
@@ -63,6 +64,8 @@ pub struct Model<'g> {
     pub equilibria: Vec<Equilibrium<'g>>,
     /// Unilateral contacts, including stops.
     pub contacts: Vec<Contact<'g>>,
+    /// Pairs of polytopes whose features determine contacts, in the order of their features.
+    pub polytopes: Vec<PolytopePair<'g>>,
     /// Conditions on values that depend on parameters, which the generated `validate` checks.
     pub requirements: Vec<Requirement<'g>>,
     /// Named frames of the mechanism.
@@ -206,6 +209,16 @@ impl<'g> Model<'g> {
     /// Returns the contact velocities of all contacts, the normal velocity of each first.
     pub fn contact_rates(&self) -> Vec<Expr<'g>> {
         self.contacts.iter().flat_map(|contact| &contact.rates).copied().collect()
+    }
+
+    /// Returns the number of features of all pairs of polytopes.
+    pub fn polytope_feature_count(&self) -> usize {
+        self.polytopes.iter().map(PolytopePair::feature_count).sum()
+    }
+
+    /// Returns the poses of all pairs of polytopes, one after another.
+    pub fn polytope_poses(&self) -> Vec<Expr<'g>> {
+        self.polytopes.iter().flat_map(|pair| pair.pose).collect()
     }
 
     /// Returns the values of all requirements on parameters, in their order.

@@ -45,6 +45,8 @@ pub enum Quantity {
     PassiveDerivative(usize),
     /// A contact force, in the order of the contact velocities of all contacts.
     ContactForce(usize),
+    /// A feature of polytopes in contact, computed by a separate function, in the order of its results.
+    ContactFeature(usize),
 }
 
 /// Intermediate results that callers of generated functions supply as arguments.
@@ -131,6 +133,7 @@ impl Quantity {
             Quantity::Time => (6, 0),
             Quantity::Laplace => (6, 1),
             Quantity::Given(Supplied::ResultFactor, k) => (13, k),
+            Quantity::ContactFeature(k) => (14, k),
             Quantity::ContactForce(k) | Quantity::Given(Supplied::ContactForces, k) => (12, k),
             Quantity::Given(block, k) => (7, block as usize * Quantity::GIVEN + k),
             Quantity::Momentum(k) => (7, Quantity::MOMENTA + k),
@@ -172,6 +175,7 @@ impl Quantity {
             10 => Quantity::PassiveForce(index),
             11 => Quantity::PassiveDerivative(index),
             12 => Quantity::ContactForce(index),
+            14 => Quantity::ContactFeature(index),
             _ => Quantity::Given(Supplied::ResultFactor, index),
         }
     }
@@ -188,7 +192,7 @@ mod tests {
 
     #[test]
     fn symbols_convert_to_their_quantities() {
-        let indexed: [fn(usize) -> Quantity; 14] = [
+        let indexed: [fn(usize) -> Quantity; 15] = [
             Quantity::Parameter,
             Quantity::Configuration,
             Quantity::Velocity,
@@ -203,6 +207,7 @@ mod tests {
             Quantity::PassiveForce,
             Quantity::PassiveDerivative,
             Quantity::ContactForce,
+            Quantity::ContactFeature,
         ];
         let all = indexed.into_iter().flat_map(|quantity| [0, 1, 255, 65_535].map(quantity));
         let given =

@@ -175,6 +175,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         limits: _,
         equilibria: _,
         contacts: _,
+        polytopes: _,
         requirements: _,
         units: _,
         speeds: _,

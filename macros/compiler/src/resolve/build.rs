@@ -140,6 +140,7 @@ fn empty_model<'g>(
         limits: Vec::new(),
         equilibria: Vec::new(),
         contacts: Vec::new(),
+        polytopes: Vec::new(),
         requirements: Vec::new(),
         frames: Vec::new(),
         drawing: Vec::new(),

@@ -238,6 +238,7 @@ impl<'g> Builder<'_, 'g> {
             let name = &contact.name.text;
             self.surfaces.extend(parts.surfaces.into_iter().map(|surface| (name.clone(), surface)));
             self.model.contacts.extend(parts.contacts);
+            self.model.polytopes.extend(parts.polytopes);
             parts.forces.add_to(&mut self.model);
             let kinematics = &mut self.scope.kinematics;
             kinematics.powers.extend(parts.power.map(|power| (name.clone(), power)));

@@ -8,7 +8,6 @@ use super::composed::write_composed_body;
 use crate::catalogue::{Argument, Called, Id, Shape};
 use crate::derive::Function;
 use crate::lower::Program;
-use crate::mechanism::Quantity;
 use std::borrow::Cow;
 use std::fmt::Write;
 
@@ -102,20 +101,16 @@ pub fn result_program<'f>(f: &'f Function, i: &ExportedMechanism<'_>) -> Cow<'f,
     Cow::Owned(program)
 }
 
-/// Returns true if a function's program reads the results of another function.
-pub fn is_calling(f: &Function, called: Called) -> bool {
-    let argument = Argument::Called(called);
-    f.program.used_symbols().iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some())
-}
-
 /// Writes the call of a function whose results are inputs of the program, if the program uses them.
 fn write_call(body: &mut String, f: &Function, called: Called, i: &ExportedMechanism<'_>) {
-    if !is_calling(f, called) {
+    if !f.reads_results_of(called) {
         return;
     }
     let id = match called {
         Called::PassiveForces => Id::PassiveForces,
         Called::PassiveDerivatives => Id::PassiveDerivatives,
+        // C lacks the functions that read them.
+        Called::ContactFeatures => return,
     };
     let name = Argument::Called(called).argument_name();
     let length = i.find(id).map_or(0, |f| f.program.outputs.len());

@@ -13,7 +13,7 @@ mod helpers;
 mod kinematics;
 mod source;
 
-pub(super) use functions::{is_calling, result_program};
+pub(super) use functions::result_program;
 pub(super) use header::{frame_index_constants, list_state_entries, parameter_types, size_macros};
 pub(super) use kinematics::chart_statements;
 pub(super) use source::kernel_definitions;

@@ -65,6 +65,10 @@ pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'
     if has_function(Id::SlippingResponse) {
         return Some(("the sources of FMUs have no constraints with friction".to_string(), SIMULATE));
     }
+    if !model.polytopes.is_empty() {
+        let what = "the sources of FMUs have no contacts of hulls with hulls, boxes, capsules or cylinders";
+        return Some((what.to_string(), SIMULATE));
+    }
     let contact =
         model.contacts.iter().find(|c| c.rates.len() > 1 || c.pressed_by.is_some() || c.of_impulses)?;
     let what = if contact.of_impulses { "restitution by Poisson's law" } else { "friction" };

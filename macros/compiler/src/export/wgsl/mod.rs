@@ -4,7 +4,7 @@
 //! Bodies are those in C (`export::c`), converted token by token. WGSL has single precision only.
 
 use super::body::{MISSING, Scope, write_program};
-use super::c::{self, is_calling, result_program};
+use super::c::{self, result_program};
 use super::mechanism::{ExportedMechanism, Options, Unfit};
 use super::signatures::{Array, ExportedSignature, array_list};
 use super::tokens::number_length;
@@ -120,7 +120,7 @@ fn body_without_calls(f: &Function, i: &ExportedMechanism<'_>) -> Option<String>
         Shape::Forward(_) | Shape::Linear(..) | Shape::Accelerated(_) => true,
         shape => shape.is_assembled_from_calls(),
     };
-    if is_composed || Called::ALL.iter().any(|called| is_calling(f, *called)) {
+    if is_composed || Called::ALL.iter().any(|called| f.reads_results_of(*called)) {
         return None;
     }
     let scope =

@@ -15,6 +15,8 @@ mod force;
 mod geometry;
 mod hull;
 mod pair;
+mod polytope_shapes;
+mod polytopes;
 mod read;
 mod slipping;
 mod soft;

@@ -12,7 +12,7 @@ use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
 use crate::language::{Method, OtherKind};
-use crate::mechanism::{Contact, Model, Quantity};
+use crate::mechanism::{Contact, Model, PolytopePair, Quantity};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::power::{is_power_used, power_of};
 use crate::resolve::scope::{ContactLoads, ElementPower, Scope, Terms};
@@ -23,9 +23,10 @@ const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ell
                                hulls and cylinders with two ends on a plane; points and spheres also on a \
                                sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a \
                                funnel; capsules on each other; cuboids on each other; spheres and \
-                               capsules on cuboids; spheres, capsules and cuboids on cylinders; spheres on \
-                               hulls whose points are numbers; points, spheres, capsules, cuboids and \
-                               hulls on a terrain";
+                               capsules on cuboids; spheres, capsules and cuboids on cylinders; spheres, \
+                               capsules, cuboids, cylinders without ends and hulls on hulls, if the points \
+                               of hulls and the lengths of capsules and cuboids are numbers; points, \
+                               spheres, capsules, cuboids and hulls on a terrain";
 
 /// Help text for unsupported contacts of cylinders.
 const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, can approximate a cylinder";
@@ -37,6 +38,8 @@ pub struct ContactParts<'g> {
     pub contacts: Vec<Contact<'g>>,
     /// Positions of the rigid contact points, by the names of their contacts.
     pub points: Vec<(String, Terms<'g>)>,
+    /// Pairs of polytopes whose features determine contact points.
+    pub polytopes: Vec<PolytopePair<'g>>,
     /// Forces of a compliant contact.
     pub forces: Forces<'g>,
     /// Forces and moments of the second surface on the first.
@@ -68,9 +71,15 @@ pub fn resolve_contact<'g>(
         Some(soft) => Some(soft?),
         None => None,
     };
-    let points = separable_points(scope, model, contact, (&firsts, &seconds), cx)?;
+    let mut polytopes = Vec::new();
+    let points = separable_points(scope, model, contact, (&firsts, &seconds), &mut polytopes, cx)?;
+    if soft.is_some() && !polytopes.is_empty() {
+        cx.report_error(contact.second.place.clone(), "contacts of hulls with these surfaces are rigid")
+            .add_help("remove `stiffness` or `hertz`, or approximate a hull by surfaces such as spheres");
+        return None;
+    }
     let surfaces = [firsts, seconds].concat();
-    let mut parts = ContactParts { surfaces, ..ContactParts::default() };
+    let mut parts = ContactParts { surfaces, polytopes, ..ContactParts::default() };
     if points.is_empty() {
         return Some(parts);
     }
@@ -97,12 +106,14 @@ pub fn resolve_contact<'g>(
     Some(parts)
 }
 
-/// Returns the points where the surfaces of a contact may touch, without those whose distance is constant.
+/// Returns the points where the surfaces of a contact may touch, without those whose distance is constant,
+/// and adds the pairs of polytopes among the surfaces.
 fn separable_points<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     contact: &syntax::Contact,
     (firsts, seconds): (&[Surface<'g>], &[Surface<'g>]),
+    polytopes: &mut Vec<PolytopePair<'g>>,
     cx: &mut Diagnostics,
 ) -> Option<Vec<CandidatePoint<'g>>> {
     let place = contact.first.place.extend_to(&contact.second.place);
@@ -114,7 +125,8 @@ fn separable_points<'g>(
             if whole && first.frame.link == second.frame.link {
                 continue;
             }
-            points.extend(candidate_points(scope, model, first, second, (&contact.second, &place), cx)?);
+            let places = (&contact.second, &place);
+            points.extend(candidate_points(scope, model, [first, second], places, polytopes, cx)?);
         }
     }
     let count = points.len();
@@ -192,13 +204,14 @@ impl<'g> ContactParts<'g> {
     }
 }
 
-/// Returns the points where two surfaces may touch; `None` after an error.
+/// Returns the points where two surfaces may touch, and adds the surfaces to the pairs of polytopes if their
+/// features determine these points; `None` after an error.
 fn candidate_points<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
-    first: &Surface<'g>,
-    second: &Surface<'g>,
+    [first, second]: [&Surface<'g>; 2],
     (second_place, place): (&syntax::Expr, &Place),
+    polytopes: &mut Vec<PolytopePair<'g>>,
     cx: &mut Diagnostics,
 ) -> Option<Vec<CandidatePoint<'g>>> {
     let first_link = first.frame.link;
@@ -217,7 +230,18 @@ fn candidate_points<'g>(
     };
     pair.center.rate = Vec3([x, y, z]);
     let is_listed = pair.a.form.has_contact_with(&pair.b.form);
-    let candidate_contacts = if is_listed { pair.candidate_contacts() } else { Vec::new() };
+    let candidate_contacts = match &pair.b.form {
+        _ if !is_listed => Vec::new(),
+        SurfaceForm::Hull(_) if !matches!(pair.a.form, SurfaceForm::Sphere(_)) => {
+            let known = polytopes.iter().map(PolytopePair::feature_count).sum::<usize>();
+            let found = pair.polytope_contacts(model.polytope_feature_count() + known);
+            found.map_or_else(Vec::new, |(polytope_pair, contacts)| {
+                polytopes.push(polytope_pair);
+                contacts
+            })
+        }
+        _ => pair.candidate_contacts(),
+    };
     if candidate_contacts.is_empty() {
         let is_cylinder =
             |surface: &Surface<'g>| matches!(surface.form, SurfaceForm::Cylinder(..) | SurfaceForm::Drum(..));

@@ -125,6 +125,7 @@ impl Values {
             Quantity::Reaction(_)
             | Quantity::PassiveForce(_)
             | Quantity::PassiveDerivative(_)
+            | Quantity::ContactFeature(_)
             | Quantity::Deviation(_)
             | Quantity::Laplace
             | Quantity::Stretch

@@ -1,0 +1,246 @@
+//! Contact points of convex polytopes: hulls on hulls, boxes, capsules and unbounded cylinders.
+//!
+//! The runtime selects the features that determine the contact: a face of one polytope with the points of the
+//! other within its sides, or two edges, or the closest points. They are inputs of the expressions for gaps,
+//! normals and contact points, which treat them as constants. The axis of a capsule is a line segment; an
+//! unbounded cylinder is a capsule longer than the hull.
+//!
+//! A point of a face is a vertex of the opposite face, or the intersection of a line of one polytope with a
+//! plane of the other: an edge with a side of the face, or the normal at a vertex of the face with the
+//! opposite face. Contact points are midway between both surfaces. The smallest gap is the distance of the
+//! surfaces, or the negative depth of their penetration. Unused contact points have gaps above any distance
+//! of the surfaces.
+
+use super::geometry::{PointContact, nearest, tangents_of};
+use super::pair::SurfacePair;
+use super::polytope_shapes::{box_polytope, hull_polytope, segment_polytope};
+use super::surface::SurfaceForm;
+use crate::expr::{Expr, Extreme, Vec3};
+use crate::mechanism::{PAIR_FEATURES, POINT_FEATURES, Polytope, PolytopePair, Quantity};
+
+/// Maximum number of contact points of a face.
+const MAX_FACE_POINTS: usize = 12;
+
+/// Generic direction that decides between equal faces. Boxes placed on purpose rarely have equal components
+/// along it.
+const TIE_BREAK: [f64; 3] = [0.2113, 0.3779, 0.9014];
+
+/// Squared sine of the angle below which edges are treated as parallel.
+const PARALLEL: f64 = 1e-12;
+
+/// Squared length below which a distance does not determine a direction, m².
+const LEAST_SQUARE: f64 = 1e-30;
+
+/// Axes and origin of a body in common axes, relative to the centre of the first surface.
+#[derive(Clone, Copy)]
+struct PolytopeFrame<'g> {
+    axes: [Vec3<'g>; 3],
+    origin: Vec3<'g>,
+}
+
+impl<'g> PolytopeFrame<'g> {
+    fn direction(&self, v: Vec3<'g>) -> Vec3<'g> {
+        self.axes[0] * v[0] + self.axes[1] * v[1] + self.axes[2] * v[2]
+    }
+
+    fn position(&self, v: Vec3<'g>) -> Vec3<'g> {
+        self.origin + self.direction(v)
+    }
+
+    /// Returns `first` if `which` is one, `second` if it is zero.
+    fn select(which: Expr<'g>, first: &Self, second: &Self) -> Self {
+        let select_vector = |a: Vec3<'g>, b: Vec3<'g>| b + (a - b) * which;
+        PolytopeFrame {
+            axes: std::array::from_fn(|k| select_vector(first.axes[k], second.axes[k])),
+            origin: select_vector(first.origin, second.origin),
+        }
+    }
+}
+
+/// Selected features of a pair as expressions.
+struct PairFeatures<'g> {
+    values: Vec<Expr<'g>>,
+}
+
+impl<'g> PairFeatures<'g> {
+    fn vector(&self, first: usize) -> Vec3<'g> {
+        Vec3(std::array::from_fn(|k| self.values[first + k]))
+    }
+}
+
+/// Polytope of a surface, with the radius of a capsule.
+struct RoundedPolytope<'g> {
+    polytope: Polytope,
+    radius: Expr<'g>,
+}
+
+/// Placement of a pair, with its selected features.
+struct PlacedPair<'g> {
+    features: PairFeatures<'g>,
+    first: PolytopeFrame<'g>,
+    second: PolytopeFrame<'g>,
+    /// Radii of both surfaces, zero for hulls and boxes.
+    radii: [Expr<'g>; 2],
+    /// Gap of unused contact points, above any distance of the surfaces.
+    unused: Expr<'g>,
+}
+
+impl<'g> SurfacePair<'_, 'g> {
+    /// Returns a pair with a hull as polytopes, and its contact points; `None` if the shape of a surface
+    /// depends on parameters. `first_feature` is the index of the first feature of the pair.
+    pub(super) fn polytope_contacts(
+        &self,
+        first_feature: usize,
+    ) -> Option<(PolytopePair<'g>, Vec<PointContact<'g>>)> {
+        let g = self.graph();
+        let axes_of = |rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| {
+            std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k)))
+        };
+        let own_axes: [Vec3<'g>; 3] = axes_of(&|v| self.first_direction(v).value);
+        let other_axes: [Vec3<'g>; 3] = axes_of(&|v| self.second_direction(v).value);
+        let second = self.rounded_polytope(&self.b.form, 0.0)?;
+        let first = self.rounded_polytope(&self.a.form, second.polytope.reach())?;
+        let c = self.center.value - self.base.value;
+        // Only the part of an unbounded cylinder next to the hull touches it.
+        let shift = match &self.a.form {
+            SurfaceForm::Cylinder(_, axis) => {
+                let axis = self.first_direction(*axis).value;
+                axis * -axis.dot(c)
+            }
+            _ => Vec3::zero(g),
+        };
+        let own = PolytopeFrame { axes: own_axes, origin: shift };
+        let other = PolytopeFrame { axes: other_axes, origin: -c };
+        let points = first.polytope.most_corners() + second.polytope.most_corners();
+        let points = match first.polytope.faces.is_empty() {
+            true => 2,
+            false => points.min(MAX_FACE_POINTS),
+        };
+        let pose = relative_pose((&own, &first.polytope), (&other, &second.polytope));
+        let reach = g.num(first.polytope.reach() + second.polytope.reach());
+        let pair = PolytopePair { first: first.polytope, second: second.polytope, points, pose };
+        let features = (0..pair.feature_count()).map(|k| Quantity::ContactFeature(first_feature + k).expr(g));
+        let placed = PlacedPair {
+            features: PairFeatures { values: features.collect() },
+            first: own,
+            second: other,
+            radii: [first.radius, second.radius],
+            unused: (c + shift).norm() + reach,
+        };
+        let contacts = placed.contacts(points);
+        Some((pair, contacts))
+    }
+
+    /// Returns the polytope of a surface; `None` if its shape depends on parameters. An unbounded cylinder
+    /// extends beyond `reach` on both sides.
+    fn rounded_polytope(&self, form: &SurfaceForm<'g>, reach: f64) -> Option<RoundedPolytope<'g>> {
+        let zero = self.graph().zero();
+        let (polytope, radius) = match form {
+            SurfaceForm::Hull(hull) => (hull_polytope(hull.shape.as_ref()?)?, zero),
+            SurfaceForm::Cuboid(lengths) => {
+                let [a, b, c] = lengths.map(|length| length.constant_value());
+                (box_polytope([a?, b?, c?])?, zero)
+            }
+            SurfaceForm::Capsule(radius, length, axis) => {
+                (segment_polytope(axis.constant_components()?, length.constant_value()?), *radius)
+            }
+            SurfaceForm::Cylinder(radius, axis) => {
+                (segment_polytope(axis.constant_components()?, 4.0 * reach), *radius)
+            }
+            _ => return None,
+        };
+        Some(RoundedPolytope { polytope, radius })
+    }
+}
+
+/// Returns the pose of a pair, as in [`PolytopePair::pose`].
+fn relative_pose<'g>(
+    (own, first): (&PolytopeFrame<'g>, &Polytope),
+    (other, second): (&PolytopeFrame<'g>, &Polytope),
+) -> [Expr<'g>; 13] {
+    let g = own.origin[0].graph();
+    let offset = other.origin - own.origin;
+    let centers = [(own, first), (other, second)]
+        .map(|(frame, shape)| frame.position(Vec3::from_numbers(g, shape.center())));
+    let height = (centers[1] - centers[0]).dot(Vec3::from_numbers(g, TIE_BREAK));
+    let rotation = other.axes.iter().flat_map(|axis| own.axes.map(|own| own.dot(*axis)));
+    let position = own.axes.map(|axis| axis.dot(offset));
+    let values: Vec<Expr<'g>> = rotation.chain(position).chain([height]).collect();
+    std::array::from_fn(|k| values[k])
+}
+
+impl<'g> PlacedPair<'g> {
+    /// Returns the contacts of the points on a face, followed by the contact of edges and closest points.
+    fn contacts(&self, points: usize) -> Vec<PointContact<'g>> {
+        let (is_second, zero) = (self.features.values[0], self.unused.zero());
+        let own = PolytopeFrame::select(is_second, &self.second, &self.first);
+        let other = PolytopeFrame::select(is_second, &self.first, &self.second);
+        let outward = own.direction(self.features.vector(2));
+        // Normals point towards the first surface.
+        let normal = outward * (is_second * 2.0 - zero.num(1.0));
+        let (first, second) = tangents_of(normal);
+        let axes = [("normal", normal), ("first", first), ("second", second)];
+        let mut contacts: Vec<PointContact<'g>> = (0..points)
+            .map(|k| {
+                let values = &self.features.values[PAIR_FEATURES + POINT_FEATURES * k..];
+                let place = point_of_face(values, &own, &other);
+                let height = outward.dot(place - own.origin) - self.features.values[5];
+                let [own_radius, other_radius] = self.radii;
+                let gap = height - own_radius - other_radius;
+                let gap = gap.minimum_or_maximum(Extreme::Max, self.features.values[1]);
+                PointContact {
+                    gap: self.unused + (gap - self.unused) * values[0],
+                    point: place - outward * (height * 0.5) + normal * ((other_radius - own_radius) * 0.5),
+                    axes,
+                    conditions: Vec::new(),
+                }
+            })
+            .collect();
+        contacts.push(self.edge_contact(normal));
+        contacts
+    }
+
+    /// Returns the contact of two edges that cross, or of the closest points. If a face determines the
+    /// contact, `face_normal` is the normal.
+    fn edge_contact(&self, face_normal: Vec3<'g>) -> PointContact<'g> {
+        let (values, one) = (&self.features.values, self.unused.num(1.0));
+        let (side, is_closest) = (values[6], values[7]);
+        let is_crossing = side.square();
+        let (start, own) =
+            (self.first.position(self.features.vector(8)), self.first.direction(self.features.vector(11)));
+        let (end, along) =
+            (self.second.position(self.features.vector(15)), self.second.direction(self.features.vector(18)));
+        let (near, far) = nearest(start - end, (own, values[14]), (along, values[21]));
+        let (start, end) = (start + own * near, end + along * far);
+        let (separation, across) = (start - end, own.cross(along));
+        let limited_norm =
+            |v: Vec3<'g>, least: f64| v.dot(v).minimum_or_maximum(Extreme::Max, one * least).sqrt();
+        let distance = limited_norm(separation, LEAST_SQUARE);
+        let crossing = across * (side / limited_norm(across, PARALLEL));
+        let normal =
+            crossing + separation * (is_closest / distance) + face_normal * (one - is_crossing - is_closest);
+        let [own_radius, other_radius] = self.radii;
+        let depth = crossing.dot(separation) + distance * is_closest - own_radius - other_radius;
+        let (first, second) = tangents_of(normal);
+        PointContact {
+            gap: self.unused + (depth - self.unused) * (is_crossing + is_closest),
+            point: (start + end) * (one * 0.5) + normal * ((other_radius - own_radius) * 0.5),
+            axes: [("normal", normal), ("first", first), ("second", second)],
+            conditions: Vec::new(),
+        }
+    }
+}
+
+/// Returns the position of a point on a face from its features: `own` is the frame of the polytope with the
+/// face, `other` that of the other polytope.
+fn point_of_face<'g>(values: &[Expr<'g>], own: &PolytopeFrame<'g>, other: &PolytopeFrame<'g>) -> Vec3<'g> {
+    let vector = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
+    let (is_cut, is_own) = (values[1], values[2]);
+    let line = PolytopeFrame::select(is_own, own, other);
+    let plane = PolytopeFrame::select(is_own, other, own);
+    let (start, along) = (line.position(vector(3)), line.direction(vector(6)));
+    let normal = plane.direction(vector(9));
+    let height = normal.dot(start - plane.origin) - values[12];
+    let slope = normal.dot(along) + (is_cut.num(1.0) - is_cut);
+    start - along * (height * is_cut / slope)
+}

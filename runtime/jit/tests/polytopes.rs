@@ -1,0 +1,53 @@
+//! Checks that contacts of hulls of loaded mechanisms equal those of generated Rust code.
+
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::*;
+use linkwork_jit::{Error, Loader, Method};
+
+macro_rules! both {
+    ($name:ident, $($tokens:tt)*) => {
+        $($tokens)*
+
+        /// Source text of the declaration above, from which the mechanism is loaded.
+        const $name: &str = stringify!($($tokens)*);
+    };
+}
+
+both! {
+    STONES,
+    #[mechanism(gravity = -9.81 * z)]
+    struct Stones {
+        #[body(mass = 1, inertia = sphere(1, 0.1))]
+        stone: Body,
+        #[joint(ground -> stone)]
+        pose: Free,
+        #[contact(
+            stone.hull([
+                [0.11, 0.02, -0.03], [-0.07, 0.09, 0.01], [-0.08, -0.06, -0.05], [0.03, -0.1, 0.02],
+                [0.01, 0.03, 0.12], [0.02, 0.07, -0.09], [0.06, -0.03, 0.08]
+            ]),
+            ground.cuboid(0.4, 0.3, 0.2),
+            friction = 0.5
+        )]
+        rock: Contact,
+    }
+}
+
+#[test]
+fn contacts_of_hulls_agree_with_generated_rust() -> Result<(), Error> {
+    let robot = Loader::text(STONES).load()?;
+    let q = SVector::from([0.05, -0.02, 0.3, 0.1, -0.3, 0.2, 0.927_361_849_549_570_4]);
+    let mut gaps = vec![0.0; Stones::CONTACTS.len()];
+    robot.evaluate_into(&robot.function("contact_gaps")?, &[q.as_slice()], &mut gaps)?;
+    let wanted = Stones {}.contact_gaps(&q);
+    assert!(gaps.iter().zip(wanted.iter()).all(|(a, b)| (a - b).abs() < 1e-14), "{gaps:?} {wanted}");
+    let v = [0.1, 0.0, 0.0, 0.0, 0.5, 0.0];
+    let own = simulate(&Stones {}).from(q, v).method(TimeStepping::step(1e-3)).duration(0.3);
+    let own = own.finish().expect("it moves");
+    let run = robot.simulate().from(q.as_slice(), &v).duration(0.3).method(Method::TimeStepping(1e-3));
+    let found = run.finish()?;
+    assert!(found.q.iter().zip(own.q.iter()).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {own:?}");
+    // It has fallen on the box.
+    assert!((own.q - q).amax() > 0.02 && own.v.norm() < 1.5, "{own:?}");
+    Ok(())
+}
