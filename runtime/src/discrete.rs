@@ -333,7 +333,50 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     /// constraints, the second with constraints.
     const IN_MOMENTA: [bool; 2];
 
-    /// Returns a step of a mechanism with constraints and its Jacobians; called by [`transition`].
+    /// Returns the length of a step of the method, s.
+    fn step_length(&self) -> T;
+
+    /// Computes a step of a mechanism without constraints and its Jacobians in place; called by
+    /// [`transition_into`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`].
+    fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+        into: &mut Transition<T, NQ, NV, NU>,
+    ) -> Result<(), Error>
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>;
+
+    /// Returns the step of [`differentiate_into`](Self::differentiate_into).
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`].
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let mut step = Transition::zeros();
+        self.differentiate_into(mechanism, t, q, v, u, &mut step)?;
+        Ok(step)
+    }
+
+    /// Returns a step of a mechanism with constraints and its Jacobians; called by [`transition`]. The
+    /// default is a step without constraints whose end is projected onto them.
     ///
     /// # Errors
     ///
@@ -354,43 +397,13 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
         u: &SVector<T, NU>,
     ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
-        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
-
-    /// Returns a step of a mechanism without constraints and its Jacobians; called by [`transition`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`].
-    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
-        &self,
-        mechanism: &M,
-        t: T,
-        q: &SVector<T, NQ>,
-        v: &SVector<T, NV>,
-        u: &SVector<T, NU>,
-    ) -> Result<Transition<T, NQ, NV, NU>, Error>
-    where
-        M: Derivatives<NQ, NV, NU, Scalar = T>;
-
-    /// Computes [`differentiate_step`](Self::differentiate_step) in place; called by [`transition_into`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`].
-    fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
-        &self,
-        mechanism: &M,
-        t: T,
-        q: &SVector<T, NQ>,
-        v: &SVector<T, NV>,
-        u: &SVector<T, NU>,
-        into: &mut Transition<T, NQ, NV, NU>,
-    ) -> Result<(), Error>
-    where
-        M: Derivatives<NQ, NV, NU, Scalar = T>,
+        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        *into = self.differentiate_step(mechanism, t, q, v, u)?;
-        Ok(())
+        projected::project_step(
+            mechanism,
+            t + self.step_length(),
+            self.differentiate_step(mechanism, t, q, v, u)?,
+        )
     }
 }
 

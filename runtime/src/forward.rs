@@ -6,7 +6,8 @@
 
 /// Passes groups of rows `name(argument: kind, …) -> result` to a macro that defines a function for each row.
 /// `space` has no argument of time, `dynamics` has; constraints and feedback change `accelerations`;
-/// `methods` are those of `Hooks`, after which the scalar type is named. `tangent` and `derivatives` belong
+/// `methods` are those of `Hooks`, after which the scalar type is named (`contact_methods` excludes functions
+/// that depend on how constraints are enforced). `tangent` and `derivatives` belong
 /// to `Derivatives`, without and with an argument of time (`given_derivatives` excludes derivatives of
 /// accelerations). `second` belongs to `SecondDerivatives`, as `second_tangent` does, which has no time. A
 /// kind is the length of a vector, `scalar`, `state`, or `square` for a matrix that receives a result.
@@ -79,8 +80,13 @@ macro_rules! each_function {
         $crate::forward::write! { [$scalar] $($how)+;
             project(q: NQ, v: NV) -> Result<$crate::constraint::Projected<$scalar, NQ, NV>, $crate::ConstraintError>;
             impulse(q: NQ, v: NV, h: scalar, p: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
-            is_nearly_singular(q: NQ, dv: NV) -> bool;
             acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<$scalar, NV, NU>>;
+        }
+        $crate::forward::each_function!(contact_methods, [$scalar] $($how)+);
+    };
+    (contact_methods, [$scalar:ty] $($how:tt)+) => {
+        $crate::forward::write! { [$scalar] $($how)+;
+            is_nearly_singular(q: NQ, dv: NV) -> bool;
             carry(q: NQ, dv: NV, v: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
             carry_rate(dv: NV, v: NV) -> $crate::nalgebra::SVector<$scalar, NV>;
             translation(dv: NV) -> $crate::nalgebra::SVector<$scalar, NV>;

@@ -51,12 +51,7 @@ pub enum PutBackError {
     NotFinite,
 }
 
-/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
-impl fmt::Debug for PutBackError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
+crate::debug_as_display!(PutBackError);
 
 impl fmt::Display for PutBackError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

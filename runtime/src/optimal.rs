@@ -135,12 +135,7 @@ pub struct Indefinite {
     pub input: usize,
 }
 
-/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
-impl core::fmt::Debug for Indefinite {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        core::fmt::Display::fmt(self, f)
-    }
-}
+crate::debug_as_display!(Indefinite);
 
 impl core::fmt::Display for Indefinite {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {

@@ -71,12 +71,7 @@ pub enum Fault {
     Inertia,
 }
 
-/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
-impl fmt::Debug for ParameterError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
+crate::debug_as_display!(ParameterError);
 
 impl fmt::Display for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

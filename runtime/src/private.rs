@@ -56,6 +56,20 @@ pub fn put_rows<T: Real, const ROWS: usize, const R: usize, const C: usize>(
     }
 }
 
+/// Implements `Debug` of an error type by the text of `Display`, because `main` prints a returned error with
+/// `Debug`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! debug_as_display {
+    ($error:ty) => {
+        impl ::core::fmt::Debug for $error {
+            fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+                ::core::fmt::Display::fmt(self, f)
+            }
+        }
+    };
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -104,12 +104,7 @@ impl TableError {
     }
 }
 
-/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
-impl fmt::Debug for TableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
+crate::debug_as_display!(TableError);
 
 impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -90,12 +90,7 @@ pub enum ConstraintError {
     NotFinite,
 }
 
-/// Prints the text of `Display`, because `main` prints the `Debug` form of a returned error.
-impl fmt::Debug for ConstraintError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
+crate::debug_as_display!(ConstraintError);
 
 impl fmt::Display for ConstraintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -2,7 +2,6 @@
 
 use super::differentiable::{column_or_zeros, matrix_of_columns, multipliers_of_forces};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
-use crate::contact::{Assumed, Touched};
 use crate::derivatives::{ByMotion, Derivatives, under_inputs};
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};
@@ -225,15 +224,6 @@ where
         self.mechanism.impulse(t, q, v, constant(0.0), p)
     }
 
-    fn is_nearly_singular(
-        &self,
-        t: M::Scalar,
-        q: &SVector<M::Scalar, NQ>,
-        dv: &SVector<M::Scalar, NV>,
-    ) -> bool {
-        self.mechanism.is_nearly_singular(t, q, dv)
-    }
-
     fn acceleration_derivatives(
         &self,
         t: M::Scalar,
@@ -244,48 +234,7 @@ where
         self.mechanism.stabilized_derivatives(t, (q, v), u, self.rate)
     }
 
-    fn carry(
-        &self,
-        t: M::Scalar,
-        q: &SVector<M::Scalar, NQ>,
-        dv: &SVector<M::Scalar, NV>,
-        v: &SVector<M::Scalar, NV>,
-    ) -> SVector<M::Scalar, NV> {
-        self.mechanism.carry(t, q, dv, v)
-    }
-
-    fn carry_rate(
-        &self,
-        t: M::Scalar,
-        dv: &SVector<M::Scalar, NV>,
-        v: &SVector<M::Scalar, NV>,
-    ) -> SVector<M::Scalar, NV> {
-        self.mechanism.carry_rate(t, dv, v)
-    }
-
-    fn translation(&self, t: M::Scalar, dv: &SVector<M::Scalar, NV>) -> SVector<M::Scalar, NV> {
-        self.mechanism.translation(t, dv)
-    }
-
-    fn contact_start(
-        &self,
-        t: M::Scalar,
-        q: &SVector<M::Scalar, NQ>,
-        parts: bool,
-    ) -> Result<SVector<M::Scalar, NQ>, ConstraintError> {
-        self.mechanism.contact_start(t, q, parts)
-    }
-
-    fn contact_step(
-        &self,
-        t: M::Scalar,
-        start: (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
-        end: (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
-        given: Assumed<'_, M::Scalar, NV>,
-        h: M::Scalar,
-    ) -> Result<Touched<M::Scalar, NQ, NV>, ConstraintError> {
-        self.mechanism.contact_step(t, start, end, given, h)
-    }
+    each_function!(contact_methods, [M::Scalar] pass Hooks, self => self.mechanism);
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where

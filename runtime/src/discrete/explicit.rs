@@ -1,6 +1,6 @@
 //! Jacobians of explicit integration steps, computed by propagating derivatives forwards through the stages.
 
-use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
+use super::{Chained, DifferentiableStep, Transition, implicit, plain};
 use crate::Real;
 use crate::blocks::{add_multiple, add_product, multiple_into, product, scale, sum_into, zeros};
 use crate::constraint::ConstrainedDerivatives;
@@ -74,6 +74,21 @@ impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU>
         }
         sum
     }
+}
+
+/// Returns the displacement and the change of the velocity in a Runge–Kutta step of `h` seconds: weighted
+/// means of the rates at its four stages, formed by the given sum and multiple.
+pub(super) fn runge_kutta_change<T: Real, V>(
+    h: T,
+    [k1, k2, k3, k4]: [&(V, V); 4],
+    plus_scaled: impl Fn(&V, T, &V) -> V,
+    scaled: impl Fn(&V, T) -> V,
+) -> (V, V) {
+    let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
+    let change_by_rates = |a: &V, b: &V, c: &V, d: &V| {
+        scaled(&plus_scaled(&plus_scaled(&plus_scaled(a, two, b), two, c), T::one(), d), sixth)
+    };
+    (change_by_rates(&k1.0, &k2.0, &k3.0, &k4.0), change_by_rates(&k1.1, &k2.1, &k3.1, &k4.1))
 }
 
 /// Start of a step: mechanism, time, configuration and inputs.
@@ -218,20 +233,8 @@ fn complete_step_by_chain_rule<M, T, const NQ: usize, const NV: usize, const NU:
 impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     const IN_MOMENTA: [bool; 2] = [false, true];
 
-    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
-        &self,
-        mechanism: &M,
-        t: T,
-        q: &SVector<T, NQ>,
-        v: &SVector<T, NV>,
-        u: &SVector<T, NU>,
-    ) -> Result<Transition<T, NQ, NV, NU>, Error>
-    where
-        M: Derivatives<NQ, NV, NU, Scalar = T>,
-    {
-        let mut step = Transition::zeros();
-        self.differentiate_into(mechanism, t, q, v, u, &mut step)?;
-        Ok(step)
+    fn step_length(&self) -> T {
+        self.nominal_step_length()
     }
 
     fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -282,20 +285,26 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
 impl<T: Real> DifferentiableStep<T> for Rk4<T> {
     const IN_MOMENTA: [bool; 2] = [false; 2];
 
-    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn step_length(&self) -> T {
+        self.nominal_step_length()
+    }
+
+    fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
         t: T,
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
         u: &SVector<T, NU>,
-    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+        into: &mut Transition<T, NQ, NV, NU>,
+    ) -> Result<(), Error>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let (h, start) = (self.nominal_step_length(), DifferentiatedStart { mechanism, t, q, u });
         if mechanism.features().is_plain() {
-            return Ok(plain::runge_kutta_transition(&start, v, h));
+            *into = plain::runge_kutta_transition(&start, v, h);
+            return Ok(());
         }
         let v = VectorWithDerivatives::start_velocity(v);
         let stage_derivatives = |h: T,
@@ -319,43 +328,13 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         let k2 = stage_derivatives(half, &k1);
         let k3 = stage_derivatives(half, &k2);
         let k4 = stage_derivatives(h, &k3);
-        let two = constant::<T>(2.0);
-        let sixth = h / constant(6.0);
-        let displacement =
-            k1.0.plus_scaled(two, &k2.0)
-                .plus_scaled(two, &k3.0)
-                .plus_scaled(T::one(), &k4.0)
-                .scaled_derivatives(sixth);
-        let change =
-            k1.1.plus_scaled(two, &k2.1)
-                .plus_scaled(two, &k3.1)
-                .plus_scaled(T::one(), &k4.1)
-                .scaled_derivatives(sixth);
-        Ok(start.end_of_step(&displacement, &v.plus_scaled(T::one(), &change)))
-    }
-
-    fn differentiate_held<
-        M,
-        const NQ: usize,
-        const NV: usize,
-        const NU: usize,
-        const NH: usize,
-        const NC: usize,
-    >(
-        &self,
-        mechanism: &M,
-        t: T,
-        q: &SVector<T, NQ>,
-        v: &SVector<T, NV>,
-        u: &SVector<T, NU>,
-    ) -> Result<Transition<T, NQ, NV, NU>, Error>
-    where
-        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
-    {
-        projected::project_step(
-            mechanism,
-            t + self.nominal_step_length(),
-            self.differentiate_step(mechanism, t, q, v, u)?,
-        )
+        let (displacement, change) = runge_kutta_change(
+            h,
+            [&k1, &k2, &k3, &k4],
+            VectorWithDerivatives::plus_scaled,
+            VectorWithDerivatives::scaled_derivatives,
+        );
+        *into = start.end_of_step(&displacement, &v.plus_scaled(T::one(), &change));
+        Ok(())
     }
 }

@@ -310,18 +310,24 @@ where
 impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
     const IN_MOMENTA: [bool; 2] = [true; 2];
 
-    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn step_length(&self) -> T {
+        self.nominal_step_length()
+    }
+
+    fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         m: &M,
         t: T,
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
         u: &SVector<T, NU>,
-    ) -> Result<Transition<T, NQ, NV, NU>, Error>
+        into: &mut Transition<T, NQ, NV, NU>,
+    ) -> Result<(), Error>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        Ok(self.prepare_step(m, t, q, v, u)?.transition_without_constraints())
+        *into = self.prepare_step(m, t, q, v, u)?.transition_without_constraints();
+        Ok(())
     }
 
     fn differentiate_held<

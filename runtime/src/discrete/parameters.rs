@@ -1,6 +1,7 @@
 //! Derivatives of steps with respect to the parameters of a mechanism.
 
 use super::FixedStep;
+use super::explicit::runge_kutta_change;
 use crate::blocks::{add_product, product};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::{constant, to_f64};
@@ -224,17 +225,12 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
         let k2 = stage_derivatives(half, &k1);
         let k3 = stage_derivatives(half, &k2);
         let k4 = stage_derivatives(h, &k3);
-        let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
-        let displacement =
-            k1.0.plus_scaled(two, &k2.0)
-                .plus_scaled(two, &k3.0)
-                .plus_scaled(T::one(), &k4.0)
-                .scaled_derivatives(sixth);
-        let change =
-            k1.1.plus_scaled(two, &k2.1)
-                .plus_scaled(two, &k3.1)
-                .plus_scaled(T::one(), &k4.1)
-                .scaled_derivatives(sixth);
+        let (displacement, change) = runge_kutta_change(
+            h,
+            [&k1, &k2, &k3, &k4],
+            ParameterSensitive::plus_scaled,
+            ParameterSensitive::scaled_derivatives,
+        );
         (configuration_derivatives(m, q, &displacement), change.by)
     }
 }

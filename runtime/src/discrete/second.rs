@@ -136,9 +136,6 @@ pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
     /// and projects its end onto the constraints.
     const UNDER_CONSTRAINTS: bool;
 
-    /// Returns the length of a step of the method, s.
-    fn step_length(&self) -> T;
-
     /// Returns the second derivatives of a step before its projection onto constraints.
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
@@ -155,10 +152,6 @@ pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
 
 impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
     const UNDER_CONSTRAINTS: bool = false;
-
-    fn step_length(&self) -> T {
-        self.nominal_step_length()
-    }
 
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
@@ -210,10 +203,6 @@ struct DifferentiatedStage<T, const NQ: usize, const NV: usize, const NU: usize>
 
 impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
     const UNDER_CONSTRAINTS: bool = true;
-
-    fn step_length(&self) -> T {
-        self.nominal_step_length()
-    }
 
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,

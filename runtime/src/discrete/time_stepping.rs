@@ -1,11 +1,11 @@
 //! Derivatives of steps of [`TimeStepping`]: the motion without contact impulses at the end, and
 //! displacements and transported velocities. Derivatives of the impulses are in `contact`.
 
-use super::explicit::{DifferentiatedStart, VectorWithDerivatives};
-use super::{DifferentiableStep, Transition, projected};
+use super::explicit::{DifferentiatedStart, VectorWithDerivatives, runge_kutta_change};
+use super::{DifferentiableStep, Transition};
 use crate::Real;
 use crate::blocks::{NearlyIdentity, add_product, add_product_of_some, is_zero, scale};
-use crate::constraint::{ConstrainedDerivatives, ConstraintError};
+use crate::constraint::ConstraintError;
 use crate::contact::{Contacts, Visitor};
 use crate::derivatives::Derivatives;
 use crate::integrate::{Error, TimeStepping};
@@ -368,17 +368,12 @@ where
     let (k2, _) = stage_state(half, &k1);
     let (k3, _) = stage_state(half, &k2);
     let (k4, at_end) = stage_state(h, &k3);
-    let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
-    let way =
-        k1.0.plus_scaled(two, &k2.0)
-            .plus_scaled(two, &k3.0)
-            .plus_scaled(T::one(), &k4.0)
-            .scaled_derivatives(sixth);
-    let change =
-        k1.1.plus_scaled(two, &k2.1)
-            .plus_scaled(two, &k3.1)
-            .plus_scaled(T::one(), &k4.1)
-            .scaled_derivatives(sixth);
+    let (way, change) = runge_kutta_change(
+        h,
+        [&k1, &k2, &k3, &k4],
+        VectorWithDerivatives::plus_scaled,
+        VectorWithDerivatives::scaled_derivatives,
+    );
     SmoothMotion {
         q: start.displace_configuration(&way),
         v: v.plus_scaled(T::one(), &change),
@@ -415,20 +410,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, 
 impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
     const IN_MOMENTA: [bool; 2] = [false; 2];
 
-    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
-        &self,
-        mechanism: &M,
-        t: T,
-        q: &SVector<T, NQ>,
-        v: &SVector<T, NV>,
-        u: &SVector<T, NU>,
-    ) -> Result<Transition<T, NQ, NV, NU>, Error>
-    where
-        M: Derivatives<NQ, NV, NU, Scalar = T>,
-    {
-        let mut step = Transition::zeros();
-        self.differentiate_into(mechanism, t, q, v, u, &mut step)?;
-        Ok(step)
+    fn step_length(&self) -> T {
+        self.nominal_step_length()
     }
 
     fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -453,30 +436,5 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
         let motion = smooth_motion(self, &start, &v, &before, None);
         *into = Transition::from_sensitive(&motion.q, &motion.v);
         Ok(())
-    }
-
-    fn differentiate_held<
-        M,
-        const NQ: usize,
-        const NV: usize,
-        const NU: usize,
-        const NH: usize,
-        const NC: usize,
-    >(
-        &self,
-        mechanism: &M,
-        t: T,
-        q: &SVector<T, NQ>,
-        v: &SVector<T, NV>,
-        u: &SVector<T, NU>,
-    ) -> Result<Transition<T, NQ, NV, NU>, Error>
-    where
-        M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
-    {
-        projected::project_step(
-            mechanism,
-            t + self.nominal_step_length(),
-            self.differentiate_step(mechanism, t, q, v, u)?,
-        )
     }
 }

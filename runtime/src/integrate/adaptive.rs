@@ -184,8 +184,43 @@ impl<T: Real> AdaptiveSettings<T> {
     }
 }
 
-/// Builder functions and defaults of an adaptive method, common to all of them.
+/// Builder functions and defaults of an adaptive method, common to all of them. For an explicit method, also
+/// the implementation of `Method`, with its step control and a function that computes a trial step.
 macro_rules! adaptive {
+    ($name:ident, $control:ident, $trial_step:expr) => {
+        $crate::integrate::adaptive::adaptive!($name);
+
+        impl<T: Real> Method<T> for $name<T> {
+            type Memory<const NV: usize> = AdaptiveMemory<T, NV>;
+
+            const FIXED: bool = false;
+
+            fn check(&self) -> Result<(), Error> {
+                self.settings.check()
+            }
+
+            fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
+                AdaptiveMemory::new(self.settings.first)
+            }
+
+            fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
+                memory.acceleration = None;
+            }
+
+            fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+                &self,
+                memory: &mut Self::Memory<NV>,
+                system: &mut D,
+                start: &State<T, NQ, NV>,
+                until: Option<T>,
+                dense: bool,
+            ) -> Result<Step<T, NQ, NV>, Error> {
+                self.settings.advance(&$control, memory, system, start, until, |system, attempt| {
+                    Ok($trial_step(system, attempt, dense))
+                })
+            }
+        }
+    };
     ($name:ident) => {
         impl<T: Real> $name<T> {
             /// Returns the method with relative and absolute tolerance 1e-9 (or 64 machine epsilons of a less

@@ -32,35 +32,4 @@ pub struct DormandPrince<T> {
     settings: AdaptiveSettings<T>,
 }
 
-adaptive!(DormandPrince);
-
-impl<T: Real> Method<T> for DormandPrince<T> {
-    type Memory<const NV: usize> = AdaptiveMemory<T, NV>;
-
-    const FIXED: bool = false;
-
-    fn check(&self) -> Result<(), Error> {
-        self.settings.check()
-    }
-
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        AdaptiveMemory::new(self.settings.first)
-    }
-
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
-        memory.acceleration = None;
-    }
-
-    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
-        &self,
-        memory: &mut Self::Memory<NV>,
-        system: &mut D,
-        start: &State<T, NQ, NV>,
-        until: Option<T>,
-        _dense: bool,
-    ) -> Result<Step<T, NQ, NV>, Error> {
-        self.settings.advance(&CONTROL, memory, system, start, until, |system, attempt| {
-            Ok(step_stages(system, attempt))
-        })
-    }
-}
+adaptive!(DormandPrince, CONTROL, |system, attempt, _| step_stages(system, attempt));

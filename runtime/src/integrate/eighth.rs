@@ -38,38 +38,7 @@ pub struct DormandPrince8<T> {
     settings: AdaptiveSettings<T>,
 }
 
-adaptive!(DormandPrince8);
-
-impl<T: Real> Method<T> for DormandPrince8<T> {
-    type Memory<const NV: usize> = AdaptiveMemory<T, NV>;
-
-    const FIXED: bool = false;
-
-    fn check(&self) -> Result<(), Error> {
-        self.settings.check()
-    }
-
-    fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        AdaptiveMemory::new(self.settings.first)
-    }
-
-    fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
-        memory.acceleration = None;
-    }
-
-    fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
-        &self,
-        memory: &mut Self::Memory<NV>,
-        system: &mut D,
-        start: &State<T, NQ, NV>,
-        until: Option<T>,
-        dense: bool,
-    ) -> Result<Step<T, NQ, NV>, Error> {
-        self.settings.advance(&CONTROL, memory, system, start, until, |system, attempt| {
-            Ok(trial_step(system, attempt, dense))
-        })
-    }
-}
+adaptive!(DormandPrince8, CONTROL, trial_step);
 
 /// Returns a step, with its interpolating polynomial if `dense`.
 pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(

@@ -200,48 +200,37 @@ mod tests {
 
     const SIZES: [f64; 9] = [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.57, 0.6, 1.0, 1.7];
 
-    #[test]
-    fn ball_second_derivatives_match_differences() {
+    /// Columns of the derivatives of `tangent_rate(dv, v)` with respect to `dv` and `v`.
+    type FirstDerivatives<const N: usize> =
+        fn([f64; N], [f64; N]) -> (SquareBlock<f64, N>, SquareBlock<f64, N>);
+
+    /// Second derivatives of `λᵀ tangent_rate(dv, v)`.
+    type SecondDerivatives<const N: usize> =
+        fn([f64; N], [f64; N], [f64; N]) -> (SquareBlock<f64, N>, SquareBlock<f64, N>);
+
+    fn check_second_derivatives<const N: usize>(first: FirstDerivatives<N>, second: SecondDerivatives<N>) {
         for (seed, size) in SIZES.into_iter().enumerate() {
-            let (dv, v, lambda): ([f64; 3], _, _) = (
+            let (dv, v, lambda) = (
                 pseudorandom_numbers(seed, size),
                 pseudorandom_numbers(seed + 50, 1.0),
                 pseudorandom_numbers(seed + 90, 1.0),
             );
-            let (twice, mixed) = ball_tangent_rate_second_derivatives(dv, v, lambda);
-            assert_blocks_agree(
-                twice,
-                difference_columns(lambda, |e| ball_tangent_rate_derivatives(sum_of_vectors(dv, e), v).0),
-                "twice",
-            );
-            assert_blocks_agree(
-                mixed,
-                difference_columns(lambda, |e| ball_tangent_rate_derivatives(dv, sum_of_vectors(v, e)).0),
-                "mixed",
-            );
+            let (twice, mixed) = second(dv, v, lambda);
+            let by_dv = difference_columns(lambda, |e| first(sum_of_vectors(dv, e), v).0);
+            assert_blocks_agree(twice, by_dv, "twice");
+            let by_v = difference_columns(lambda, |e| first(dv, sum_of_vectors(v, e)).0);
+            assert_blocks_agree(mixed, by_v, "mixed");
         }
     }
 
     #[test]
+    fn ball_second_derivatives_match_differences() {
+        check_second_derivatives(ball_tangent_rate_derivatives, ball_tangent_rate_second_derivatives);
+    }
+
+    #[test]
     fn free_second_derivatives_match_differences() {
-        for (seed, size) in SIZES.into_iter().enumerate() {
-            let (dv, v, lambda): ([f64; 6], _, _) = (
-                pseudorandom_numbers(seed, size),
-                pseudorandom_numbers(seed + 50, 1.0),
-                pseudorandom_numbers(seed + 90, 1.0),
-            );
-            let (twice, mixed) = free_tangent_rate_second_derivatives(dv, v, lambda);
-            assert_blocks_agree(
-                twice,
-                difference_columns(lambda, |e| free_tangent_rate_derivatives(sum_of_vectors(dv, e), v).0),
-                "twice",
-            );
-            assert_blocks_agree(
-                mixed,
-                difference_columns(lambda, |e| free_tangent_rate_derivatives(dv, sum_of_vectors(v, e)).0),
-                "mixed",
-            );
-        }
+        check_second_derivatives(free_tangent_rate_derivatives, free_tangent_rate_second_derivatives);
     }
 
     /// Checks that series and closed form agree at the angle at which the code switches between them.

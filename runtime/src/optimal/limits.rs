@@ -28,12 +28,7 @@ pub struct EmptyRange {
     pub input: usize,
 }
 
-/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
-impl core::fmt::Debug for EmptyRange {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        core::fmt::Display::fmt(self, f)
-    }
-}
+crate::debug_as_display!(EmptyRange);
 
 impl core::fmt::Display for EmptyRange {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {

@@ -17,12 +17,7 @@ pub enum Singular {
     FullTurn,
 }
 
-/// Prints the text of `Display`, because `main` prints a returned error with `Debug`.
-impl fmt::Debug for Singular {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
+crate::debug_as_display!(Singular);
 
 impl fmt::Display for Singular {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
