@@ -4,7 +4,7 @@
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
 use linkwork::{Derivatives, Lanes, mechanism};
-use support::compare::assert_similar;
+use support::compare::assert_close_relative_to_largest;
 use support::random::Random;
 
 /// Tolerance between derivatives and central differences of eighth order.
@@ -14,7 +14,7 @@ const DIFFERENCE: f64 = 1e-10;
 /// attack. A table gives the lift coefficient.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 #[derive(Debug)]
-struct Unsteady<T: Real> {
+struct AircraftWithUnsteadyLift<T: Real> {
     mass: T,
     area: T,
     chord: T,
@@ -55,9 +55,9 @@ struct Unsteady<T: Real> {
 static ANGLES: [f64; 5] = [-1.6, -0.5, 0.1, 0.6, 1.7];
 static LIFTS: [f64; 5] = [-0.3, -0.9, 0.6, 1.4, 0.2];
 
-fn unsteady_aircraft() -> Unsteady<f64> {
+fn unsteady_aircraft() -> AircraftWithUnsteadyLift<f64> {
     let lift = Table::new([&ANGLES], &LIFTS).unwrap().smooth();
-    Unsteady {
+    AircraftWithUnsteadyLift {
         mass: 900.0,
         area: 12.0,
         chord: 1.4,
@@ -73,7 +73,7 @@ fn unsteady_aircraft() -> Unsteady<f64> {
 /// position, velocity and time.
 #[mechanism(gravity = -9.81 * y, derivatives, batch, prepare, sensitivities)]
 #[derive(Clone, Copy, Debug)]
-struct Coupled {
+struct CoupledArmAndSlider {
     gain: f64,
     share: f64,
     reach: f64,
@@ -101,7 +101,7 @@ struct Coupled {
     carried: Force,
 }
 
-const COUPLED: Coupled = Coupled { gain: 0.2, share: 0.5, reach: 1.3, added: 0.7 };
+const COUPLED: CoupledArmAndSlider = CoupledArmAndSlider { gain: 0.2, share: 0.5, reach: 1.3, added: 0.7 };
 
 /// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
 fn derivative_at_zero<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
@@ -111,7 +111,7 @@ fn derivative_at_zero<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>
 }
 
 /// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
-fn derivatives_at_zero<const N: usize, const K: usize>(
+fn difference_derivatives_at_zero<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
@@ -147,7 +147,7 @@ fn flight_cases() -> Vec<Case<7, 7, 2>> {
     (0..6).map(random_case).collect()
 }
 
-fn coupled_cases() -> Vec<Case<3, 3, 1>> {
+fn random_cases_of_coupled_arm() -> Vec<Case<3, 3, 1>> {
     let mut random = Random::new(8);
     let random_case = |_| Case {
         t: random.uniform_number(2.0),
@@ -165,32 +165,47 @@ fn forward_dynamics_inverts_inverse_dynamics() {
     let whole = craft.extended();
     for Case { t, q, v, a, .. } in flight_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
-        assert_similar("v̇", whole.forward_dynamics(t, &q, &v, &tau).as_slice(), a.as_slice(), 1e-11);
+        assert_close_relative_to_largest(
+            "v̇",
+            whole.forward_dynamics(t, &q, &v, &tau).as_slice(),
+            a.as_slice(),
+            1e-11,
+        );
     }
-    for Case { t, q, v, a, .. } in coupled_cases() {
+    for Case { t, q, v, a, .. } in random_cases_of_coupled_arm() {
         let tau = COUPLED.inverse_dynamics(t, &q, &v, &a);
-        assert_similar("v̇", COUPLED.forward_dynamics(t, &q, &v, &tau).as_slice(), a.as_slice(), 1e-11);
+        assert_close_relative_to_largest(
+            "v̇",
+            COUPLED.forward_dynamics(t, &q, &v, &tau).as_slice(),
+            a.as_slice(),
+            1e-11,
+        );
     }
 }
 
 #[test]
 fn effective_mass_matrix_is_not_symmetric() {
-    for Case { t, q, v, .. } in coupled_cases() {
+    for Case { t, q, v, .. } in random_cases_of_coupled_arm() {
         let at_rest = COUPLED.inverse_dynamics(t, &q, &v, &SVector::zeros());
-        assert_similar("h", at_rest.as_slice(), COUPLED.bias_forces(t, &q, &v).as_slice(), 1e-14);
-        let acceleration_column = |k: usize| {
+        assert_close_relative_to_largest(
+            "h",
+            at_rest.as_slice(),
+            COUPLED.bias_forces(t, &q, &v).as_slice(),
+            1e-14,
+        );
+        let mass_matrix_column = |k: usize| {
             let mut a = SVector::zeros();
             a[k] = 1.0;
             COUPLED.inverse_dynamics(t, &q, &v, &a) - at_rest
         };
         let matrix = SMatrix::<f64, 3, 3>::from_columns(&[
-            acceleration_column(0),
-            acceleration_column(1),
-            acceleration_column(2),
+            mass_matrix_column(0),
+            mass_matrix_column(1),
+            mass_matrix_column(2),
         ]);
         // The expected matrix is derived by hand from the definition: the water at the tip is a particle
         // there.
-        let Coupled { gain, share, reach, added } = COUPLED;
+        let CoupledArmAndSlider { gain, share, reach, added } = COUPLED;
         let c = q[1].cos();
         let mut expected = COUPLED.mass_matrix(t, &q);
         expected[(0, 0)] += added * (1.0 + 0.64 + 1.6 * c);
@@ -201,7 +216,7 @@ fn effective_mass_matrix_is_not_symmetric() {
         let share = share / (1.0 + v[1] * v[1]);
         expected[(2, 1)] -= share * reach * q[0].sin();
         expected[(2, 2)] += added - share * t.cos();
-        assert_similar("M − C", matrix.as_slice(), expected.as_slice(), 1e-13);
+        assert_close_relative_to_largest("M − C", matrix.as_slice(), expected.as_slice(), 1e-13);
         assert!((matrix[(2, 1)] - matrix[(1, 2)]).abs() > 1e-3);
     }
 }
@@ -217,75 +232,85 @@ fn derivatives_agree_with_finite_differences() {
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
         let accelerations_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
         let displaced_configuration = |by| whole.integrate(&q, &by);
+        let found = difference_derivatives_at_zero(still, |by| {
+            accelerations_of_whole(&displaced_configuration(by), &v, &tau)
+        });
+        assert_close_relative_to_largest("∂v̇/∂q", by_q.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
+        assert_close_relative_to_largest("∂v̇/∂v", by_v.as_slice(), &found, DIFFERENCE);
         let found =
-            derivatives_at_zero(still, |by| accelerations_of_whole(&displaced_configuration(by), &v, &tau));
-        assert_similar("∂v̇/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = derivatives_at_zero(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
-        assert_similar("∂v̇/∂v", by_v.as_slice(), &found, DIFFERENCE);
-        let found = derivatives_at_zero([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
-        assert_similar("∂v̇/∂τ", by_force.as_slice(), &found, 1e-9);
+            difference_derivatives_at_zero([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
+        assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), &found, 1e-9);
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
-        let found =
-            derivatives_at_zero(still, |by| whole.inverse_dynamics(t, &displaced_configuration(by), &v, &a));
-        assert_similar("∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = derivatives_at_zero(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
-        assert_similar("∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero(still, |by| {
+            whole.inverse_dynamics(t, &displaced_configuration(by), &v, &a)
+        });
+        assert_close_relative_to_largest("∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
+        assert_close_relative_to_largest("∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
     }
 }
 
 #[test]
 fn linearisation_agrees_with_finite_differences() {
-    for Case { t, q, v, u, .. } in coupled_cases() {
+    for Case { t, q, v, u, .. } in random_cases_of_coupled_arm() {
         let now = at(&COUPLED, t);
         let motion = Derivatives::linear_motion(&now, &q, &v, &u);
         let coupled_accelerations = |q: &SVector<f64, 3>, v: &SVector<f64, 3>, u: &SVector<f64, 1>| {
             COUPLED.forward_dynamics(t, q, v, &COUPLED.generalized_forces(t, q, u))
         };
-        assert_similar(
+        assert_close_relative_to_largest(
             "v̇",
             motion.acceleration.as_slice(),
             coupled_accelerations(&q, &v, &u).as_slice(),
             1e-13,
         );
-        let found = derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&(q + by), &v, &u));
-        assert_similar("∂v̇/∂q", motion.by_q.as_slice(), &found, DIFFERENCE);
-        let found = derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&q, &(v + by), &u));
-        assert_similar("∂v̇/∂v", motion.by_v.as_slice(), &found, DIFFERENCE);
-        let found = derivatives_at_zero([1e-2; 1], |by| coupled_accelerations(&q, &v, &(u + by)));
-        assert_similar("∂v̇/∂u", motion.by_u.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&(q + by), &v, &u));
+        assert_close_relative_to_largest("∂v̇/∂q", motion.by_q.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&q, &(v + by), &u));
+        assert_close_relative_to_largest("∂v̇/∂v", motion.by_v.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero([1e-2; 1], |by| coupled_accelerations(&q, &v, &(u + by)));
+        assert_close_relative_to_largest("∂v̇/∂u", motion.by_u.as_slice(), &found, DIFFERENCE);
     }
 }
 
 #[test]
 fn parameter_derivatives_agree_with_finite_differences() {
-    for Case { t, q, v, a, .. } in coupled_cases() {
+    for Case { t, q, v, a, .. } in random_cases_of_coupled_arm() {
         let perturbed_mechanism = |by: SVector<f64, 4>| {
-            let Coupled { gain, share, reach, added } = COUPLED;
-            Coupled { gain: gain + by[0], share: share + by[1], reach: reach + by[2], added: added + by[3] }
+            let CoupledArmAndSlider { gain, share, reach, added } = COUPLED;
+            CoupledArmAndSlider {
+                gain: gain + by[0],
+                share: share + by[1],
+                reach: reach + by[2],
+                added: added + by[3],
+            }
         };
         let by = COUPLED.inverse_dynamics_by_parameters(t, &q, &v, &a);
-        let found =
-            derivatives_at_zero([1e-2; 4], |s| perturbed_mechanism(s).inverse_dynamics(t, &q, &v, &a));
-        assert_similar("∂τ/∂p", by.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero([1e-2; 4], |s| {
+            perturbed_mechanism(s).inverse_dynamics(t, &q, &v, &a)
+        });
+        assert_close_relative_to_largest("∂τ/∂p", by.as_slice(), &found, DIFFERENCE);
         let tau = a;
         let by = COUPLED.forward_dynamics_by_parameters(t, &q, &v, &tau);
-        let found =
-            derivatives_at_zero([1e-2; 4], |s| perturbed_mechanism(s).forward_dynamics(t, &q, &v, &tau));
-        assert_similar("∂v̇/∂p", by.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero([1e-2; 4], |s| {
+            perturbed_mechanism(s).forward_dynamics(t, &q, &v, &tau)
+        });
+        assert_close_relative_to_largest("∂v̇/∂p", by.as_slice(), &found, DIFFERENCE);
     }
 }
 
 #[test]
 fn prepared_and_batched_functions_have_acceleration_forces() {
     let prepared = COUPLED.prepare();
-    for Case { t, q, v, a, .. } in coupled_cases() {
+    for Case { t, q, v, a, .. } in random_cases_of_coupled_arm() {
         let tau = COUPLED.inverse_dynamics(t, &q, &v, &a);
         let again = prepared.inverse_dynamics(t, &q, &v, &a);
-        assert_similar("τ", again.as_slice(), tau.as_slice(), 1e-13);
+        assert_close_relative_to_largest("τ", again.as_slice(), tau.as_slice(), 1e-13);
         let back = prepared.forward_dynamics(t, &q, &v, &tau);
-        assert_similar("v̇", back.as_slice(), a.as_slice(), 1e-11);
+        assert_close_relative_to_largest("v̇", back.as_slice(), a.as_slice(), 1e-11);
     }
-    let all = coupled_cases();
+    let all = random_cases_of_coupled_arm();
     let lanes_of_cases = |f: fn(&Case<3, 3, 1>) -> SVector<f64, 3>| {
         SVector::<Lanes<f64, 4>, 3>::from_fn(|i, _| Lanes::from_fn(|k| f(&all[k])[i]))
     };
@@ -299,7 +324,7 @@ fn prepared_and_batched_functions_have_acceleration_forces() {
     for (k, Case { t, q, v, a, .. }) in all.iter().take(4).enumerate() {
         let one = COUPLED.forward_dynamics(*t, q, v, a);
         let lane: Vec<f64> = found.iter().map(|entry| entry[k]).collect();
-        assert_similar("v̇ in lanes", &lane, one.as_slice(), 1e-12);
+        assert_close_relative_to_largest("v̇ in lanes", &lane, one.as_slice(), 1e-12);
     }
 }
 
@@ -354,7 +379,7 @@ fn hull_in_ideal_fluid_obeys_kirchhoffs_equations() {
         expected.fixed_rows_mut::<3>(3).copy_from(&torque);
         let expected = expected.component_div(&total);
         let found = hull.forward_dynamics(&q, &v, &SVector::zeros());
-        assert_similar("v̇", found.as_slice(), expected.as_slice(), 1e-13);
+        assert_close_relative_to_largest("v̇", found.as_slice(), expected.as_slice(), 1e-13);
     }
 }
 
@@ -393,8 +418,8 @@ fn integrators_treat_acceleration_forces_like_an_inerter() {
         ($method:expr, $tolerance:expr) => {
             let a = simulate(&other).from(q, v).method($method).duration(1.0).finish().unwrap();
             let b = simulate(&own).from(q, v).method($method).duration(1.0).finish().unwrap();
-            assert_similar("q", b.q.as_slice(), a.q.as_slice(), $tolerance);
-            assert_similar("v", b.v.as_slice(), a.v.as_slice(), $tolerance);
+            assert_close_relative_to_largest("q", b.q.as_slice(), a.q.as_slice(), $tolerance);
+            assert_close_relative_to_largest("v", b.v.as_slice(), a.v.as_slice(), $tolerance);
         };
     }
     compare!(Rk4::step(1e-3), 1e-12);
@@ -407,6 +432,6 @@ fn integrators_treat_acceleration_forces_like_an_inerter() {
     compare!(ImplicitMidpoint::step(1e-4), 1e-6);
     let (q, v) = (q.into(), v.into());
     let (a, b) = (other.linear_motion(&q, &v, &[].into()), own.linear_motion(&q, &v, &[].into()));
-    assert_similar("∂v̇/∂q", b.by_q.as_slice(), a.by_q.as_slice(), 1e-13);
-    assert_similar("∂v̇/∂v", b.by_v.as_slice(), a.by_v.as_slice(), 1e-12);
+    assert_close_relative_to_largest("∂v̇/∂q", b.by_q.as_slice(), a.by_q.as_slice(), 1e-13);
+    assert_close_relative_to_largest("∂v̇/∂v", b.by_v.as_slice(), a.by_v.as_slice(), 1e-12);
 }

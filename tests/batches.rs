@@ -129,7 +129,7 @@ fn is_nan<T: Real>(x: T) -> bool {
     x.partial_cmp(&x).is_none()
 }
 
-fn assert_lanes<T: Real, const R: usize, const C: usize, const L: usize>(
+fn assert_lanes_equal_states<T: Real, const R: usize, const C: usize, const L: usize>(
     what: &str,
     wide: &SMatrix<Lanes<T, L>, R, C>,
     one: impl Fn(usize) -> SMatrix<T, R, C>,
@@ -211,9 +211,13 @@ fn check_all_functions<M, const NQ: usize, const NV: usize, const NU: usize, con
         let single_state = |k: usize| (t.each[k][0], &q.each[k], &v.each[k]);
         let (t0, q0, v0) = (t.wide[0], &q.wide, &v.wide);
         let start = q.each[0].map(Lanes::splat);
-        assert_lanes("integrate", &wide.integrate(q0, &dv.wide), |k| m.integrate(&q.each[k], &dv.each[k]));
-        assert_lanes("difference", &wide.difference(&start, q0), |k| m.difference(&q.each[0], &q.each[k]));
-        assert_lanes("tangent_rate", &wide.tangent_rate(&dv.wide, v0), |k| {
+        assert_lanes_equal_states("integrate", &wide.integrate(q0, &dv.wide), |k| {
+            m.integrate(&q.each[k], &dv.each[k])
+        });
+        assert_lanes_equal_states("difference", &wide.difference(&start, q0), |k| {
+            m.difference(&q.each[0], &q.each[k])
+        });
+        assert_lanes_equal_states("tangent_rate", &wide.tangent_rate(&dv.wide, v0), |k| {
             m.tangent_rate(&dv.each[k], &v.each[k])
         });
         assert_near("mass_matrix", columns, &wide.mass_matrix(t0, q0), |k| {
@@ -228,23 +232,27 @@ fn check_all_functions<M, const NQ: usize, const NV: usize, const NU: usize, con
         assert_near("forward_dynamics", limbs, &wide.forward_dynamics(t0, q0, v0, &a.wide), |k| {
             m.forward_dynamics(single_state(k).0, single_state(k).1, single_state(k).2, &a.each[k])
         });
-        assert_lanes("generalized_forces", &wide.generalized_forces(t0, q0, v0, &u.wide), |k| {
+        assert_lanes_equal_states("generalized_forces", &wide.generalized_forces(t0, q0, v0, &u.wide), |k| {
             m.generalized_forces(single_state(k).0, single_state(k).1, single_state(k).2, &u.each[k])
         });
-        assert_lanes("kinetic_energy", &scalar_as_matrix(wide.kinetic_energy(t0, q0, v0)), |k| {
-            scalar_as_matrix(m.kinetic_energy(single_state(k).0, single_state(k).1, single_state(k).2))
-        });
-        assert_lanes("potential_energy", &scalar_as_matrix(wide.potential_energy(t0, q0)), |k| {
-            scalar_as_matrix(m.potential_energy(single_state(k).0, single_state(k).1))
-        });
-        assert_lanes("generalized_momentum", &wide.generalized_momentum(t0, q0, v0), |k| {
+        assert_lanes_equal_states(
+            "kinetic_energy",
+            &scalar_as_matrix(wide.kinetic_energy(t0, q0, v0)),
+            |k| scalar_as_matrix(m.kinetic_energy(single_state(k).0, single_state(k).1, single_state(k).2)),
+        );
+        assert_lanes_equal_states(
+            "potential_energy",
+            &scalar_as_matrix(wide.potential_energy(t0, q0)),
+            |k| scalar_as_matrix(m.potential_energy(single_state(k).0, single_state(k).1)),
+        );
+        assert_lanes_equal_states("generalized_momentum", &wide.generalized_momentum(t0, q0, v0), |k| {
             m.generalized_momentum(single_state(k).0, single_state(k).1, single_state(k).2)
         });
-        assert_lanes("momentum_rate", &wide.momentum_rate(t0, q0, v0), |k| {
+        assert_lanes_equal_states("momentum_rate", &wide.momentum_rate(t0, q0, v0), |k| {
             m.momentum_rate(single_state(k).0, single_state(k).1, single_state(k).2)
         });
     }
-    assert_lanes(type_name::<M>(), &wide.neutral(), |_| m.neutral());
+    assert_lanes_equal_states(type_name::<M>(), &wide.neutral(), |_| m.neutral());
 }
 
 /// Tolerances of zero: lanes and single states must have equal bits.
@@ -299,9 +307,11 @@ fn batched_loops_equal_single_states() {
     // One lane has dependent constraints, the other lanes have independent ones.
     let q: States<f64, 3, 4> = States::new([0.3, 0.0, -0.5, 1.1].map(|a| SVector::from([a, -a, a])));
     let [v, tau]: [States<f64, 3, 4>; 2] = [(); 2].map(|()| States::random_states(&mut Random::new(31), 1.0));
-    assert_lanes("forward_dynamics", &linkage.forward_dynamics_lanes(&q.wide, &v.wide, &tau.wide), |k| {
-        linkage.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k])
-    });
+    assert_lanes_equal_states(
+        "forward_dynamics",
+        &linkage.forward_dynamics_lanes(&q.wide, &v.wide, &tau.wide),
+        |k| linkage.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k]),
+    );
 }
 
 #[test]
@@ -325,15 +335,15 @@ fn batched_optional_functions_equal_single_states() {
     assert_near("∂τ/∂v", 1e-12, &by_v, |k| derivatives_of_state(k).1);
     let (state, input) = Panda.linearize_lanes(&q.wide, &v.wide, &u.wide);
     let linear_model_of_state = |k: usize| Panda.linearize(&q.each[k], &v.each[k], &u.each[k]);
-    assert_lanes("A", &state, |k| linear_model_of_state(k).0);
-    assert_lanes("B", &input, |k| linear_model_of_state(k).1);
-    assert_lanes("M⁻¹", &Panda.mass_matrix_inverse_lanes(&q.wide), |k| {
+    assert_lanes_equal_states("A", &state, |k| linear_model_of_state(k).0);
+    assert_lanes_equal_states("B", &input, |k| linear_model_of_state(k).1);
+    assert_lanes_equal_states("M⁻¹", &Panda.mass_matrix_inverse_lanes(&q.wide), |k| {
         Panda.mass_matrix_inverse(&q.each[k])
     });
-    assert_lanes("momentum matrix", &Panda.centroidal_momentum_matrix_lanes(&q.wide), |k| {
+    assert_lanes_equal_states("momentum matrix", &Panda.centroidal_momentum_matrix_lanes(&q.wide), |k| {
         Panda.centroidal_momentum_matrix(&q.each[k])
     });
-    assert_lanes("centre of mass", &Panda.center_of_mass_lanes(&q.wide), |k| {
+    assert_lanes_equal_states("centre of mass", &Panda.center_of_mass_lanes(&q.wide), |k| {
         Panda.center_of_mass(&q.each[k])
     });
 }
@@ -348,12 +358,14 @@ fn batched_functions_of_large_mechanisms_call_each_other() {
     let (by_q, _, inverse) = m.forward_dynamics_derivatives_lanes(&q.wide, &v.wide, &tau.wide);
     let derivatives_of_state =
         |k: usize| m.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
-    assert_lanes("∂v̇/∂q", &by_q, |k| derivatives_of_state(k).0);
-    assert_lanes("M⁻¹", &inverse, |k| derivatives_of_state(k).2);
+    assert_lanes_equal_states("∂v̇/∂q", &by_q, |k| derivatives_of_state(k).0);
+    assert_lanes_equal_states("M⁻¹", &inverse, |k| derivatives_of_state(k).2);
     let (state, _) = m.linearize_lanes(&q.wide, &v.wide, &u.wide);
-    assert_lanes("A", &state, |k| m.linearize(&q.each[k], &v.each[k], &u.each[k]).0);
-    assert_lanes("offset", &m.offset_lanes(&q.wide), |k| m.offset(&q.each[k]));
-    assert_lanes("Jacobian", &m.offset_jacobian_lanes(&q.wide), |k| m.offset_jacobian(&q.each[k]));
+    assert_lanes_equal_states("A", &state, |k| m.linearize(&q.each[k], &v.each[k], &u.each[k]).0);
+    assert_lanes_equal_states("offset", &m.offset_lanes(&q.wide), |k| m.offset(&q.each[k]));
+    assert_lanes_equal_states("Jacobian", &m.offset_jacobian_lanes(&q.wide), |k| {
+        m.offset_jacobian(&q.each[k])
+    });
 }
 
 #[test]

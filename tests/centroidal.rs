@@ -3,7 +3,7 @@
 
 use linkwork::nalgebra::{SMatrix, SVector, Vector6};
 use linkwork::{Mechanism, mechanism};
-use support::compare::assert_similar;
+use support::compare::assert_close_relative_to_largest;
 use support::random::Random;
 
 /// Tolerance between two derivations of the same quantity.
@@ -25,7 +25,7 @@ struct Panda;
 
 /// Mechanism with joints of all kinds, and a bead on a wire that is fixed to a body.
 #[mechanism(gravity = [0.3, -9.7, 0.4], centroidal)]
-struct Workshop {
+struct MechanismOfAllJoints {
     mass: f64,
     length: f64,
     #[body(mass = 2 * mass, com = length * x, inertia = cuboid(2 * mass, 0.2, 0.3, 0.4))]
@@ -56,14 +56,14 @@ macro_rules! check {
             let v = random.random_vector(1.5);
             let matrix = robot.centroidal_momentum_matrix(&q);
             let momentum = robot.momentum(&q, &v);
-            assert_similar("momentum", (matrix * v).as_slice(), momentum.as_slice(), EXACT);
+            assert_close_relative_to_largest("momentum", (matrix * v).as_slice(), momentum.as_slice(), EXACT);
             let h = 1e-4;
-            let momentum_after = |s: f64| robot.momentum(&robot.integrate(&q, &(v * s)), &v);
-            let rate = ((momentum_after(h) - momentum_after(-h)) * 8.0
-                - (momentum_after(2.0 * h) - momentum_after(-2.0 * h)))
+            let momentum_after_displacement = |s: f64| robot.momentum(&robot.integrate(&q, &(v * s)), &v);
+            let rate = ((momentum_after_displacement(h) - momentum_after_displacement(-h)) * 8.0
+                - (momentum_after_displacement(2.0 * h) - momentum_after_displacement(-2.0 * h)))
                 / (12.0 * h);
             let bias = robot.centroidal_momentum_bias(&q, &v);
-            assert_similar("bias", bias.as_slice(), rate.as_slice(), DIFFERENCE);
+            assert_close_relative_to_largest("bias", bias.as_slice(), rate.as_slice(), DIFFERENCE);
         }
     }};
 }
@@ -73,11 +73,11 @@ fn centroidal_momentum_of_robots_equals_body_momenta() {
     check!(Quadruped);
     check!(Humanoid);
     check!(Panda);
-    check!(Workshop { mass: 0.7, length: 0.4 });
+    check!(MechanismOfAllJoints { mass: 0.7, length: 0.4 });
 }
 
 /// Checks that the weight alone changes the momentum of a free-flying robot, for any motor torques.
-fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_momentum_change_by_weight<M, const NQ: usize, const NV: usize, const NU: usize>(
     robot: &M,
     mass: f64,
     matrix: impl Fn(&SVector<f64, NQ>) -> SMatrix<f64, 6, NV>,
@@ -92,7 +92,7 @@ fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
         let a = robot.forward_dynamics(0.0, &q, &v, &tau);
         let rate = matrix(&q) * a + bias(&q, &v);
         let weight = [0.0, 0.0, -9.81 * mass, 0.0, 0.0, 0.0];
-        assert_similar("rate of momentum", rate.as_slice(), &weight, 1e-9);
+        assert_close_relative_to_largest("rate of momentum", rate.as_slice(), &weight, 1e-9);
     }
 }
 
@@ -100,8 +100,18 @@ fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
 fn only_weight_changes_the_momentum_of_flying_robots() {
     let robot = Quadruped;
     let momentum_bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
-    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), momentum_bias);
+    check_momentum_change_by_weight(
+        &robot,
+        robot.total_mass(),
+        |q| robot.centroidal_momentum_matrix(q),
+        momentum_bias,
+    );
     let robot = Humanoid;
     let momentum_bias = |q: &_, v: &_| robot.centroidal_momentum_bias(q, v);
-    check_flight(&robot, robot.total_mass(), |q| robot.centroidal_momentum_matrix(q), momentum_bias);
+    check_momentum_change_by_weight(
+        &robot,
+        robot.total_mass(),
+        |q| robot.centroidal_momentum_matrix(q),
+        momentum_bias,
+    );
 }

@@ -2,7 +2,7 @@
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use support::compare::assert_similar;
+use support::compare::assert_close_relative_to_largest;
 use support::random::Random;
 
 /// Lagrange's top: a symmetric rigid body with one fixed point under gravity.
@@ -48,7 +48,7 @@ struct Carts {
 
 /// Cart on a rail with a pendulum, whose hinge has viscous friction, so that energy is not conserved.
 #[mechanism(gravity = -9.81 * y, conserved, hamilton)]
-struct Greased {
+struct CartWithFrictionalPendulum {
     #[body(mass = 1)]
     first: Body,
     #[body(mass = 0.3, com = -0.5 * y, inertia = rod(0.3, 1, y))]
@@ -74,7 +74,7 @@ struct Hoop {
 
 /// Pendulum whose pivot moves sinusoidally in time, so that energy is not conserved.
 #[mechanism(gravity = -9.81 * y, conserved, hamilton)]
-struct Swung {
+struct PendulumWithMovingPivot {
     theta: Coordinate,
     #[particle(mass = 0.2, at = (0.3 * sin(3 * t) + sin(theta)) * x - cos(theta) * y)]
     bob: Particle,
@@ -129,7 +129,7 @@ struct FourBar {
 
 /// Three links on a floating base that form a closed triangle with a slider.
 #[mechanism(conserved)]
-struct Afloat {
+struct FloatingTriangle {
     #[body(mass = 3, inertia = diagonal(1, 1, 1))]
     hull: Body,
     #[body(mass = 1, com = 0.1 * x, inertia = rod(1, 0.2, x))]
@@ -163,7 +163,7 @@ struct Disk {
 
 /// Ball that slides on a plane with friction.
 #[mechanism(gravity = -9.81 * z, conserved)]
-struct Sliding {
+struct BallSlidingOnPlane {
     #[body(mass = 1, inertia = sphere(1, 1))]
     ball: Body,
     #[joint(ground -> ball)]
@@ -184,15 +184,15 @@ fn conserved_quantities_are_listed() {
         ["energy".to_string()].into_iter().chain(six.clone()).chain(three.clone()).collect();
     assert_eq!(Stone::CONSERVED[..7], all);
     assert_eq!(Carts::CONSERVED, ["energy", "momentum of rail"]);
-    assert_eq!(Greased::CONSERVED, ["momentum of rail"]);
+    assert_eq!(CartWithFrictionalPendulum::CONSERVED, ["momentum of rail"]);
     assert_eq!(Hoop::CONSERVED, ["Jacobi's integral"]);
-    assert_eq!(Swung::CONSERVED, [""; 0]);
+    assert_eq!(PendulumWithMovingPivot::CONSERVED, [""; 0]);
     assert_eq!(Planets::CONSERVED[..7], all);
     assert_eq!(Charge::CONSERVED, ["momentum of flight.z"]);
     assert_eq!(FourBar::CONSERVED, ["energy"]);
-    assert_eq!(Afloat::CONSERVED, ["energy", "momentum of place.x", "momentum of place.y"]);
+    assert_eq!(FloatingTriangle::CONSERVED, ["energy", "momentum of place.x", "momentum of place.y"]);
     assert_eq!(Disk::CONSERVED[0], "energy");
-    assert_eq!(Sliding::CONSERVED, [""; 0]);
+    assert_eq!(BallSlidingOnPlane::CONSERVED, [""; 0]);
 }
 
 /// Checks that all conserved quantities of the mechanism are constant along a motion.
@@ -225,7 +225,7 @@ fn conserved_quantities_are_constant_along_motions() {
     stays!(Stone {}, random.random_configuration(&Stone {}), random.random_vector(2.0), |m, t, q, v| m
         .conserved(&q, &v));
     stays!(Carts { mass: 1.3 }, [0.1, 0.7, 0.9], [0.4, -1.0, 2.0], |m, t, q, v| m.conserved(&q, &v));
-    stays!(Greased {}, [0.1, 0.7], [0.4, 2.0], |m, t, q, v| m.conserved(&q, &v));
+    stays!(CartWithFrictionalPendulum {}, [0.1, 0.7], [0.4, 2.0], |m, t, q, v| m.conserved(&q, &v));
     stays!(Hoop { spin: 5.0 }, [0.4], [1.0], |m, t, q, v| m.conserved(t, &q, &v));
     let (q, v) = ([0.0, 0.0, 0.0, 1.0, 0.2, 0.1], [0.1, -0.3, 0.2, 0.2, 1.2, 0.5]);
     stays!(Planets { pull: 4.0 }, q, v, |m, t, q, v| m.conserved(&q, &v));
@@ -233,9 +233,10 @@ fn conserved_quantities_are_constant_along_motions() {
     let q = FourBar {}.assemble(&[1.0, -0.5, 1.5].into(), &[0]).unwrap();
     let v = FourBar {}.complete_velocity(&q, &[3.0, 0.0, 0.0].into(), &[0]).unwrap();
     stays!(FourBar {}, q, v, |m, t, q, v| m.conserved(&q, &v));
-    let q = Afloat {}.assemble(&[0.0, 0.0, 1.0, -1.3, 0.6].into(), &[2]).unwrap();
-    let v = Afloat {}.complete_velocity(&q, &[0.3, -0.2, 3.0, 0.0, 0.0].into(), &[0, 1, 2]).unwrap();
-    stays!(Afloat {}, q, v, |m, t, q, v| m.conserved(&q, &v));
+    let q = FloatingTriangle {}.assemble(&[0.0, 0.0, 1.0, -1.3, 0.6].into(), &[2]).unwrap();
+    let v =
+        FloatingTriangle {}.complete_velocity(&q, &[0.3, -0.2, 3.0, 0.0, 0.0].into(), &[0, 1, 2]).unwrap();
+    stays!(FloatingTriangle {}, q, v, |m, t, q, v| m.conserved(&q, &v));
     let q = Disk {}.assemble(&[0.0, 0.0, 0.2, 0.1, 0.0, 0.0, 0.995].into(), &[]).unwrap();
     let v = Disk {}.project_velocity(&q, &[1.0, 0.0, 0.0, 0.2, 5.0, 0.3].into()).unwrap();
     stays!(Disk {}, q, v, |m, t, q, v| m.conserved(&q, &v));
@@ -246,16 +247,20 @@ macro_rules! canonical {
     ($m:expr, $q:expr, $v:expr, $tau:expr, $energy:expr $(, $t:expr)?) => {{
         let (m, q, v, tau) = ($m, $q, $v, $tau);
         let p = m.generalized_momentum($($t,)? &q, &v);
-        assert_similar("velocity", m.canonical_velocity($($t,)? &q, &p).as_slice(), v.as_slice(), 1e-11);
+        assert_close_relative_to_largest(
+            "velocity", m.canonical_velocity($($t,)? &q, &p).as_slice(), v.as_slice(), 1e-11,
+        );
         let rate = m.momentum_rate($($t,)? &q, &v) + tau;
-        assert_similar("rate", m.canonical_momentum_rate($($t,)? &q, &p, &tau).as_slice(), rate.as_slice(), 1e-11);
+        assert_close_relative_to_largest(
+            "rate", m.canonical_momentum_rate($($t,)? &q, &p, &tau).as_slice(), rate.as_slice(), 1e-11,
+        );
         let h = m.hamiltonian($($t,)? &q, &p);
-        assert_similar("energy", &[h], &[$energy(&p)], 1e-11);
+        assert_close_relative_to_largest("energy", &[h], &[$energy(&p)], 1e-11);
         for k in 0..v.len() {
             let mut step = p * 0.0;
             step[k] = 1e-4;
             let slope = (m.hamiltonian($($t,)? &q, &(p + step)) - m.hamiltonian($($t,)? &q, &(p - step))) / 2e-4;
-            assert_similar("∂H/∂p", &[slope], &[v[k]], 1e-8);
+            assert_close_relative_to_largest("∂H/∂p", &[slope], &[v[k]], 1e-8);
         }
     }};
 }
@@ -278,7 +283,7 @@ fn hamiltons_equations_agree_with_the_dynamics() {
             (random.random_configuration(&carts), random.random_vector(2.0));
         canonical!(&carts, q, v, random.random_vector(3.0), |_| carts.kinetic_energy(&q, &v)
             + carts.potential_energy(&q));
-        let greased = Greased {};
+        let greased = CartWithFrictionalPendulum {};
         let (q, v): (SVector<f64, 2>, SVector<f64, 2>) =
             (random.random_configuration(&greased), random.random_vector(2.0));
         canonical!(&greased, q, v, random.random_vector(3.0), |_| greased.kinetic_energy(&q, &v)
@@ -289,7 +294,7 @@ fn hamiltons_equations_agree_with_the_dynamics() {
         let hamiltonian =
             |p: &SVector<f64, 1>| p.dot(&v) - hoop.kinetic_energy(t, &q, &v) + hoop.potential_energy(t, &q);
         canonical!(&hoop, q, v, random.random_vector(3.0), hamiltonian, t);
-        let swung = Swung {};
+        let swung = PendulumWithMovingPivot {};
         let hamiltonian =
             |p: &SVector<f64, 1>| p.dot(&v) - swung.kinetic_energy(t, &q, &v) + swung.potential_energy(t, &q);
         canonical!(&swung, q, v, random.random_vector(3.0), hamiltonian, t);
@@ -309,7 +314,7 @@ fn momentum_rate_is_negative_gradient_of_the_hamiltonian() {
             let mut step = SVector::<f64, 3>::zeros();
             step[k] = 1e-4;
             let slope = (carts.hamiltonian(&(q + step), &p) - carts.hamiltonian(&(q - step), &p)) / 2e-4;
-            assert_similar("−∂H/∂q", &[-slope], &[rate[k]], 1e-7);
+            assert_close_relative_to_largest("−∂H/∂q", &[-slope], &[rate[k]], 1e-7);
         }
     }
 }

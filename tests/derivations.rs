@@ -5,13 +5,13 @@
 mod random_speeds;
 mod random_tree;
 
-use linkwork_compiler::expr::diff::Derivative;
+use linkwork_compiler::expr::diff::DirectionalDerivative;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::sample::sample_of_symbol;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::kinematics::{self, Joint, random_configuration};
 use linkwork_compiler::mechanics::{aba, crba, energy, forces, lagrange, ldl, momentum, rnea};
-use linkwork_compiler::mechanism::{Direction, Input, LinkId, Model, Quantity};
+use linkwork_compiler::mechanism::{Input, LinkId, Model, Quantity, SumOfLinkVectors};
 use linkwork_compiler::{lower, mechanics};
 use proptest::prelude::*;
 use random_tree::random_trees;
@@ -35,7 +35,7 @@ fn apply_mass_and_bias<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>])
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
 
-fn flatten_matrix<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+fn flatten_matrix_by_rows<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     m.iter().flatten().copied().collect()
 }
 
@@ -46,7 +46,13 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     let mass = crba::mass_matrix(model, &joints);
     let bias = rnea::inverse_dynamics(model, &joints, &v, None);
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    assert_close("mass matrix", model, seed, &flatten_matrix(&mass), &flatten_matrix(&reference.mass_matrix));
+    assert_close(
+        "mass matrix",
+        model,
+        seed,
+        &flatten_matrix_by_rows(&mass),
+        &flatten_matrix_by_rows(&reference.mass_matrix),
+    );
     assert_close("bias", model, seed, &bias, &reference.bias);
     assert_close(
         "inverse dynamics",
@@ -78,7 +84,7 @@ fn check_momentum_rate<'g>(
     let rates = lagrange::configuration_rates(model);
     let mut expected: Vec<Expr<'g>> = h.iter().map(|h| -*h).collect();
     for (k, rate) in rates.iter().enumerate() {
-        let mut d = Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph);
+        let mut d = DirectionalDerivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph);
         for (sum, p) in expected.iter_mut().zip(p) {
             *sum += d.differentiate(*p) * *rate;
         }
@@ -126,7 +132,7 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
 /// Checks that the generalized forces are the derivatives of the inputs' power with respect to the
 /// velocities. The power of a force is its product with the velocity of its point, which is found here by
 /// differentiating the point's position in the ground frame.
-fn check_input_forces<'g>(model: &Model<'g>, seed: u64) {
+fn check_forces_against_input_power<'g>(model: &Model<'g>, seed: u64) {
     let g = model.graph;
     let joints = kinematics::joints_of_model(model);
     let world = frames_in_ground(&joints, g);
@@ -149,7 +155,9 @@ fn check_input_forces<'g>(model: &Model<'g>, seed: u64) {
         };
     }
     let expected: Vec<Expr<'g>> = (0..model.nv())
-        .map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g).differentiate(power))
+        .map(|k| {
+            DirectionalDerivative::with_respect_to(Quantity::Velocity(k).symbol(), g).differentiate(power)
+        })
         .collect();
     assert_close("inputs", model, seed, &forces::generalized_forces(model, &joints), &expected);
 }
@@ -163,14 +171,15 @@ fn frames_in_ground<'g>(joints: &[Joint<'g>], g: &'g Graph) -> Vec<(Mat3<'g>, Ve
     world
 }
 
-fn vector_in_ground<'g>(d: &Direction<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g Graph) -> Vec3<'g> {
+fn vector_in_ground<'g>(d: &SumOfLinkVectors<'g>, world: &[(Mat3<'g>, Vec3<'g>)], g: &'g Graph) -> Vec3<'g> {
     d.iter().fold(Vec3::zero(g), |sum, (link, v)| sum + link.map_or(*v, |l| world[l.0].0 * *v))
 }
 
 fn time_derivative<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     let rates = lagrange::configuration_rates(model);
     rates.iter().enumerate().fold(model.graph.zero(), |sum, (k, rate)| {
-        sum + Derivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph).differentiate(e)
+        sum + DirectionalDerivative::with_respect_to(Quantity::Configuration(k).symbol(), model.graph)
+            .differentiate(e)
             * *rate
     })
 }
@@ -196,6 +205,6 @@ proptest! {
 
     #[test]
     fn input_power_is_generalized_force_times_velocity(tree in random_trees(4), seed in 0_u64..1000) {
-        with_model(&tree.tree_source(), |_, model| check_input_forces(model, seed));
+        with_model(&tree.tree_source(), |_, model| check_forces_against_input_power(model, seed));
     }
 }

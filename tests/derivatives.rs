@@ -24,8 +24,8 @@ use random_limbs::random_creatures;
 use random_tree::{random_trees, tied_trees};
 use random_world::random_worlds;
 use std::path::Path;
-use support::compare::assert_similar;
-use support::model::{random_symbol_values, try_model, with_model};
+use support::compare::assert_close_relative_to_largest;
+use support::model::{check_model_or_errors, random_symbol_values, with_model};
 use support::random::property_test_config;
 use support::table::Record;
 
@@ -57,7 +57,7 @@ macro_rules! robot {
                 let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
                 let (q, v, a, tau) = (&case.vector_with_key("q"), &case.vector_with_key("v"), &case.vector_with_key("a"), &case.vector_with_key("tau"));
                 let assert_close_to_reference = |what: &str, actual: &[f64], expected: &[f64]| {
-                    assert_similar(&label_of_case(what), actual, expected, REFERENCE);
+                    assert_close_relative_to_largest(&label_of_case(what), actual, expected, REFERENCE);
                 };
                 let expected_matrix = |key: &str| -> Square { case.matrix_with_key(key) };
                 let (by_q, by_v) = $robot.inverse_dynamics_derivatives(q, v, a);
@@ -97,9 +97,9 @@ robot!(G1, g1, "../models/urdf/g1.urdf", , base = free);
 // ---- Two
 // derivations ---------------------------------------------------------------------------------------------
 
-fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
+fn assert_same_expressions(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
     let at = random_symbol_values(model, seed);
-    assert_similar(what, &eval(a, &at), &eval(b, &at), DERIVATION);
+    assert_close_relative_to_largest(what, &eval(a, &at), &eval(b, &at), DERIVATION);
 }
 
 fn check_recursive_derivatives(model: &Model<'_>, seed: u64) {
@@ -109,11 +109,11 @@ fn check_recursive_derivatives(model: &Model<'_>, seed: u64) {
     let expected = symbolic::force_derivatives(model, &tau);
     for lanes in [1, 2, 4, 8] {
         let found = derivatives::inverse_dynamics(model, &joints, &a, DerivationMethod::Recursion(lanes));
-        assert_same("∂τ/∂q", model, seed, &found.by_q.concat(), &expected.by_q.concat());
-        assert_same("∂τ/∂v", model, seed, &found.by_v.concat(), &expected.by_v.concat());
+        assert_same_expressions("∂τ/∂q", model, seed, &found.by_q.concat(), &expected.by_q.concat());
+        assert_same_expressions("∂τ/∂v", model, seed, &found.by_v.concat(), &expected.by_v.concat());
         let at = random_symbol_values(model, seed);
         let program = lower(&found.by_q.concat());
-        assert_similar(
+        assert_close_relative_to_largest(
             "program of ∂τ/∂q",
             &program.interpret_program(&at),
             &eval(&expected.by_q.concat(), &at),
@@ -135,13 +135,13 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
     let product: Vec<Expr<'_>> =
         c.iter().map(|row| row.iter().zip(&v).fold(zero, |sum, (c, v)| sum + *c * *v)).collect();
     let expected: Vec<Expr<'_>> = moving.iter().zip(&resting).map(|(m, r)| *m - *r).collect();
-    assert_same("C v", model, seed, &product, &expected);
+    assert_same_expressions("C v", model, seed, &product, &expected);
     let mass = crba::mass_matrix(model, &joints).concat();
     let rate: Vec<Expr<'_>> =
         mass.iter().map(|m| kinematics::time_derivative(model.configuration_space(), *m)).collect();
     let n = model.nv();
     let sum: Vec<Expr<'_>> = (0..n * n).map(|k| c[k / n][k % n] + c[k % n][k / n]).collect();
-    assert_same("Ṁ", model, seed, &sum, &rate);
+    assert_same_expressions("Ṁ", model, seed, &sum, &rate);
 }
 
 fn check_inverse_derivatives<'g>(model: &Model<'g>, seed: u64) {
@@ -154,31 +154,31 @@ fn check_inverse_derivatives<'g>(model: &Model<'g>, seed: u64) {
         m.iter().map(|row| row.iter().zip(x).fold(zero, |sum, (m, x)| sum + *m * *x)).collect()
     };
     let forces = matrix_times_vector(&mass, &a);
-    assert_same("inverse", model, seed, &matrix_times_vector(&factor.inverse(), &forces), &a);
-    assert_same("solution", model, seed, &factor.solve_factored(forces.clone()), &a);
-    let trunk = Trunk::new(&joints, &mass, &Trunk::branching_velocities(&joints, model.nv()));
+    assert_same_expressions("inverse", model, seed, &matrix_times_vector(&factor.inverse(), &forces), &a);
+    assert_same_expressions("solution", model, seed, &factor.solve_factored(forces.clone()), &a);
+    let trunk = Trunk::new(&joints, &mass, &Trunk::has_branching_descendant(&joints, model.nv()));
     let Some(trunk) = trunk else { return };
     let parts = derivatives::Inverse::new(&mass, &trunk);
-    assert_same("solution in parts", model, seed, &parts.solve_divided(&forces), &a);
-    let (mut whole, factors) = (parts.inverse_columns(), parts.limb_factor_rows());
+    assert_same_expressions("solution in parts", model, seed, &parts.solve_by_trunk_and_limbs(&forces), &a);
+    let (mut whole, factors) = (parts.trunk_and_limb_inverse_columns(), parts.limb_to_trunk_factors());
     for row in &mut whole {
         let columns: Vec<Expr<'_>> = trunk.velocities.iter().map(|t| row[*t]).collect();
         for (entry, factors) in row.iter_mut().zip(&factors) {
             *entry = columns.iter().zip(factors).fold(*entry, |sum, (h, g)| sum + *h * *g);
         }
     }
-    assert_same("inverse in parts", model, seed, &whole.concat(), &factor.inverse().concat());
+    assert_same_expressions("inverse in parts", model, seed, &whole.concat(), &factor.inverse().concat());
 }
 
 /// Checks that the derivatives of the acceleration of a free base that follow from invariance solve the
 /// differentiated equations of motion. Returns the indices of these columns, by `q` and by `v`.
-fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
+fn check_invariant_columns(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
     let joints = kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let a = mechanics::acceleration_symbols(model);
     let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocity_symbols(model), Some(&a));
     let forces = symbolic::force_derivatives(model, &tau);
-    let known = invariance::invariant_columns(model, &joints);
+    let known = invariance::columns_determined_by_invariance(model, &joints);
     for (forces, columns) in [(&forces.by_q, &known.by_q), (&forces.by_v, &known.by_v)] {
         for (k, column) in columns {
             let inertia = mass
@@ -186,10 +186,10 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
                 .map(|row| row.iter().zip(column).fold(model.graph.zero(), |sum, (m, x)| sum - *m * *x));
             let found: Vec<Expr<'_>> = inertia.collect();
             let expected: Vec<Expr<'_>> = forces.iter().map(|row| row[*k]).collect();
-            assert_same("forces on a free base", model, seed, &found, &expected);
+            assert_same_expressions("forces on a free base", model, seed, &found, &expected);
         }
     }
-    known.known_column_indices()
+    known.invariant_column_indices()
 }
 
 /// Returns the configuration after a step of size `h` along velocity `k`, correct to second order in `h`.
@@ -204,8 +204,8 @@ fn displaced_configuration(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Ve
     let mut moved: Vec<f64> =
         q.iter().zip(eval(&rates, &symbol_value)).map(|(q, rate)| q + h * rate).collect();
     for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
-        let length = moved[first.and_next(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
-        moved[first.and_next(4)].iter_mut().for_each(|c| *c /= length);
+        let length = moved[first.range_of_entries(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
+        moved[first.range_of_entries(4)].iter_mut().for_each(|c| *c /= length);
     }
     moved
 }
@@ -223,7 +223,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     let motion = ldl::solve_symmetric(mass.clone(), rest, &joints);
     let mut found =
         derivatives::forward_dynamics(model, &joints, &mass, &tau, DerivationMethod::Recursion(1));
-    let known = invariance::invariant_columns(model, &joints);
+    let known = invariance::columns_determined_by_invariance(model, &joints);
     known.replace_known_columns(&mut found.forces);
     let at = random_symbol_values(model, seed);
     let q: Vec<f64> = (0..model.nq()).map(|k| at(Quantity::Configuration(k).symbol())).collect();
@@ -256,7 +256,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
         }
         worst
     };
-    let [by_q, by_v] = known.known_column_indices();
+    let [by_q, by_v] = known.invariant_column_indices();
     for (error, size) in
         [largest_error(&found.forces.by_q, &by_q, true), largest_error(&found.forces.by_v, &by_v, false)]
     {
@@ -267,7 +267,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
 
 #[test]
 fn derivatives_include_forces_from_the_ground() {
-    let invariant_columns = |element: &str| {
+    let columns_determined_by_invariance = |element: &str| {
         let mut found = None;
         let fields = format!(
             "#[body(mass = 2, inertia = diagonal(1, 2, 3))] hull: Body, #[joint(ground -> hull)] pose: Free,
@@ -275,40 +275,47 @@ fn derivatives_include_forces_from_the_ground() {
                  {element}"
         );
         let source = ("gravity = -9.81 * z".to_string(), format!("struct Boat {{ {fields} }}"));
-        with_model(&source, |_, model| found = Some(check_what_is_known(model, 3)));
+        with_model(&source, |_, model| found = Some(check_invariant_columns(model, 3)));
         found.expect("it compiles")
     };
     let (all, none) = (|| [vec![3, 4, 5], vec![0, 1, 2]], Vec::new);
-    assert_eq!(invariant_columns(""), all());
+    assert_eq!(columns_determined_by_invariance(""), all());
     assert_eq!(
-        invariant_columns("#[acts(on = elbow, stiffness = 3, free_angle = 1)] spring: Spring,"),
+        columns_determined_by_invariance(
+            "#[acts(on = elbow, stiffness = 3, free_angle = 1)] spring: Spring,"
+        ),
         all()
     );
     assert_eq!(
-        invariant_columns("#[acts(between = (hull, arm.at(z)), damping = 3)] inside: Dashpot,"),
+        columns_determined_by_invariance(
+            "#[acts(between = (hull, arm.at(z)), damping = 3)] inside: Dashpot,"
+        ),
         all()
     );
     let spring = "#[acts(between = (ground.at(3 * x), arm.at(z)), stiffness = 3)] mooring: Spring,";
-    assert_eq!(invariant_columns(spring), [none(), vec![0, 1, 2]]);
+    assert_eq!(columns_determined_by_invariance(spring), [none(), vec![0, 1, 2]]);
     let dashpot = "#[acts(between = (ground.at(3 * x), arm.at(z)), damping = 3)] mooring: Dashpot,";
-    assert_eq!(invariant_columns(dashpot), [none(), none()]);
+    assert_eq!(columns_determined_by_invariance(dashpot), [none(), none()]);
     // Invariance does not hold for an inerter between bodies, which has inertia but no weight, nor for a load
     // that moves along an axis of the ground.
     let inerter = "#[acts(between = (ground.at(3 * x), arm.at(z)), inertance = 3)] mooring: Inerter,";
-    assert_eq!(invariant_columns(inerter), [none(), none()]);
-    assert_eq!(invariant_columns("#[acts(on = elbow, inertance = 3)] inside: Inerter,"), all());
+    assert_eq!(columns_determined_by_invariance(inerter), [none(), none()]);
+    assert_eq!(
+        columns_determined_by_invariance("#[acts(on = elbow, inertance = 3)] inside: Inerter,"),
+        all()
+    );
     let other =
         "#[body(mass = 2, inertia = diagonal(1, 2, 3))] ship: Body, #[joint(ground -> ship)] course: Free,";
     let inerter = "#[acts(between = (ship.at(x), arm.at(z)), inertance = 3)] towing: Inerter,";
-    assert_eq!(invariant_columns(other), [vec![3, 4, 5, 10, 11, 12], vec![0, 1, 2, 7, 8, 9]]);
-    assert_eq!(invariant_columns(&format!("{other} {inerter}")), [none(), none()]);
+    assert_eq!(columns_determined_by_invariance(other), [vec![3, 4, 5, 10, 11, 12], vec![0, 1, 2, 7, 8, 9]]);
+    assert_eq!(columns_determined_by_invariance(&format!("{other} {inerter}")), [none(), none()]);
     let particle_declaration = |axis: &str| {
         format!(
             "way: Coordinate, #[particle(mass = 1, at = hull.at(way * {axis} + 0.3 * y))] load: Particle,"
         )
     };
-    assert_eq!(invariant_columns(&particle_declaration("ground.x")), [none(), none()]);
-    assert_eq!(invariant_columns(&particle_declaration("x")), all());
+    assert_eq!(columns_determined_by_invariance(&particle_declaration("ground.x")), [none(), none()]);
+    assert_eq!(columns_determined_by_invariance(&particle_declaration("x")), all());
 }
 
 proptest! {
@@ -322,7 +329,7 @@ proptest! {
                 check_coriolis_matrix(model, seed, lanes);
             }
             check_inverse_derivatives(model, seed);
-            check_what_is_known(model, seed);
+            check_invariant_columns(model, seed);
         });
     }
 }
@@ -351,7 +358,7 @@ proptest! {
         };
         // Mechanisms with an element between a body and itself, or with an element that moves nothing, are
         // rejected.
-        let _ = try_model(&source, |_, model| check_model(model));
+        let _ = check_model_or_errors(&source, |_, model| check_model(model));
     }
 }
 
@@ -383,7 +390,7 @@ fn derivative_programs(arguments: &str) -> [Program; 2] {
 /// after products are fused into sums.
 #[test]
 fn operation_counts_of_limb_lanes_are_exact() {
-    let counts_of_robot = |robot: &str| {
+    let operation_counts_of_robot = |robot: &str| {
         let all =
             derivative_programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
         all.map(|program| {
@@ -397,7 +404,7 @@ fn operation_counts_of_limb_lanes_are_exact() {
     };
     // Each row has the derivatives of inverse dynamics, then the inverse of the mass matrix.
     let expected = [[(1303, 845), (794, 497)], [(6108, 4115), (6301, 3682)]];
-    assert_eq!(["solo12", "simple_humanoid"].map(counts_of_robot), expected);
+    assert_eq!(["solo12", "simple_humanoid"].map(operation_counts_of_robot), expected);
 }
 
 #[test]

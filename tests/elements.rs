@@ -4,7 +4,7 @@
 
 mod random_world;
 
-use linkwork_compiler::expr::diff::Derivative;
+use linkwork_compiler::expr::diff::DirectionalDerivative;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::replace::substitute_symbols;
 use linkwork_compiler::expr::sample::sample_of_symbol;
@@ -59,7 +59,7 @@ impl State {
     }
 
     /// Returns the rates of expressions along the motion, by differences.
-    fn rates_of_expressions(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
+    fn numeric_rates_of_expressions(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
         let rates = self.values_of_expressions(&lagrange::configuration_rates(model));
         let values_after_step = |s: f64| self.values_after(s, &rates, e);
         let h = 1e-3;
@@ -81,7 +81,7 @@ fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
 
 /// Checks that the outline that is generated for a mechanism with errors has the signatures of the correct
 /// mechanism.
-fn check_outline(description: &Description, model: &Model<'_>) {
+fn check_outline_signatures(description: &Description, model: &Model<'_>) {
     let outline = outline_of_description(description);
     assert_eq!(outline.configuration, model.configuration);
     assert_eq!(outline.velocities, model.velocities.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
@@ -111,12 +111,12 @@ fn apply_mass_and_bias<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>])
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
 
-fn flatten_matrix<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+fn flatten_matrix_by_rows<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     m.iter().flatten().copied().collect()
 }
 
 fn derivative_of_expression<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g> {
-    Derivative::with_respect_to(quantity.symbol(), model.graph).differentiate(e)
+    DirectionalDerivative::with_respect_to(quantity.symbol(), model.graph).differentiate(e)
 }
 
 fn check_dynamics(model: &Model<'_>, seed: u64) {
@@ -130,7 +130,11 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     let mass = crba::mass_matrix(model, &joints);
     let bias = rnea::inverse_dynamics(model, &joints, &v, None);
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    assert_close_expressions("mass matrix", &flatten_matrix(&mass), &flatten_matrix(&reference.mass_matrix));
+    assert_close_expressions(
+        "mass matrix",
+        &flatten_matrix_by_rows(&mass),
+        &flatten_matrix_by_rows(&reference.mass_matrix),
+    );
     assert_close_expressions("bias", &bias, &reference.bias);
     assert_close_expressions(
         "inverse dynamics",
@@ -152,12 +156,12 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     assert_close_expressions("momentum rate", &rate, &expected);
     let r: Vec<_> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
     assert_close_expressions("factorisation", &ldl::solve_symmetric(mass, r, &joints), &a);
-    check_energy(model, &joints, &tau, &state);
+    check_power_balance(model, &joints, &tau, &state);
 }
 
 /// Checks the power balance: Jacobi's integral `p · v − T + U` changes by the power of the forces minus
 /// `∂L/∂t`.
-fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], state: &State) {
+fn check_power_balance<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], state: &State) {
     let g = model.graph;
     let v = mechanics::velocity_symbols(model);
     let dot_product =
@@ -166,23 +170,23 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
     let potential = energy::potential_energy(model, joints);
     let p = momentum::generalized_momentum(model, joints, &v);
     let jacobi = dot_product(&p, &v) - kinetic + potential;
-    let velocity_derivative =
+    let velocity_differentiation =
         |e: Expr<'g>| velocity_gradient(e).iter().fold(g.zero(), |sum, (k, d)| sum + *d * v[*k]);
     let mut power = dot_product(tau, &v);
     for dashpot in &model.dashpots {
         power -= dashpot.damping * kinematics::coordinate_velocity(model, &dashpot.on).square();
     }
     for function in &model.dissipations {
-        power -= velocity_derivative(*function);
+        power -= velocity_differentiation(*function);
     }
     for load in &model.loads {
         let zero_for_inputs = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
-        power += substitute_symbols(load.force, &zero_for_inputs) * velocity_derivative(load.rate);
+        power += substitute_symbols(load.force, &zero_for_inputs) * velocity_differentiation(load.rate);
     }
     let expected = power - derivative_of_expression(model, Quantity::Time, kinetic - potential);
     assert_close(
         "energy",
-        &state.rates_of_expressions(model, &[jacobi]),
+        &state.numeric_rates_of_expressions(model, &[jacobi]),
         &state.values_of_expressions(&[expected]),
         DIFFERENCE,
     );
@@ -198,7 +202,7 @@ fn output_expressions<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
 fn check_outputs(model: &Model<'_>, seed: u64) {
     let state = State::new(model, seed);
     let assert_rate_of_output = |rate: &str, of: &str| {
-        let slope = state.rates_of_expressions(model, &output_expressions(model, of));
+        let slope = state.numeric_rates_of_expressions(model, &output_expressions(model, of));
         assert_close(
             rate,
             &state.values_of_expressions(&output_expressions(model, rate)),
@@ -223,7 +227,7 @@ fn check_outputs(model: &Model<'_>, seed: u64) {
         assert_close(
             axis,
             &turning,
-            &state.rates_of_expressions(model, &output_expressions(model, axis)),
+            &state.numeric_rates_of_expressions(model, &output_expressions(model, axis)),
             DIFFERENCE,
         );
     }
@@ -237,7 +241,7 @@ fn check_outputs(model: &Model<'_>, seed: u64) {
         };
         let rates: Vec<f64> = values.iter().map(total_time_derivative).collect();
         // Accelerations are constant along this motion.
-        assert_close(name, &rates, &state.rates_of_expressions(model, &values), DIFFERENCE);
+        assert_close(name, &rates, &state.numeric_rates_of_expressions(model, &values), DIFFERENCE);
     }
 }
 
@@ -256,6 +260,6 @@ proptest! {
 
     #[test]
     fn outline_after_an_error_has_the_correct_signatures(world in random_worlds()) {
-        with_model(&world.world_source(), check_outline);
+        with_model(&world.world_source(), check_outline_signatures);
     }
 }

@@ -22,7 +22,7 @@ struct Load {
 
 /// Load on a ball joint with a gyroscope, an accelerometer and a compass.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Guided {
+struct InstrumentedLoad {
     #[body(mass = 1.5, com = -0.8 * z, inertia = diagonal(0.02, 0.03, 0.01))]
     load: Body,
     #[joint(ground -> load)]
@@ -96,7 +96,7 @@ fn normal_vector<const N: usize>(random: &mut Random, variance: f64) -> SVector<
 /// Runs the filter for `duration` seconds from an initial error with standard deviation `off`. Returns the
 /// displacement from the estimate to the true state (configuration, then velocity), the last estimate and the
 /// last true configuration.
-fn run_filter<M, const NY: usize>(
+fn run_estimation_filter<M, const NY: usize>(
     m: &M,
     random: &mut Random,
     off: f64,
@@ -132,7 +132,8 @@ where
 #[test]
 fn filter_estimates_a_load_on_a_ball_joint() {
     for seed in 0..5 {
-        let (left, ..) = run_filter::<_, 9>(&Guided {}, &mut Random::new(seed), 0.3, 2.0, 0.0);
+        let (left, ..) =
+            run_estimation_filter::<_, 9>(&InstrumentedLoad {}, &mut Random::new(seed), 0.3, 2.0, 0.0);
         assert!(left.amax() < 1e-3, "{seed}: {left}");
     }
 }
@@ -143,7 +144,8 @@ fn filter_estimates_a_load_on_a_ball_joint() {
 fn heading_is_unobservable_without_a_compass() {
     for seed in 0..5 {
         let off = 0.3;
-        let (left, belief, q) = run_filter::<_, 6>(&Load {}, &mut Random::new(seed), off, 2.0, 0.0);
+        let (left, belief, q) =
+            run_estimation_filter::<_, 6>(&Load {}, &mut Random::new(seed), off, 2.0, 0.0);
         let attitude = UnitQuaternion::from_quaternion([q[0], q[1], q[2], q[3]].into());
         let up = attitude.inverse_transform_vector(&Vector3::z());
         let turned = left.fixed_rows::<3>(0).into_owned();
@@ -162,7 +164,13 @@ fn filter_errors_agree_with_the_covariance() {
     const RUNS: u64 = 30;
     let mut sum = 0.0;
     for seed in 0..RUNS {
-        let (left, belief, _) = run_filter::<_, 9>(&Guided {}, &mut Random::new(100 + seed), 0.1, 1.0, GUSTS);
+        let (left, belief, _) = run_estimation_filter::<_, 9>(
+            &InstrumentedLoad {},
+            &mut Random::new(100 + seed),
+            0.1,
+            1.0,
+            GUSTS,
+        );
         sum += left.dot(&(belief.spread.try_inverse().unwrap() * left));
     }
     // The mean of 30 chi-square values with six degrees of freedom is within 3.3 standard deviations in 99.9

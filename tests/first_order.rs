@@ -4,7 +4,7 @@ use linkwork::integrate::Method;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use linkwork::{Derivatives, Mechanism, OutputDerivatives, Outputs, mechanism};
-use support::compare::assert_similar;
+use support::compare::assert_close_relative_to_largest;
 use support::random::Random;
 
 /// Tolerance between derivatives and central differences of eighth order.
@@ -71,7 +71,7 @@ struct Case {
     u: SVector<f64, 2>,
 }
 
-fn random_cases() -> Vec<Case> {
+fn random_fighter_cases() -> Vec<Case> {
     let mut random = Random::new(11);
     let random_case = |k: usize| {
         let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
@@ -99,7 +99,7 @@ fn derivative_at_zero<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>
 }
 
 /// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
-fn derivatives_at_zero<const N: usize, const K: usize>(
+fn difference_derivatives_at_zero<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
@@ -134,32 +134,37 @@ fn first_order_states_are_named_after_the_velocities() {
 fn forward_dynamics_inverts_inverse_dynamics() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, .. } in random_cases() {
+    for Case { t, q, v, a, .. } in random_fighter_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         let back = whole.forward_dynamics(t, &q, &v, &tau);
-        assert_similar("accelerations and rates", back.as_slice(), a.as_slice(), 1e-12);
+        assert_close_relative_to_largest("accelerations and rates", back.as_slice(), a.as_slice(), 1e-12);
         let sum = whole.mass_matrix(t, &q) * a + whole.bias_forces(t, &q, &v);
-        assert_similar("M v̇ + h", sum.as_slice(), tau.as_slice(), 1e-12);
+        assert_close_relative_to_largest("M v̇ + h", sum.as_slice(), tau.as_slice(), 1e-12);
     }
 }
 
 #[test]
 fn first_order_rates_equal_their_declared_expressions() {
     let fighter = tabulated_fighter();
-    for Case { t, q, v, u, .. } in random_cases() {
+    for Case { t, q, v, u, .. } in random_fighter_cases() {
         let now = fighter.with_states(&[v[6], v[7]].into());
         let own = v.fixed_rows::<6>(0).into_owned();
         let whole = fighter.extended();
         let found = whole.forward_dynamics(t, &q, &v, &whole.generalized_forces(t, &q, &v, &u));
         let tau = Mechanism::generalized_forces(&now, t, &q, &own, &u);
         let accelerations = Mechanism::forward_dynamics(&now, t, &q, &own, &tau);
-        assert_similar("v̇", found.fixed_rows::<6>(0).as_slice(), accelerations.as_slice(), 1e-14);
+        assert_close_relative_to_largest(
+            "v̇",
+            found.fixed_rows::<6>(0).as_slice(),
+            accelerations.as_slice(),
+            1e-14,
+        );
         // Velocities are expressed in body axes.
         let speed = own.fixed_rows::<3>(0).norm();
         let alpha = own[2].atan2(own[0]);
         let power = (1e4 * u[0] - v[6]) * (1.0 + speed / 400.0) / 0.7;
         let sensed = (alpha - v[7].powi(3)) / 0.7 + t.sin() / 3.5 * u[0];
-        assert_similar("ẋ", &[found[6], found[7]], &[power, sensed], 1e-12);
+        assert_close_relative_to_largest("ẋ", &[found[6], found[7]], &[power, sensed], 1e-12);
     }
 }
 
@@ -167,54 +172,61 @@ fn first_order_rates_equal_their_declared_expressions() {
 fn first_order_derivatives_agree_with_differences() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, u } in random_cases() {
+    for Case { t, q, v, a, u } in random_fighter_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         let displaced_configuration = |by| whole.integrate(&q, &by);
         let mut still = STEP;
         still[6..].fill(1.0);
 
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
-        let forward_dynamics_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
-        assert_similar(
+        let extended_forward_dynamics = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
+        assert_close_relative_to_largest(
             "∂v̇/∂q",
             by_q.as_slice(),
-            &derivatives_at_zero(still, |by| {
-                forward_dynamics_of_whole(&displaced_configuration(by), &v, &tau)
+            &difference_derivatives_at_zero(still, |by| {
+                extended_forward_dynamics(&displaced_configuration(by), &v, &tau)
             }),
             DIFFERENCE,
         );
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂v̇/∂v",
             by_v.as_slice(),
-            &derivatives_at_zero(STEP, |by| forward_dynamics_of_whole(&q, &(v + by), &tau)),
+            &difference_derivatives_at_zero(STEP, |by| extended_forward_dynamics(&q, &(v + by), &tau)),
             DIFFERENCE,
         );
-        let by_tau = derivatives_at_zero([1.0; 8], |by| forward_dynamics_of_whole(&q, &v, &(tau + by)));
-        assert_similar("∂v̇/∂τ", by_force.as_slice(), &by_tau, 1e-9);
+        let by_tau =
+            difference_derivatives_at_zero([1.0; 8], |by| extended_forward_dynamics(&q, &v, &(tau + by)));
+        assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), &by_tau, 1e-9);
 
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
         let inverse_dynamics_of_whole = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂τ/∂q",
             by_q.as_slice(),
-            &derivatives_at_zero(still, |by| inverse_dynamics_of_whole(&displaced_configuration(by), &v)),
+            &difference_derivatives_at_zero(still, |by| {
+                inverse_dynamics_of_whole(&displaced_configuration(by), &v)
+            }),
             DIFFERENCE,
         );
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂τ/∂v",
             by_v.as_slice(),
-            &derivatives_at_zero(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))),
+            &difference_derivatives_at_zero(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))),
             DIFFERENCE,
         );
 
         let (by_q, by_v, by_u) = whole.generalized_forces_derivatives(t, &q, &v, &u);
-        let forces_of_whole = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
-        let found = derivatives_at_zero(still, |by| forces_of_whole(&displaced_configuration(by), &v, &u));
-        assert_similar("inputs, ∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = derivatives_at_zero(STEP, |by| forces_of_whole(&q, &(v + by), &u));
-        assert_similar("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
-        let found = derivatives_at_zero([1e-2; 2], |by: SVector<f64, 2>| forces_of_whole(&q, &v, &(u + by)));
-        assert_similar("inputs, ∂τ/∂u", by_u.as_slice(), &found, DIFFERENCE);
+        let forces_of_extended_system = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
+        let found = difference_derivatives_at_zero(still, |by| {
+            forces_of_extended_system(&displaced_configuration(by), &v, &u)
+        });
+        assert_close_relative_to_largest("inputs, ∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero(STEP, |by| forces_of_extended_system(&q, &(v + by), &u));
+        assert_close_relative_to_largest("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
+        let found = difference_derivatives_at_zero([1e-2; 2], |by: SVector<f64, 2>| {
+            forces_of_extended_system(&q, &v, &(u + by))
+        });
+        assert_close_relative_to_largest("inputs, ∂τ/∂u", by_u.as_slice(), &found, DIFFERENCE);
     }
 }
 
@@ -222,19 +234,23 @@ fn first_order_derivatives_agree_with_differences() {
 fn output_derivatives_include_first_order_states() {
     let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, u } in random_cases() {
-        let outputs_of_whole = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
+    for Case { t, q, v, a, u } in random_fighter_cases() {
+        let outputs_of_extended_mechanism = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
         let found = whole.output_derivatives(t, &q, &v, &a, &u);
-        let by_v = derivatives_at_zero(STEP, |by| outputs_of_whole(&(v + by), &a, &u));
-        assert_similar("∂y/∂v", found.by_v.as_slice(), &by_v, DIFFERENCE);
-        let by_a = derivatives_at_zero([1.0; 8], |by| outputs_of_whole(&v, &(a + by), &u));
-        assert_similar("∂y/∂v̇", found.by_a.as_slice(), &by_a, DIFFERENCE);
-        let by_u = derivatives_at_zero([1e-2; 2], |by| outputs_of_whole(&v, &a, &(u + by)));
-        assert_similar("∂y/∂u", found.by_u.as_slice(), &by_u, DIFFERENCE);
+        let by_v =
+            difference_derivatives_at_zero(STEP, |by| outputs_of_extended_mechanism(&(v + by), &a, &u));
+        assert_close_relative_to_largest("∂y/∂v", found.by_v.as_slice(), &by_v, DIFFERENCE);
+        let by_a =
+            difference_derivatives_at_zero([1.0; 8], |by| outputs_of_extended_mechanism(&v, &(a + by), &u));
+        assert_close_relative_to_largest("∂y/∂v̇", found.by_a.as_slice(), &by_a, DIFFERENCE);
+        let by_u =
+            difference_derivatives_at_zero([1e-2; 2], |by| outputs_of_extended_mechanism(&v, &a, &(u + by)));
+        assert_close_relative_to_largest("∂y/∂u", found.by_u.as_slice(), &by_u, DIFFERENCE);
         let displaced_configuration = |by: SVector<f64, 8>| whole.integrate(&q, &by);
-        let by_q =
-            derivatives_at_zero([1e-2; 8], |by| whole.outputs(t, &displaced_configuration(by), &v, &a, &u));
-        assert_similar("∂y/∂q", found.by_q.as_slice(), &by_q, DIFFERENCE);
+        let by_q = difference_derivatives_at_zero([1e-2; 8], |by| {
+            whole.outputs(t, &displaced_configuration(by), &v, &a, &u)
+        });
+        assert_close_relative_to_largest("∂y/∂q", found.by_q.as_slice(), &by_q, DIFFERENCE);
     }
 }
 
@@ -256,7 +272,7 @@ struct Sled {
 }
 
 #[track_caller]
-fn sled_runs_by(method: impl Method<f64>, lag: f64, tolerance: f64) {
+fn check_sled_motion(method: impl Method<f64>, lag: f64, tolerance: f64) {
     let sled = Sled { mass: 2.0, lag, thrust: 0.0 };
     let whole = sled.extended();
     let run = simulate(&whole).from([0.0], [0.0, 0.0]).inputs(|_, _, _| [6.0].into());
@@ -264,7 +280,7 @@ fn sled_runs_by(method: impl Method<f64>, lag: f64, tolerance: f64) {
     let late = 1.0 - (-1.5 / lag).exp();
     let (force, speed) = (6.0 * late, 3.0 * (1.5 - lag * late));
     let place = 3.0 * (1.5 * 1.5 / 2.0 - lag * (1.5 - lag * late));
-    assert_similar(
+    assert_close_relative_to_largest(
         "place, speed, thrust",
         &[end.q[0], end.v[0], end.v[1]],
         &[place, speed, force],
@@ -274,16 +290,16 @@ fn sled_runs_by(method: impl Method<f64>, lag: f64, tolerance: f64) {
 
 #[test]
 fn every_integrator_integrates_first_order_states() {
-    sled_runs_by(Rk4::step(1e-3), 0.4, 1e-11);
-    sled_runs_by(DormandPrince::new().tolerance(1e-11, 1e-12), 0.4, 1e-9);
-    sled_runs_by(DormandPrince8::new().tolerance(1e-12, 1e-13), 0.4, 1e-10);
-    sled_runs_by(Rodas::new().tolerance(1e-8, 1e-9), 0.4, 1e-6);
-    sled_runs_by(Rosenbrock::step(1e-3), 0.4, 1e-5);
-    sled_runs_by(ImplicitMidpoint::step(1e-3), 0.4, 1e-5);
-    sled_runs_by(SemiImplicitEuler::step(1e-4), 0.4, 1e-3);
+    check_sled_motion(Rk4::step(1e-3), 0.4, 1e-11);
+    check_sled_motion(DormandPrince::new().tolerance(1e-11, 1e-12), 0.4, 1e-9);
+    check_sled_motion(DormandPrince8::new().tolerance(1e-12, 1e-13), 0.4, 1e-10);
+    check_sled_motion(Rodas::new().tolerance(1e-8, 1e-9), 0.4, 1e-6);
+    check_sled_motion(Rosenbrock::step(1e-3), 0.4, 1e-5);
+    check_sled_motion(ImplicitMidpoint::step(1e-3), 0.4, 1e-5);
+    check_sled_motion(SemiImplicitEuler::step(1e-4), 0.4, 1e-3);
     // The lag is a thousand times shorter than a step.
-    sled_runs_by(Rodas::new().tolerance(1e-6, 1e-8), 1e-5, 1e-5);
-    sled_runs_by(Rosenbrock::step(1e-2), 1e-5, 1e-4);
+    check_sled_motion(Rodas::new().tolerance(1e-6, 1e-8), 1e-5, 1e-5);
+    check_sled_motion(Rosenbrock::step(1e-2), 1e-5, 1e-4);
 }
 
 /// Slider-crank that is driven either by a torque with a lag or by a torque that is an input.
@@ -332,7 +348,7 @@ fn constrained_mechanisms_may_have_first_order_states() {
     let lagged_command =
         |t: f64, _: &SVector<f64, 3>, _: &SVector<f64, 3>| [12.0 * (1.0 - (-t / lag).exp())].into();
     let other = simulate(&Prompt {}).from(q, [0.0; 3]).inputs(lagged_command).duration(1.0).finish().unwrap();
-    assert_similar("q", run.q.as_slice(), other.q.as_slice(), 1e-5);
-    assert_similar("v", run.v.fixed_rows::<3>(0).as_slice(), other.v.as_slice(), 1e-5);
+    assert_close_relative_to_largest("q", run.q.as_slice(), other.q.as_slice(), 1e-5);
+    assert_close_relative_to_largest("v", run.v.fixed_rows::<3>(0).as_slice(), other.v.as_slice(), 1e-5);
     assert!(other.v[0].abs() > 1.0, "it moves");
 }

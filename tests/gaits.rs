@@ -53,7 +53,7 @@ fn contact_mode_of_node(k: usize) -> Option<Touch> {
 }
 
 /// Returns the state after a node, and the cost of the node.
-fn advance_node(k: usize, (q, v): &State, u: &Inputs) -> (State, f64) {
+fn state_and_cost_after_node(k: usize, (q, v): &State, u: &Inputs) -> (State, f64) {
     let m = Hopper {};
     let effort = EFFORT / 2.0 * u.norm_squared();
     let Some(touch) = contact_mode_of_node(k) else {
@@ -77,7 +77,7 @@ fn terminal_cost((q, v): &State) -> (f64, Value<f64, 4>) {
 fn states_and_total_cost(start: &State, inputs: &[Inputs]) -> (Vec<State>, f64) {
     let (mut states, mut sum) = (vec![*start], 0.0);
     for (k, u) in inputs.iter().enumerate() {
-        let (next, cost) = advance_node(k, &states[k], u);
+        let (next, cost) = state_and_cost_after_node(k, &states[k], u);
         states.push(next);
         sum += cost;
     }
@@ -119,7 +119,7 @@ fn transition_and_cost(
 
 /// Returns the largest derivative of the total cost with respect to an input, by differences of sixth order
 /// of the whole motion.
-fn largest_gradient(start: &State, inputs: &[Inputs]) -> f64 {
+fn largest_input_cost_derivative(start: &State, inputs: &[Inputs]) -> f64 {
     let mut most = 0.0_f64;
     for k in 0..NODES {
         for i in 0..2 {
@@ -149,7 +149,7 @@ fn optimised_hop_is_stationary_in_every_input() {
     // All inputs of the initial guess are zero.
     let mut inputs = vec![SVector::from([0.0, 0.0]); NODES];
     let (mut states, mut cost) = states_and_total_cost(&start, &inputs);
-    let (first, begin) = (cost, largest_gradient(&start, &inputs));
+    let (first, begin) = (cost, largest_input_cost_derivative(&start, &inputs));
     let mut found = HeldDerivatives::zeros();
     for _ in 0..400 {
         let mut policies = vec![Policy::zeros(); NODES];
@@ -163,7 +163,7 @@ fn optimised_hop_is_stationary_in_every_input() {
             for (k, policy) in policies.iter().enumerate() {
                 let (q, v) = next[k];
                 let u = inputs[k] + policy.inputs(length, &(q - states[k].0), &(v - states[k].1));
-                let (state, cost) = advance_node(k, &next[k], &u);
+                let (state, cost) = state_and_cost_after_node(k, &next[k], &u);
                 next.push(state);
                 changed.push(u);
                 sum += cost;
@@ -178,7 +178,7 @@ fn optimised_hop_is_stationary_in_every_input() {
             break;
         }
     }
-    let end = largest_gradient(&start, &inputs);
+    let end = largest_input_cost_derivative(&start, &inputs);
     assert!(end < 1e-6 * begin, "{begin:e} {end:e}");
     assert!(cost < 0.1 * first, "{first} {cost}");
     // The foot leaves the ground and touches down at the prescribed node.

@@ -3,7 +3,7 @@
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{DMatrix, SMatrix, SVector};
-use support::compare::{assert_close, assert_similar};
+use support::compare::{assert_close, assert_close_relative_to_largest};
 use support::random::Random;
 
 /// Tolerance between two derivations of the same quantity.
@@ -115,7 +115,7 @@ struct Slings {
 }
 
 /// Returns the rank of the stacked matrices: the number of independent columns.
-fn rank_of_stacked<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usize {
+fn rank_of_stacked_matrices<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usize {
     let stacked = DMatrix::from_fn(N * matrices.len(), M, |i, j| matrices[i / N][(i % N, j)]);
     let singular = stacked.singular_values();
     singular.iter().filter(|s| **s > RANK * singular.max()).count()
@@ -139,16 +139,26 @@ macro_rules! check {
             let whole = robot.joint_torque_regressor(&q, &v, &a);
             let least = robot.base_regressor(&q, &v, &a);
             let tau = robot.inverse_dynamics(&q, &v, &a);
-            assert_similar("inverse dynamics", (whole * own).as_slice(), tau.as_slice(), EXACT);
+            assert_close_relative_to_largest(
+                "inverse dynamics",
+                (whole * own).as_slice(),
+                tau.as_slice(),
+                EXACT,
+            );
             for other in [own, random.random_vector(1.0)] {
                 let reduced = least * robot.base_parameters(&other);
-                assert_similar("base parameters", reduced.as_slice(), (whole * other).as_slice(), 1e-8);
+                assert_close_relative_to_largest(
+                    "base parameters",
+                    reduced.as_slice(),
+                    (whole * other).as_slice(),
+                    1e-8,
+                );
             }
             standard.push(whole);
             base.push(least);
         }
-        assert_eq!(rank_of_stacked(&standard), BASE, "independent columns of the whole");
-        assert_eq!(rank_of_stacked(&base), BASE, "independent columns of the base regressor");
+        assert_eq!(rank_of_stacked_matrices(&standard), BASE, "independent columns of the whole");
+        assert_eq!(rank_of_stacked_matrices(&base), BASE, "independent columns of the base regressor");
         BASE
     }};
 }
@@ -214,7 +224,7 @@ struct DoublePendulum {
 /// Checks the base parameters of a planar chain by hand: each link has two first moments and one inertia,
 /// through which the masses act. Forces of elements are not part of the regressor.
 #[test]
-fn base_parameters_of_a_planar_chain_by_hand() {
+fn base_parameters_of_a_planar_chain_agree_with_hand_derivation() {
     let (m, l, k, c) = (1.5, 0.8, 7.0, 0.3);
     let pendulum = DoublePendulum { m, l, k, c };
     let rod_parameters =

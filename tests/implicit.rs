@@ -189,7 +189,7 @@ struct Hopper {
 
 /// Particle that a constraint keeps on a circle, with an input force.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct OnCircle {
+struct ParticleOnCircle {
     #[particle(mass = 2)]
     bob: Particle,
     #[joint(ground -> bob, along = (x, y))]
@@ -228,7 +228,7 @@ where
 }
 
 /// Returns the ends of a run under feedback, with generated derivatives and with differences.
-fn ends_of_runs<M, S, const NQ: usize, const NV: usize>(
+fn run_ends_with_both_derivatives<M, S, const NQ: usize, const NV: usize>(
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
     method: S,
@@ -237,7 +237,7 @@ where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
     S: Method<f64> + Clone,
 {
-    fn end_under_feedback<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
+    fn end_state_under_feedback<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
         m: &CountingMechanism<'_, M, KNOWN>,
         (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
         method: S,
@@ -252,22 +252,24 @@ where
         let end = run.finish().unwrap();
         (end.q, end.v)
     }
-    let known = end_under_feedback(&CountingMechanism::<_, true>::new(m), (q, v), method.clone());
-    [known, end_under_feedback(&CountingMechanism::<_, false>::new(m), (q, v), method)]
+    let known = end_state_under_feedback(&CountingMechanism::<_, true>::new(m), (q, v), method.clone());
+    [known, end_state_under_feedback(&CountingMechanism::<_, false>::new(m), (q, v), method)]
 }
 
 #[track_caller]
-fn check_agreement<M, const NQ: usize, const NV: usize>(m: &M, start: (SVector<f64, NQ>, SVector<f64, NV>))
-where
+fn check_runs_with_differences<M, const NQ: usize, const NV: usize>(
+    m: &M,
+    start: (SVector<f64, NQ>, SVector<f64, NV>),
+) where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
-    let [known, differences] = ends_of_runs(m, start, Rodas::new().tolerance(1e-8, 1e-10));
+    let [known, differences] = run_ends_with_both_derivatives(m, start, Rodas::new().tolerance(1e-8, 1e-10));
     let largest_state_difference =
         |a: &(SVector<f64, NQ>, SVector<f64, NV>), b: &(SVector<f64, NQ>, SVector<f64, NV>)| {
             (a.0 - b.0).amax().max((a.1 - b.1).amax())
         };
     assert!(largest_state_difference(&known, &differences) < 1e-6, "{known:?} and {differences:?}");
-    let [fixed, other] = ends_of_runs(m, start, Rosenbrock::step(4e-5));
+    let [fixed, other] = run_ends_with_both_derivatives(m, start, Rosenbrock::step(4e-5));
     assert!(largest_state_difference(&fixed, &other) < 1e-6, "{fixed:?} and {other:?}");
     // The methods have orders 2 and 4.
     assert!(largest_state_difference(&fixed, &known) < 1e-4, "{fixed:?} and {known:?}");
@@ -280,22 +282,26 @@ fn closed_linkage_state(m: &FourBar) -> (SVector<f64, 3>, SVector<f64, 3>) {
 
 #[test]
 fn generated_derivatives_yield_the_same_implicit_motion() {
-    check_agreement(&Cart {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
-    check_agreement(&Late { lag: 1e-3, torque: 0.0 }.extended(), ([0.4].into(), [1.0, 0.2].into()));
+    check_runs_with_differences(&Cart {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
+    check_runs_with_differences(
+        &Late { lag: 1e-3, torque: 0.0 }.extended(),
+        ([0.4].into(), [1.0, 0.2].into()),
+    );
     let bar = FourBar {};
-    check_agreement(&bar, closed_linkage_state(&bar));
+    check_runs_with_differences(&bar, closed_linkage_state(&bar));
     let hopper = Hopper {};
     let stance = contact::hold(&hopper, [Touch::Sticks]).stabilized(20.0);
-    check_agreement(&stance, ([0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into()));
-    check_agreement(&stabilized(&bar, 20.0), closed_linkage_state(&bar));
+    check_runs_with_differences(&stance, ([0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into()));
+    check_runs_with_differences(&stabilized(&bar, 20.0), closed_linkage_state(&bar));
 }
 
 #[test]
 fn implicit_method_has_order_four() {
     let late = Late { lag: 0.4, torque: 0.0 };
     let whole = late.extended();
-    let end_with_method =
-        |method: Rodas<f64>| ends_of_runs(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0];
+    let end_with_method = |method: Rodas<f64>| {
+        run_ends_with_both_derivatives(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0]
+    };
     let end_with_fixed_steps =
         |h: f64| end_with_method(Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h));
     let exact = end_with_method(Rodas::new().tolerance(1e-13, 1e-14));
@@ -308,10 +314,15 @@ fn implicit_method_has_order_four() {
 #[test]
 fn implicit_method_has_order_four_under_constraints() {
     let start = ([0.0, -1.0].into(), [2.5, 0.0].into());
-    let precise = ends_of_runs(&OnCircle {}, start, DormandPrince8::new().tolerance(1e-13, 1e-13))[0];
+    let precise = run_ends_with_both_derivatives(
+        &ParticleOnCircle {},
+        start,
+        DormandPrince8::new().tolerance(1e-13, 1e-13),
+    )[0];
     let fixed_step_method = |h: f64| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h);
     let errors_with_step = |h: f64| {
-        ends_of_runs(&OnCircle {}, start, fixed_step_method(h)).map(|end| (end.0 - precise.0).norm())
+        run_ends_with_both_derivatives(&ParticleOnCircle {}, start, fixed_step_method(h))
+            .map(|end| (end.0 - precise.0).norm())
     };
     for (coarse, fine) in errors_with_step(0.05).into_iter().zip(errors_with_step(0.0125)) {
         let order = (coarse / fine).log2() / 2.0;
@@ -325,7 +336,7 @@ fn implicit_method_has_order_four_under_constraints() {
 #[test]
 fn large_clock_times_cost_no_extra_steps() {
     let cart = Cart {};
-    let end_from_start_time = |start: f64| {
+    let end_state_from_start_time = |start: f64| {
         let counted = CountingMechanism::<_, true>::new(&cart);
         let run = simulate(&counted).from([0.01, 0.4], [0.0, 1.0]).start_at(start).duration(1.0);
         let run = run.inputs(|t, _, _| [5.0 * (3.0 * (t - start)).sin()].into());
@@ -334,10 +345,10 @@ fn large_clock_times_cost_no_extra_steps() {
         let fixed = run.method(Rosenbrock::step(1e-3)).finish().unwrap();
         (count, end.q, fixed.q)
     };
-    let (count, precise, fixed) = end_from_start_time(0.0);
+    let (count, precise, fixed) = end_state_from_start_time(0.0);
     for power in [10, 20, 26] {
         let start = 2.0_f64.powi(power);
-        let (found, adaptive, equal) = end_from_start_time(start);
+        let (found, adaptive, equal) = end_state_from_start_time(start);
         assert!(found * 10 <= count * 12, "{count} evaluations, {found} after {start} s");
         let tick = start * f64::EPSILON;
         for gap in [(adaptive - precise).amax(), (equal - fixed).amax()] {
@@ -387,10 +398,10 @@ fn difference_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let accelerations_with_input = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
+    let forward_dynamics_with_input = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
         m.forward_dynamics(t, q, v, &m.generalized_forces(t, q, v, u))
     };
-    fn derivatives_at_zero<const N: usize, const K: usize>(
+    fn difference_derivatives_at_zero<const N: usize, const K: usize>(
         f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
     ) -> SMatrix<f64, N, K> {
         let columns: Vec<SVector<f64, N>> = (0..K)
@@ -404,16 +415,16 @@ where
         SMatrix::from_fn(|i, k| columns[k][i])
     }
     (
-        derivatives_at_zero(|dq| accelerations_with_input(&m.integrate(q, &dq), v, u)),
-        derivatives_at_zero(|dv| accelerations_with_input(q, &(v + dv), u)),
-        derivatives_at_zero(|du| accelerations_with_input(q, v, &(u + du))),
+        difference_derivatives_at_zero(|dq| forward_dynamics_with_input(&m.integrate(q, &dq), v, u)),
+        difference_derivatives_at_zero(|dv| forward_dynamics_with_input(q, &(v + dv), u)),
+        difference_derivatives_at_zero(|du| forward_dynamics_with_input(q, v, &(u + du))),
     )
 }
 
 /// Checks that the derivatives of stabilized accelerations, which let constraint violations decay, equal
 /// differences, also in states that violate the constraints.
 #[track_caller]
-fn check_decaying_violations<
+fn check_stabilized_derivatives<
     M,
     const NQ: usize,
     const NV: usize,
@@ -456,17 +467,21 @@ fn check_decaying_violations<
 /// Stabilized derivatives exist for closed loops, a rod, a rolling wheel and a moving road.
 #[test]
 fn stabilized_constraints_have_derivatives() {
-    check_decaying_violations(&OnCircle {}, 0.0, ([0.6, -0.8].into(), [0.8, 0.6].into()));
+    check_stabilized_derivatives(&ParticleOnCircle {}, 0.0, ([0.6, -0.8].into(), [0.8, 0.6].into()));
     let bar = FourBar {};
-    check_decaying_violations(&bar, 0.0, closed_linkage_state(&bar));
+    check_stabilized_derivatives(&bar, 0.0, closed_linkage_state(&bar));
     let disk = RollingDisk { g: 9.81, m: 0.5, radius: 0.2 };
     let q = [0.1, 0.2, 0.19, 0.4, 0.3, 0.2].into();
-    check_decaying_violations(
+    check_stabilized_derivatives(
         &disk,
         0.0,
         (q, disk.project_velocity(&q, &[0.3, 0.2, 0.0, 0.5, 0.1, -2.0].into()).unwrap()),
     );
-    check_decaying_violations(&CarAxle {}, 0.3, ([0.0, 0.5, 1.0, 0.5].into(), [-0.5, 0.0, -0.5, 0.0].into()));
+    check_stabilized_derivatives(
+        &CarAxle {},
+        0.3,
+        ([0.0, 0.5, 1.0, 0.5].into(), [-0.5, 0.0, -0.5, 0.0].into()),
+    );
 }
 
 /// Checks that each SIMD lane has the derivatives of its own state, and that an implicit method moves each

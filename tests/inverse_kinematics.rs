@@ -20,7 +20,7 @@ fn frame_index(frames: &[&str], name: &str) -> usize {
 }
 
 /// Returns a random configuration within the limits, a tenth of the range away from them.
-fn configuration_within_limits<const NV: usize>(
+fn random_configuration_within_limits<const NV: usize>(
     random: &mut Random,
     m: &impl Limits<NV, NV, Scalar = f64>,
 ) -> SVector<f64, NV> {
@@ -45,7 +45,7 @@ where
     let mut count = 0;
     for seed in 0..tries {
         let mut random = Random::new(seed);
-        let there = configuration_within_limits(&mut random, m);
+        let there = random_configuration_within_limits(&mut random, m);
         let start = there + random.random_vector::<N>(off);
         let placement = m.placement_of(tool, 0.0, &there).expect("it is a frame");
         let found = InverseKinematics::new().reach(m, 0.0, &[Target::pose(tool, placement)], &start);

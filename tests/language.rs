@@ -95,7 +95,7 @@ fn mechanisms_are_generic_over_scalars() {
 /// Mechanism declared by expressions with functions, operator precedence, several parameters of one dimension
 /// and nested solids.
 #[mechanism(gravity = [0, -9.81, 0])]
-struct Expressions {
+struct PlateOfExpressions {
     l: f64,
     w: f64,
     angle: f64,
@@ -113,7 +113,7 @@ struct Expressions {
 #[test]
 fn expressions_have_their_documented_values() {
     let (l, w, angle, m) = (0.7_f64, 0.2_f64, 0.4_f64, 1.1_f64);
-    let plate = Expressions { l, w, angle, m };
+    let plate = PlateOfExpressions { l, w, angle, m };
     let q = SVector::from([0.3]);
     assert_close("mass", &[plate.total_mass()], &[1.5 * m], TOLERANCE);
     let r = (l + w) / 2.0;
@@ -252,7 +252,7 @@ fn rolling_disk_has_textbook_accelerations() {
 
 /// Minimum and maximum of two expressions in outputs, and in the law of a spring that only pushes.
 #[mechanism(derivatives)]
-struct Extremes {
+struct MinimumMaximumCart {
     k: f64,
     l: f64,
     #[body(mass = 2)]
@@ -271,19 +271,19 @@ struct Extremes {
 #[test]
 fn minimum_and_maximum_are_exact() {
     for (k, expected) in [(1e17, 1.0), (1e-20, 1e-20), (f64::INFINITY, 1.0), (-1e300, -1e300), (0.3, 0.3)] {
-        let m = Extremes { k, l: 1.0 };
+        let m = MinimumMaximumCart { k, l: 1.0 };
         assert_eq!(m.least(&[0.0].into()), expected);
         assert_eq!(m.most(&[-1e-9].into()), if k < 0.0 { -1e-9 } else { k });
         assert_eq!(m.most(&[1e18].into()), if k == f64::INFINITY { k } else { 1e18 });
     }
-    let m = Extremes { k: 50.0, l: 1.0 };
+    let m = MinimumMaximumCart { k: 50.0, l: 1.0 };
     for (x, force, slope) in [(-0.1, 5.0, -50.0), (0.1, 0.0, 0.0)] {
         let (q, zero) = ([x].into(), [0.0].into());
         assert_eq!(m.bias_forces(&q, &zero)[0], -force);
         let (by_q, _, _) = m.forward_dynamics_derivatives(&q, &zero, &zero);
         assert_eq!(by_q[0], slope / 2.0);
     }
-    assert!(Extremes::EQUATIONS.contains("min(rail, 0)"), "{}", Extremes::EQUATIONS);
+    assert!(MinimumMaximumCart::EQUATIONS.contains("min(rail, 0)"), "{}", MinimumMaximumCart::EQUATIONS);
 }
 
 /// Carriage with a buffer that it reaches after a gap, a saturating valve, and a law that is undefined on the
@@ -348,7 +348,7 @@ fn pieces_of_piecewise_functions_hold_in_their_intervals() {
 
 /// Airframe with vectors whose components are in its stability and wind axes.
 #[mechanism]
-struct Winged {
+struct AirframeWithWindAxes {
     #[body(mass = 2, inertia = diagonal(1, 1, 1))]
     airframe: Body,
     #[joint(ground -> airframe)]
@@ -377,7 +377,7 @@ struct Winged {
 /// A.7: by the sideslip about z, then by the angle of attack about y.
 #[test]
 fn stability_and_wind_axes_rotate_by_their_angles() {
-    let (m, mut random) = (Winged {}, support::random::Random::new(5));
+    let (m, mut random) = (AirframeWithWindAxes {}, support::random::Random::new(5));
     for _ in 0..10 {
         let q = random.random_configuration(&m);
         let v: SVector<f64, 6> = random.random_vector(30.0);
@@ -399,7 +399,7 @@ fn stability_and_wind_axes_rotate_by_their_angles() {
 /// Two free bodies with an input force between points of them, and a force that depends on the distance of
 /// their origins.
 #[mechanism(derivatives)]
-struct Pushed {
+struct BodiesWithForceBetween {
     #[body(mass = 2, inertia = diagonal(0.1, 0.2, 0.3))]
     first: Body,
     #[body(mass = 3, inertia = diagonal(0.3, 0.1, 0.2))]
@@ -419,7 +419,7 @@ struct Pushed {
 }
 
 #[mechanism]
-struct Buffers {
+struct PistonBetweenBodies {
     #[body(mass = 2)]
     left: Body,
     #[body(mass = 3)]
@@ -435,8 +435,8 @@ struct Buffers {
 /// A force between two points pushes them apart, does work only on their distance, and changes no momentum.
 #[test]
 fn forces_between_points_repel_them() {
-    let (m, mut random) = (Pushed {}, support::random::Random::new(3));
-    assert_eq!(Pushed::INPUTS, ["piston"]);
+    let (m, mut random) = (BodiesWithForceBetween {}, support::random::Random::new(3));
+    assert_eq!(BodiesWithForceBetween::INPUTS, ["piston"]);
     for _ in 0..10 {
         let q = random.random_configuration(&m);
         let v: SVector<f64, 12> = random.random_vector(2.0);
@@ -459,7 +459,7 @@ fn forces_between_points_repel_them() {
         assert!(rate.amax() < 1e-12, "{rate}");
     }
     // The result is independent of which cart is in front.
-    let m = Buffers {};
+    let m = PistonBetweenBodies {};
     for side in [1.0, -1.0] {
         let tau = m.generalized_forces(&[0.0, 2.0 * side].into(), &[5.0].into());
         assert_eq!(tau, SVector::from([-5.0 * side, 5.0 * side]));

@@ -6,7 +6,7 @@ use linkwork_models::{AnymalB, Panda, PandaArm, SimpleHumanoid, Solo12, Ur5};
 
 const NONE: f64 = f64::INFINITY;
 
-fn vector_from_entries<T: Real, const N: usize>(entries: [T; N]) -> SVector<T, N> {
+fn static_vector_from_array<T: Real, const N: usize>(entries: [T; N]) -> SVector<T, N> {
     SVector::from(entries)
 }
 
@@ -23,7 +23,10 @@ fn limit_attribute(file: &str, joint: &str, attribute: &str) -> Option<f64> {
 
 /// Compares the limits of a robot without coupled joints with the text of its file. Returns the number of
 /// bounds.
-fn compare_limits<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, file: &str) -> usize
+fn compare_limits_with_robot_file<M, const NQ: usize, const NV: usize, const NU: usize>(
+    robot: &M,
+    file: &str,
+) -> usize
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64> + Limits<NQ, NV, Scalar = f64>,
 {
@@ -49,11 +52,11 @@ fn robots_have_the_joint_limits_of_their_files() {
     let text_of_urdf = |file: &str| {
         std::fs::read_to_string(format!("{}/../models/urdf/{file}.urdf", env!("CARGO_MANIFEST_DIR"))).unwrap()
     };
-    assert_eq!(compare_limits(&Ur5, &text_of_urdf("ur5")), 24);
-    assert_eq!(compare_limits(&PandaArm, &text_of_urdf("panda")), 28);
-    assert_eq!(compare_limits(&Solo12, &text_of_urdf("solo12")), 48);
-    assert!(compare_limits(&AnymalB, &text_of_urdf("anymal_b")) > 0);
-    assert!(compare_limits(&SimpleHumanoid, &text_of_urdf("simple_humanoid")) > 0);
+    assert_eq!(compare_limits_with_robot_file(&Ur5, &text_of_urdf("ur5")), 24);
+    assert_eq!(compare_limits_with_robot_file(&PandaArm, &text_of_urdf("panda")), 28);
+    assert_eq!(compare_limits_with_robot_file(&Solo12, &text_of_urdf("solo12")), 48);
+    assert!(compare_limits_with_robot_file(&AnymalB, &text_of_urdf("anymal_b")) > 0);
+    assert!(compare_limits_with_robot_file(&SimpleHumanoid, &text_of_urdf("simple_humanoid")) > 0);
 }
 
 /// Checks that the arm has the limits of Franka Emika's *Robot and interface specifications* (2021).
@@ -61,8 +64,8 @@ fn robots_have_the_joint_limits_of_their_files() {
 fn panda_has_the_limits_of_its_data_sheet() {
     let lower = [-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0.0];
     let speed = [2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61, 0.2];
-    assert_eq!(Panda.lower_limits(), vector_from_entries(lower));
-    assert_eq!(Panda.velocity_limits(), vector_from_entries(speed));
+    assert_eq!(Panda.lower_limits(), static_vector_from_array(lower));
+    assert_eq!(Panda.velocity_limits(), static_vector_from_array(speed));
     assert_eq!(Panda.effort_limits()[4], 12.0);
     // The second finger follows the first and has the same limits.
     assert_eq!((Panda.upper_limits()[7], Panda.effort_limits()[7]), (0.04, 100.0));
@@ -70,22 +73,34 @@ fn panda_has_the_limits_of_its_data_sheet() {
 
 /// Robot with followers, joints without bounds, and infinite and absent values.
 #[mechanism(urdf = "data/urdf/limits.urdf", lock = ["held"])]
-struct Several;
+struct RobotWithVariousLimits;
 
 #[mechanism(urdf = "data/urdf/limits.urdf", lock = ["held"], limits = ignore)]
-struct Ignored;
+struct RobotWithIgnoredLimits;
 
 #[test]
 fn limits_are_read_in_every_file_format() {
-    assert_eq!(Several::VELOCITIES, ["leader", "wheel", "endless", "rail", "free"]);
+    assert_eq!(RobotWithVariousLimits::VELOCITIES, ["leader", "wheel", "endless", "rail", "free"]);
     // −2 q + 0.5 from −2 to 1.5 is q from −0.5 to 1.25; the follower's maximum velocity of 4 is 2 of the
     // leader's. The effort limit of the leader is its own.
-    assert_eq!(Several.lower_limits(), vector_from_entries([-0.5, -NONE, -NONE, -NONE, -NONE]));
-    assert_eq!(Several.upper_limits(), vector_from_entries([1.25, NONE, NONE, 0.5, NONE]));
-    assert_eq!(Several.velocity_limits(), vector_from_entries([2.0, 50.0, NONE, 0.0, NONE]));
-    assert_eq!(Several.effort_limits(), vector_from_entries([10.0, 7.0, 5.0, 0.0, NONE]));
-    assert_eq!(Ignored.effort_limits(), vector_from_entries([NONE; 5]));
-    assert_eq!(Ignored.clamp_configuration(&vector_from_entries([9.0; 5])), vector_from_entries([9.0; 5]));
+    assert_eq!(
+        RobotWithVariousLimits.lower_limits(),
+        static_vector_from_array([-0.5, -NONE, -NONE, -NONE, -NONE])
+    );
+    assert_eq!(
+        RobotWithVariousLimits.upper_limits(),
+        static_vector_from_array([1.25, NONE, NONE, 0.5, NONE])
+    );
+    assert_eq!(
+        RobotWithVariousLimits.velocity_limits(),
+        static_vector_from_array([2.0, 50.0, NONE, 0.0, NONE])
+    );
+    assert_eq!(RobotWithVariousLimits.effort_limits(), static_vector_from_array([10.0, 7.0, 5.0, 0.0, NONE]));
+    assert_eq!(RobotWithIgnoredLimits.effort_limits(), static_vector_from_array([NONE; 5]));
+    assert_eq!(
+        RobotWithIgnoredLimits.clamp_configuration(&static_vector_from_array([9.0; 5])),
+        static_vector_from_array([9.0; 5])
+    );
 }
 
 #[test]
@@ -133,31 +148,31 @@ fn clamp_to_limits<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
 #[test]
 fn structs_declare_joint_limits() {
     let hand = Hand { reach: 1.0, strength: 4.0 };
-    assert_eq!(hand.lower_limits(), vector_from_entries([-1.0, -NONE, 0.0]));
-    assert_eq!(hand.upper_limits(), vector_from_entries([2.0, NONE, NONE]));
-    assert_eq!(hand.velocity_limits(), vector_from_entries([0.5, NONE, NONE]));
-    assert_eq!(hand.effort_limits(), vector_from_entries([4.0, NONE, NONE]));
+    assert_eq!(hand.lower_limits(), static_vector_from_array([-1.0, -NONE, 0.0]));
+    assert_eq!(hand.upper_limits(), static_vector_from_array([2.0, NONE, NONE]));
+    assert_eq!(hand.velocity_limits(), static_vector_from_array([0.5, NONE, NONE]));
+    assert_eq!(hand.effort_limits(), static_vector_from_array([4.0, NONE, NONE]));
     // Both limits apply: the second is the narrower one for a longer hand.
     let long = Hand { reach: 8.0, strength: 4.0 };
     assert_eq!((long.lower_limits()[0], long.upper_limits()[0]), (-8.0, 3.0));
     assert_eq!(long.prepare().upper_limits(), long.upper_limits());
     assert_eq!(
-        long.clamp_configuration(&vector_from_entries([9.0, 9.0, -9.0])),
-        vector_from_entries([3.0, 9.0, 0.0])
+        long.clamp_configuration(&static_vector_from_array([9.0, 9.0, -9.0])),
+        static_vector_from_array([3.0, 9.0, 0.0])
     );
-    let not_a_number = long.clamp_configuration(&vector_from_entries([f64::NAN, 0.0, 0.0]))[0];
+    let not_a_number = long.clamp_configuration(&static_vector_from_array([f64::NAN, 0.0, 0.0]))[0];
     assert!(not_a_number.is_nan());
     let single = Hand { reach: 8.0_f32, strength: 4.0 };
-    assert_eq!(single.upper_limits(), vector_from_entries([3.0, f32::INFINITY, f32::INFINITY]));
+    assert_eq!(single.upper_limits(), static_vector_from_array([3.0, f32::INFINITY, f32::INFINITY]));
     assert_eq!(
         clamp_to_limits(&&single, -5.0),
-        [vector_from_entries([-0.5, -5.0, -5.0]), [-4.0, -5.0, -5.0].into()]
+        [static_vector_from_array([-0.5, -5.0, -5.0]), [-4.0, -5.0, -5.0].into()]
     );
 }
 
 /// Slide whose direction rotates as a function of time.
 #[mechanism]
-struct Turning {
+struct SlideWithRotatingAxis {
     rate: f64,
     bead_range: f64,
     s: Coordinate,
@@ -171,17 +186,17 @@ struct Turning {
 
 #[test]
 fn joint_limits_are_independent_of_time() {
-    let turning = Turning { rate: 2.0, bead_range: 0.25 };
+    let turning = SlideWithRotatingAxis { rate: 2.0, bead_range: 0.25 };
     assert_eq!(turning.upper_limits()[0], 0.25);
-    assert_eq!(at(&turning, 3.0).clamp_configuration(&vector_from_entries([-1.0]))[0], -0.25);
+    assert_eq!(at(&turning, 3.0).clamp_configuration(&static_vector_from_array([-1.0]))[0], -0.25);
     assert_eq!(Mechanism::neutral(&turning)[0], 0.0);
 }
 
 /// Robot without inertia, for which only kinematics are generated.
 #[mechanism(urdf = "data/urdf/limits.urdf", inertia = none)]
-struct Weightless;
+struct MasslessRobot;
 
 #[test]
 fn kinematic_mechanisms_have_limits() {
-    assert_eq!((Weightless.lower_limits()[5], Weightless.upper_limits()[5]), (0.1, 0.2));
+    assert_eq!((MasslessRobot.lower_limits()[5], MasslessRobot.upper_limits()[5]), (0.1, 0.2));
 }

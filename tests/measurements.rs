@@ -209,7 +209,7 @@ where
 
         // In the total derivatives, accelerations are functions of state and inputs.
         let now = at(m, t);
-        let outputs_in_motion = |q: &_, v: &_, u: &_| {
+        let outputs_at_motion_acceleration = |q: &_, v: &_, u: &_| {
             let tau = Mechanism::generalized_forces(&now, 0.0, q, v, u);
             m.outputs(t, q, v, &Mechanism::forward_dynamics(&now, 0.0, q, v, &tau), u)
         };
@@ -218,17 +218,17 @@ where
         assert_close_matrices(
             "by q in motion",
             &found.by_q,
-            &derivative_columns(|d| outputs_in_motion(&m.integrate(&q, d), &v, &u)),
+            &derivative_columns(|d| outputs_at_motion_acceleration(&m.integrate(&q, d), &v, &u)),
         );
         assert_close_matrices(
             "by v in motion",
             &found.by_v,
-            &derivative_columns(|d| outputs_in_motion(&q, &(v + d), &u)),
+            &derivative_columns(|d| outputs_at_motion_acceleration(&q, &(v + d), &u)),
         );
         assert_close_matrices(
             "by u in motion",
             &found.by_u,
-            &derivative_columns(|d| outputs_in_motion(&q, &v, &(u + d))),
+            &derivative_columns(|d| outputs_at_motion_acceleration(&q, &v, &(u + d))),
         );
         assert!(found.by_a.amax() == 0.0);
     }
@@ -336,7 +336,7 @@ struct Loaded {
 
 /// Two rods on a cart, without force elements.
 #[mechanism(gravity = -9.81 * y)]
-struct Bare {
+struct ForceFreeCart {
     #[body(mass = 2)]
     cart: Body,
     #[joint(ground -> cart, along = x)]
@@ -365,7 +365,7 @@ fn element_powers_equal_energy_rates() {
         let assert_close_values = |found: f64, expected: f64| {
             assert!((found - expected).abs() < 1e-10 * (1.0 + expected.abs()), "{found} {expected}");
         };
-        let passive = v.dot(&(Bare {}.bias_forces(&q, &v) - m.bias_forces(&q, &v)));
+        let passive = v.dot(&(ForceFreeCart {}.bias_forces(&q, &v) - m.bias_forces(&q, &v)));
         assert_close_values(m.stored(&q, &v) + m.lost(&q, &v) + m.applied(&q, &v), passive);
         assert_close_values(m.controlled(&q, &v, &u), v.dot(&m.generalized_forces(&q, &u)));
         assert_close_values(m.lost(&q, &v), -m.dissipated_power(&q, &v));
@@ -373,7 +373,8 @@ fn element_powers_equal_energy_rates() {
         assert_close_values(m.of_grease(&q, &v), -0.7 * v[4] * v[4]);
         // Potential energy decreases along the motion by the power that springs deliver.
         let configuration_after = |h: f64| m.integrate(&q, &(v * h));
-        let energy_of_elements = |q: &SVector<f64, 6>| m.potential_energy(q) - Bare {}.potential_energy(q);
+        let energy_of_elements =
+            |q: &SVector<f64, 6>| m.potential_energy(q) - ForceFreeCart {}.potential_energy(q);
         let h = 1e-5;
         let slope = (energy_of_elements(&configuration_after(h))
             - energy_of_elements(&configuration_after(-h)))

@@ -11,7 +11,7 @@ const TOLERANCE: f64 = 1e-10;
 const FORWARD: f64 = 1e-9;
 
 #[mechanism(mjcf = "data/mjcf/everything.xml")]
-struct Everything;
+struct RobotOfAllMjcfElements;
 
 #[mechanism(mjcf = "data/mjcf/free_bodies.xml")]
 struct FreeBodies;
@@ -58,7 +58,7 @@ macro_rules! check_frames {
             Record::load(concat!("mujoco/", $name, ".json")).records_with_key("cases").iter().enumerate()
         {
             let placements = $robot.frame_placements(&case.vector_with_key("q"));
-            for (frame, expected) in case.named_lists("frames") {
+            for (frame, expected) in case.number_lists_with_names("frames") {
                 let index = $robot::FRAMES.iter().position(|known| *known == frame);
                 let placement = placements[index.unwrap_or_else(|| panic!("no frame `{frame}`"))];
                 let rotation = placement.rotation.matrix().transpose();
@@ -72,12 +72,15 @@ macro_rules! check_frames {
 #[test]
 fn mjcf_joints_shapes_classes_and_servos_agree_with_mujoco() {
     assert_eq!(
-        Everything::VELOCITIES,
+        RobotOfAllMjcfElements::VELOCITIES,
         ["yaw", "pitch", "reach", "roll.wx", "roll.wy", "roll.wz", "body4_slide", "spin", "tilt"]
     );
-    assert_eq!(Everything::INPUTS, ["yaw", "pitch_servo", "reach_velocity", "tilt", "belt", "cord"]);
-    check_robot(&Everything, "everything");
-    check_frames!(Everything, "everything");
+    assert_eq!(
+        RobotOfAllMjcfElements::INPUTS,
+        ["yaw", "pitch_servo", "reach_velocity", "tilt", "belt", "cord"]
+    );
+    check_robot(&RobotOfAllMjcfElements, "everything");
+    check_frames!(RobotOfAllMjcfElements, "everything");
 }
 
 #[test]
@@ -114,11 +117,17 @@ fn mjcf_spatial_tendons_agree_with_mujoco() {
 fn mjcf_actuators_with_states_agree_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/drives.xml", derivatives)]
     #[derive(Clone, Copy)]
-    struct Drives;
+    struct RobotWithStatefulActuators;
 
-    assert_eq!(Drives::INPUTS[6..11], ["triceps", "servo_pos", "servo_vel", "servo_ff", "holding"]);
-    assert_eq!(Drives::INPUTS[14..], ["wound_pos", "wound_vel", "wound_ff", "wound_voltage"]);
-    let drives = Drives::FILE;
+    assert_eq!(
+        RobotWithStatefulActuators::INPUTS[6..11],
+        ["triceps", "servo_pos", "servo_vel", "servo_ff", "holding"]
+    );
+    assert_eq!(
+        RobotWithStatefulActuators::INPUTS[14..],
+        ["wound_pos", "wound_vel", "wound_ff", "wound_voltage"]
+    );
+    let drives = RobotWithStatefulActuators::FILE;
     let whole = drives.extended();
     let state_rates = |q: &SVector<f64, 6>, v: &SVector<f64, 18>, u: &SVector<f64, 18>| {
         whole.forward_dynamics(0.0, q, v, &whole.generalized_forces(0.0, q, v, u))
@@ -146,9 +155,9 @@ fn mjcf_actuators_with_states_agree_with_mujoco() {
 #[test]
 fn mjcf_fluid_drag_agrees_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/medium.xml")]
-    struct Medium;
+    struct RobotInMedium;
 
-    check_robot(&Medium, "medium");
+    check_robot(&RobotInMedium, "medium");
 }
 
 /// A connection constrains two points to coincide, a weld constrains two bodies. The out-of-plane conditions
@@ -173,23 +182,29 @@ fn mjcf_loops_agree_with_mujoco() {
 #[test]
 fn mjcf_coordinate_couplings_agree_with_mujoco() {
     #[mechanism(mjcf = "data/mjcf/conditions.xml")]
-    struct Conditions;
+    struct RobotWithJointEqualities;
 
     // `right` is a function of `left`, since their sum is constrained.
-    assert_eq!((Conditions::NV, Conditions::NC, Conditions::NU), (7, 3, 4));
+    assert_eq!(
+        (RobotWithJointEqualities::NV, RobotWithJointEqualities::NC, RobotWithJointEqualities::NU),
+        (7, 3, 4)
+    );
     for (i, case) in Record::load("mujoco/conditions.json").records_with_key("cases").iter().enumerate() {
-        let all_and_arm_numbers = |what: &str| {
+        let all_numbers_and_first_seven = |what: &str| {
             let all = case.numbers_with_key(what);
             let kept: Vec<f64> = all.iter().copied().take(7).collect();
             (all, kept)
         };
-        let ((q, own_q), (v, own_v), (a, own_a)) =
-            (all_and_arm_numbers("q"), all_and_arm_numbers("v"), all_and_arm_numbers("a"));
+        let ((q, own_q), (v, own_v), (a, own_a)) = (
+            all_numbers_and_first_seven("q"),
+            all_numbers_and_first_seven("v"),
+            all_numbers_and_first_seven("a"),
+        );
         assert!((q[7] - (-0.2 + 2.0 * q[6] - 0.4)).abs() < 1e-12 && (v[7] - 2.0 * v[6]).abs() < 1e-12);
         let (q, v) = (SVector::from_vec(own_q), SVector::from_vec(own_v));
-        assert!(Conditions.constraint_residuals(&q).amax() < 1e-12, "case {i}");
-        assert!(Conditions.constraint_rates(&q, &v).amax() < 1e-12, "case {i}");
-        let (found, _) = Conditions.constrained_dynamics(&q, &v, &SVector::zeros());
+        assert!(RobotWithJointEqualities.constraint_residuals(&q).amax() < 1e-12, "case {i}");
+        assert!(RobotWithJointEqualities.constraint_rates(&q, &v).amax() < 1e-12, "case {i}");
+        let (found, _) = RobotWithJointEqualities.constrained_dynamics(&q, &v, &SVector::zeros());
         assert_close(format!("conditions, case {i}"), found.as_slice(), &own_a, 1e-7);
         assert!((a[7] - 2.0 * a[6]).abs() < 1e-9);
     }
@@ -199,14 +214,14 @@ fn mjcf_coordinate_couplings_agree_with_mujoco() {
 #[test]
 fn contacts_refer_to_mjcf_shapes() {
     #[mechanism(mjcf = "data/mjcf/contacts.xml")]
-    struct Standing {
+    struct RobotShapeContacts {
         #[contact(collision(), ground.plane(z), friction = 0.5)]
         floor: Contact,
     }
 
-    let mut q = Standing {}.neutral();
+    let mut q = RobotShapeContacts {}.neutral();
     (q[2], q[9]) = (0.5, 0.4);
-    let gaps = Standing {}.contact_gaps(&q);
+    let gaps = RobotShapeContacts {}.contact_gaps(&q);
     // Eight corners of the box, the ends of the capsule, the ellipsoid.
     let expected = [0.4, 0.4, 0.4, 0.4, 0.6, 0.6, 0.6, 0.6, 0.7 - 0.05, 0.9 - 0.05, 0.4 - 0.2];
     let mut found: Vec<f64> = gaps.iter().copied().collect();
@@ -220,12 +235,16 @@ fn contacts_refer_to_mjcf_shapes() {
 #[test]
 fn mjcf_contacts_are_read_from_the_file() -> Result<(), linkwork::integrate::Error> {
     #[mechanism(mjcf = "data/mjcf/contacts.xml", contacts = file)]
-    struct Sliding;
+    struct ContactsOfMjcfFile;
 
-    assert_eq!((Sliding::CONTACTS.len(), Sliding::CONTACTS[0]), (11, "box_geom0_contact.0"));
-    let (mut q, mut v) = (Sliding.neutral(), SVector::zeros());
+    assert_eq!(
+        (ContactsOfMjcfFile::CONTACTS.len(), ContactsOfMjcfFile::CONTACTS[0]),
+        (11, "box_geom0_contact.0")
+    );
+    let (mut q, mut v) = (ContactsOfMjcfFile.neutral(), SVector::zeros());
     (q[2], q[9], v[0]) = (0.1, 2.0, 1.0);
-    let end = simulate(&Sliding).from(q, v).method(TimeStepping::step(1e-3)).duration(0.1).finish()?;
+    let end =
+        simulate(&ContactsOfMjcfFile).from(q, v).method(TimeStepping::step(1e-3)).duration(0.1).finish()?;
     assert!((end.v[0] - (1.0 - 0.4 * 9.81 * 0.1)).abs() < 1e-9, "{}", end.v[0]);
     assert!((end.v[8] + 0.981).abs() < 1e-9, "the egg falls beside it");
     Ok(())
@@ -235,21 +254,21 @@ fn mjcf_contacts_are_read_from_the_file() -> Result<(), linkwork::integrate::Err
 #[test]
 fn mjcf_options_change_or_omit_elements() {
     #[mechanism(mjcf = "data/mjcf/coupled.xml", mimic = independent, inputs = joints, passive = ignore)]
-    struct Independent;
+    struct FileWithIndependentMimics;
     #[mechanism(mjcf = "data/mjcf/coupled.xml", inputs = none, lock = ["left"], gravity = -3.7 * z)]
-    struct Locked;
+    struct FileWithLockedJoints;
 
-    assert_eq!(Independent::VELOCITIES, ["turn", "left", "right", "flap"]);
-    assert_eq!(Independent::INPUTS, Independent::VELOCITIES);
+    assert_eq!(FileWithIndependentMimics::VELOCITIES, ["turn", "left", "right", "flap"]);
+    assert_eq!(FileWithIndependentMimics::INPUTS, FileWithIndependentMimics::VELOCITIES);
     let (q, v) = ([0.3, 0.1, 0.2, -0.4].into(), [0.5, -1.0, 2.0, 0.7].into());
-    assert_eq!(Independent.dissipated_power(&q, &v), 0.0);
+    assert_eq!(FileWithIndependentMimics.dissipated_power(&q, &v), 0.0);
     // The inertia of the rotor remains, since it is no passive force.
     let with_rotor = Coupled.mass_matrix(&[0.0, 0.02].into())[3];
     assert!(with_rotor > 7.5 * 7.5 * 0.01);
 
     // A joint that follows a locked joint is locked, too.
-    assert_eq!((Locked::NV, Locked::NU), (1, 0));
-    let fall = Locked.bias_forces(&[0.0].into(), &[0.0].into())[0];
+    assert_eq!((FileWithLockedJoints::NV, FileWithLockedJoints::NU), (1, 0));
+    let fall = FileWithLockedJoints.bias_forces(&[0.0].into(), &[0.0].into())[0];
     let there = Coupled.bias_forces(&[0.0, 0.0].into(), &[0.0, 0.0].into())[0];
     assert!((fall / there - 3.7 / 9.81).abs() < 1e-12, "{fall} {there}");
 }
@@ -258,10 +277,10 @@ fn mjcf_options_change_or_omit_elements() {
 /// joint's own.
 #[test]
 fn mjcf_limits_have_the_units_of_the_file() {
-    let (lower, upper) = (Everything.lower_limits(), Everything.upper_limits());
+    let (lower, upper) = (RobotOfAllMjcfElements.lower_limits(), RobotOfAllMjcfElements.upper_limits());
     assert_close("angles", &[lower[0], upper[0]], &[-90.0, 120.0].map(f64::to_radians), 1e-15);
     assert_eq!([lower[2], upper[2], lower[1]], [-0.1, 0.4, f64::NEG_INFINITY]);
-    let efforts = Everything.effort_limits();
+    let efforts = RobotOfAllMjcfElements.effort_limits();
     // The servo of a tendon drives the first joint, too, and has no limit.
     assert_eq!([efforts[0], efforts[8]], [f64::INFINITY, 9.0]);
 }

@@ -15,7 +15,7 @@ use support::random::Random;
 use support::robots::*;
 
 /// Allocator of the system that counts the calls of each thread.
-struct Counting;
+struct CountingAllocator;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
@@ -27,7 +27,7 @@ fn count_heap_call() {
 }
 
 // SAFETY: every call is passed to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
+unsafe impl GlobalAlloc for CountingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count_heap_call();
         // SAFETY: the caller guarantees the conditions of the allocator.
@@ -42,7 +42,7 @@ unsafe impl GlobalAlloc for Counting {
 }
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Returns the number of heap allocations and deallocations while `f` runs.
 fn heap_calls<T>(f: impl FnOnce() -> T) -> usize {

@@ -297,7 +297,7 @@ impl Problem {
 fn dynamic_programming_converges_quadratically() {
     let m = Pendubot {};
     let problem = Problem { method: SemiImplicitEuler::step(0.02), goal: [0.9, 0.4].into() };
-    let slopes_of_iterations = |curved_from: usize| {
+    let gradient_norms_of_iterations = |curved_from: usize| {
         let mut inputs = vec![SVector::from([0.5]); STEPS];
         let mut states = vec![(SVector::from([0.0, 0.0]), SVector::from([0.0, 0.0]))];
         for u in &inputs {
@@ -324,7 +324,7 @@ fn dynamic_programming_converges_quadratically() {
         }
         slopes
     };
-    let (newton, gauss) = (slopes_of_iterations(5), slopes_of_iterations(usize::MAX));
+    let (newton, gauss) = (gradient_norms_of_iterations(5), gradient_norms_of_iterations(usize::MAX));
     println!("{newton:?}\n{gauss:?}");
     // From the fifth iteration on, each gradient is below a multiple of the square of the one before, down to
     // rounding error.

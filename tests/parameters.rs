@@ -5,14 +5,14 @@ use linkwork::identification::{PutBackError, approach};
 use linkwork::lanes::f64x4;
 use linkwork::nalgebra::SVector;
 use linkwork::{Fault, Inertial, Lanes, Placement, frame, mechanism};
-use support::compare::{assert_close, assert_same_dynamics, assert_similar};
+use support::compare::{assert_close, assert_close_relative_to_largest, assert_same_dynamics};
 use support::random::Random;
 
 const TOLERANCE: f64 = 1e-11;
 
 /// Robot with links and joints of all kinds and constant values.
 #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, derivatives, regressor)]
-struct Everything;
+struct RobotOfAllJoints;
 
 /// Robot with links and joints of all kinds whose values are all parameters.
 #[mechanism(
@@ -20,7 +20,7 @@ struct Everything;
     parameters = [inertial, placement, damping, friction]
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct AllOfIt;
+struct RobotWithAllParameters;
 
 /// Quadruped robot whose inertial parameters are fields of the struct.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, parameters = inertial, prepare)]
@@ -29,15 +29,16 @@ pub struct Quadruped;
 
 #[test]
 fn parametric_robot_with_file_values_equals_the_file_robot() {
-    let (plain, robot) = (Everything, AllOfIt::FILE);
+    let (plain, robot) = (RobotOfAllJoints, RobotWithAllParameters::FILE);
     assert_eq!(robot.validate(), Ok(()));
-    assert_eq!(AllOfIt::from_file(), robot);
+    assert_eq!(RobotWithAllParameters::from_file(), robot);
     assert_same_dynamics(&robot, &plain, 20, TOLERANCE);
     assert_same_dynamics(&robot.prepare(), &plain, 20, TOLERANCE);
     let mut random = Random::new(3);
     let q = random.random_configuration(&plain);
     let [v, a] = [random.random_vector(2.0), random.random_vector(2.0)];
-    let assert_similar_values = |what: &str, a: &[f64], b: &[f64]| assert_similar(what, a, b, TOLERANCE);
+    let assert_similar_values =
+        |what: &str, a: &[f64], b: &[f64]| assert_close_relative_to_largest(what, a, b, TOLERANCE);
     let (one, other) =
         (robot.inverse_dynamics_derivatives(&q, &v, &a), plain.inverse_dynamics_derivatives(&q, &v, &a));
     assert_similar_values("by q", one.0.as_slice(), other.0.as_slice());
@@ -65,9 +66,9 @@ fn parametric_robot_with_file_values_equals_the_file_robot() {
 
 /// Arm with the constant values of the file before its numbers are changed.
 #[mechanism(urdf = "data/urdf/arm_before.urdf")]
-struct Before;
+struct ArmBeforeChange;
 #[mechanism(urdf = "data/urdf/arm_after.urdf")]
-struct After;
+struct ArmAfterChange;
 
 /// Arm from a file in which all values are parameters, with a load as an additional parameter.
 #[mechanism(
@@ -84,9 +85,9 @@ struct Arm<T> {
 /// Parameters of the arm with the default values of another file.
 #[mechanism(urdf = "data/urdf/arm_after.urdf", parameters = [inertial, placement, damping, friction])]
 #[derive(Clone, Copy)]
-struct Figures;
+struct ParametersOfOtherFile;
 
-fn arm_with_parameters(f: &Figures) -> Arm<f64> {
+fn arm_with_parameters(f: &ParametersOfOtherFile) -> Arm<f64> {
     Arm {
         load: 0.0,
         upper_arm: f.upper_arm,
@@ -107,9 +108,9 @@ fn arm_with_parameters(f: &Figures) -> Arm<f64> {
 #[test]
 fn parametric_robot_with_new_values_equals_the_new_file_robot() {
     let before = Arm::<f64>::from_file(0.0);
-    assert_same_dynamics(&before, &Before, 20, TOLERANCE);
-    let after = arm_with_parameters(&Figures::FILE);
-    assert_same_dynamics(&after, &After, 20, TOLERANCE);
+    assert_same_dynamics(&before, &ArmBeforeChange, 20, TOLERANCE);
+    let after = arm_with_parameters(&ParametersOfOtherFile::FILE);
+    assert_same_dynamics(&after, &ArmAfterChange, 20, TOLERANCE);
     assert_ne!(before, after);
     // The parameters have the values that the file states; the inertia of the file is in other axes.
     assert_eq!(
@@ -225,7 +226,7 @@ struct SingleWrist;
 
 /// Returns other inertial parameters of a physically consistent body: part of the known body's density, and
 /// two point masses.
-fn other_inertial(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
+fn physically_consistent_inertial(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
     let mut point = || {
         Inertial::point(
             link.mass * (0.06 + random.uniform_number(0.05)),
@@ -246,7 +247,7 @@ fn check_same_torques(one: &Panda, other: &Panda) {
     for _ in 0..20 {
         let [q, v, a] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(3.0)];
         let (one, other) = (one.inverse_dynamics(&q, &v, &a), other.inverse_dynamics(&q, &v, &a));
-        assert_similar("torques", one.as_slice(), other.as_slice(), 1e-8);
+        assert_close_relative_to_largest("torques", one.as_slice(), other.as_slice(), 1e-8);
     }
 }
 
@@ -255,14 +256,15 @@ fn identified_base_parameters_convert_to_mass_parameters() {
     let mut random = Random::new(17);
     for _ in 0..3 {
         let mut truth = Panda::FILE;
-        truth.set_inertials(&truth.inertials().map(|link| other_inertial(&mut random, &link)));
+        truth
+            .set_inertials(&truth.inertials().map(|link| physically_consistent_inertial(&mut random, &link)));
         assert_eq!(truth.validate(), Ok(()));
         let base = truth.base_parameters(&truth.standard_parameters());
         let mut found = Panda::FILE;
         found.set_base_parameters(&base).unwrap();
         assert_eq!(found.validate(), Ok(()));
         let again = found.base_parameters(&found.standard_parameters());
-        assert_similar("base parameters", again.as_slice(), base.as_slice(), 1e-9);
+        assert_close_relative_to_largest("base parameters", again.as_slice(), base.as_slice(), 1e-9);
         check_same_torques(&found, &truth);
         // The bodies differ: combinations of parameters without effect on the torques cannot be identified.
         assert_ne!(found, truth);
@@ -297,7 +299,7 @@ fn noisy_identification_yields_physical_bodies() {
     let mut found = file;
     approach(&mut found, &base, 1e-6).unwrap();
     let again = found.base_parameters(&found.standard_parameters());
-    assert_similar("base parameters", again.as_slice(), base.as_slice(), 1e-4);
+    assert_close_relative_to_largest("base parameters", again.as_slice(), base.as_slice(), 1e-4);
     assert!(approach(&mut found, &base, -1.0).is_err());
 }
 

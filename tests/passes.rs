@@ -14,16 +14,18 @@ use linkwork_compiler::lower::lower;
 use linkwork_compiler::mechanics::passive::passive_forces;
 use linkwork_compiler::mechanics::{self, aba, crba, energy, forces, frames, ldl, momentum, rnea};
 use linkwork_compiler::mechanism::{Model, Quantity};
-use linkwork_compiler::passes::{Passes, Variant, in_common_axes, link_sizes, model_variants};
-use linkwork_compiler::syntax::Requests;
-use linkwork_compiler::vectorise::{Limbs, find_limb_groups};
-use linkwork_compiler::{compile_with, derive_with_options, read_source};
+use linkwork_compiler::passes::{
+    Passes, Variant, characteristic_link_sizes, model_variants, variants_in_common_axes,
+};
+use linkwork_compiler::syntax::RequestedFunctions;
+use linkwork_compiler::vectorise::{VectorisedMechanism, find_limb_groups};
+use linkwork_compiler::{compile_with_passes, derive_with_options, read_source};
 use proptest::prelude::*;
 use random_limbs::random_creatures;
 use random_robot::random_robots;
 use random_tree::random_trees;
 use std::path::Path;
-use support::model::{random_symbol_values, try_model, with_model};
+use support::model::{check_model_or_errors, random_symbol_values, with_model};
 use support::random::property_test_config;
 
 /// Tolerance between results with and without passes, relative to the largest entry.
@@ -45,7 +47,10 @@ fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) 
 }
 
 /// Returns all functions of a model as expressions. Functions that depend on the axes of links come last.
-fn functions_of_model<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<(&'static str, Vec<Expr<'g>>)> {
+fn expressions_of_all_model_functions<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+) -> Vec<(&'static str, Vec<Expr<'g>>)> {
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let (mass, moment) = energy::mass_and_moment(model, joints);
     vec![
@@ -87,11 +92,13 @@ fn frame_placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>
 fn check_variants(model: &Model<'_>, seed: u64) {
     let at = random_symbol_values(model, seed);
     let joints = kinematics::joints_of_model(model);
-    let old: Vec<_> =
-        functions_of_model(model, &joints).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
-    let check_variant = |variant: &Variant<'_>, count: usize| {
+    let old: Vec<_> = expressions_of_all_model_functions(model, &joints)
+        .into_iter()
+        .map(|(name, e)| (name, eval(&e, &at)))
+        .collect();
+    let check_functions_of_variant = |variant: &Variant<'_>, count: usize| {
         for ((name, new), (_, old)) in
-            functions_of_model(&variant.model, &variant.joints).iter().zip(&old[..count])
+            expressions_of_all_model_functions(&variant.model, &variant.joints).iter().zip(&old[..count])
         {
             assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
         }
@@ -99,8 +106,10 @@ fn check_variants(model: &Model<'_>, seed: u64) {
     };
     for passes in CHOICES {
         let variants = model_variants(model, passes);
-        variants.iter().for_each(|variant| check_variant(variant, old.len()));
-        in_common_axes(&variants).iter().for_each(|variant| check_variant(variant, old.len() - 2));
+        variants.iter().for_each(|variant| check_functions_of_variant(variant, old.len()));
+        variants_in_common_axes(&variants)
+            .iter()
+            .for_each(|variant| check_functions_of_variant(variant, old.len() - 2));
     }
 }
 
@@ -126,7 +135,7 @@ fn check_forward_dynamics(variant: &Variant<'_>, seed: u64) {
 
 /// Checks that the generated programs have the same results with and without passes, and no more operations
 /// with passes.
-fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tolerance: f64) {
+fn check_passes_preserve_results(name: &str, model: &Model<'_>, new: &Output, old: &Output, tolerance: f64) {
     for seed in 0..3 {
         let at = random_symbol_values(model, seed);
         for (new, old) in new.functions.iter().zip(&old.functions) {
@@ -144,7 +153,7 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
         }
     }
     if let Some(prepared) = &new.prepared {
-        check_prepared(name, model, prepared, old, tolerance);
+        check_prepared_functions(name, model, prepared, old, tolerance);
     }
     for (new, old) in new.functions.iter().zip(&old.functions) {
         if ["mass_matrix", "inverse_dynamics"].contains(&new.name.as_str()) {
@@ -159,7 +168,13 @@ const OFF: Passes =
     Passes { frames: false, regroup: false, parallel: false, lanes: false, free_parameters: false };
 
 /// Checks that functions of prepared numbers have the results of the functions of parameters.
-fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Output, tolerance: f64) {
+fn check_prepared_functions(
+    name: &str,
+    model: &Model<'_>,
+    prepared: &Prepared,
+    old: &Output,
+    tolerance: f64,
+) {
     for seed in 0..3 {
         let at = random_symbol_values(model, seed);
         let numbers = prepared.numbers.interpret_program(&at);
@@ -183,10 +198,10 @@ fn check_robot(name: &str, options: &str) {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let source = read_source(parse_tokens(&arguments), parse_tokens("pub struct Robot;"), folder, &mut cx)
         .expect("it is read");
-    let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
+    let (model, old) = compile_with_passes(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
-        let (_, new) = compile_with(&source, &graph, passes, &mut cx).expect("it compiles");
-        check_programs(name, &model, &new, &old, 1e-12);
+        let (_, new) = compile_with_passes(&source, &graph, passes, &mut cx).expect("it compiles");
+        check_passes_preserve_results(name, &model, &new, &old, 1e-12);
     }
 }
 
@@ -222,12 +237,12 @@ fn check_limb_variants(model: &Model<'_>, interacts: bool, seed: u64) {
         _ => at(s),
     };
     let all = CHOICES.into_iter().flat_map(|passes| model_variants(model, passes)).collect::<Vec<_>>();
-    for variant in all.iter().chain(&in_common_axes(&all)) {
+    for variant in all.iter().chain(&variants_in_common_axes(&all)) {
         let groups = find_limb_groups(&variant.model, &variant.joints);
         assert!(!groups.is_empty(), "the limbs are alike");
-        let Some(limbs) =
-            Limbs::new(&variant.model, &variant.joints, &groups, || passive_forces(&variant.model, true))
-        else {
+        let Some(limbs) = VectorisedMechanism::new(&variant.model, &variant.joints, &groups, || {
+            passive_forces(&variant.model, true)
+        }) else {
             // Limbs with numeric values always become lanes; expressions of parameters may have a different
             // structure in each limb.
             assert!(interacts || !model.parameters.is_empty(), "limbs become lanes");
@@ -265,7 +280,9 @@ proptest! {
         let source = creature.creature_source();
         let interacts = source.1.contains(" between");
         // Models with an element between a limb and itself are rejected.
-        let refused = try_model(&source, |_, model| check_limb_variants(model, interacts, seed)).is_err();
+        let refused = check_model_or_errors(
+            &source, |_, model| check_limb_variants(model, interacts, seed)).is_err(,
+        );
         prop_assert!(!refused || interacts);
     }
 
@@ -297,10 +314,10 @@ fn check_accuracy_of_variants(model: &Model<'_>, seed: u64) {
         found.iter().zip(&expected).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
     let (n, own) = (model.nv(), acceleration_error(model, &joints));
-    let extent: f64 = link_sizes(model).iter().sum();
+    let extent: f64 = characteristic_link_sizes(model).iter().sum();
     let all = CHOICES.into_iter().flat_map(|passes| model_variants(model, passes)).collect::<Vec<_>>();
     // Joints share common axes if they are parallel within the rounding of files.
-    let common = in_common_axes(&all);
+    let common = variants_in_common_axes(&all);
     let both =
         all.iter().map(|variant| (variant, 1e-12)).chain(common.iter().map(|variant| (variant, 5e-12)));
     for (variant, tolerance) in both {
@@ -371,10 +388,12 @@ proptest! {
         let _ = seed;
         with_model(&tree.tree_source(), |_, model| {
             let mut cx = Diagnostics::new();
-            let prepare = Requests { prepare: true, ..Requests::default() };
+            let prepare = RequestedFunctions { prepare: true, ..RequestedFunctions::default() };
             let new = derive_with_options(model, prepare, Passes::default(), &mut cx);
-            let old = derive_with_options(model, Requests::default(), OFF, &mut cx);
-            check_programs("tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8);
+            let old = derive_with_options(model, RequestedFunctions::default(), OFF, &mut cx);
+            check_passes_preserve_results(
+                "tree", model, &new.expect("it moves"), &old.expect("it moves"), 1e-8,
+            );
         });
     }
 }
@@ -395,12 +414,13 @@ fn parallel_joints_need_no_rotations() {
     let joints_in_common_axes = |axes| {
         let mut turning = Vec::new();
         with_model(&(String::new(), arm_with_axes(axes)), |_, model| {
-            let variant = in_common_axes(&model_variants(model, Passes::default())).into_iter().next();
+            let variant =
+                variants_in_common_axes(&model_variants(model, Passes::default())).into_iter().next();
             let Some(variant) = variant else { return };
             turning = variant
                 .joints
                 .iter()
-                .map(|joint| joint.rotation.rotation_matrix().constant_entries().is_none())
+                .map(|joint| joint.rotation.rotation_matrix().entries_if_all_constant().is_none())
                 .collect();
         });
         turning
@@ -433,9 +453,9 @@ fn nearly_zero_lengths_cost_no_accuracy() {
     let source =
         read_source(parse_tokens("gravity = -9.81 * y"), parse_tokens(&item), Path::new(""), &mut cx)
             .expect("it is read");
-    let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
+    let (model, old) = compile_with_passes(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
-        let (_, new) = compile_with(&source, &graph, passes, &mut cx).expect("it compiles");
-        check_programs("next to zero", &model, &new, &old, 1e-11);
+        let (_, new) = compile_with_passes(&source, &graph, passes, &mut cx).expect("it compiles");
+        check_passes_preserve_results("next to zero", &model, &new, &old, 1e-11);
     }
 }

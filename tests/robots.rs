@@ -14,7 +14,7 @@ const FORWARD: f64 = 1e-9;
 /// Tolerance of frame placements, Jacobians and velocities against the reference values.
 const KINEMATICS: f64 = 1e-12;
 
-fn reference_table(robot: &str) -> Record {
+fn load_robot_reference_record(robot: &str) -> Record {
     Record::load(&format!("robots/{robot}.json"))
 }
 
@@ -23,7 +23,7 @@ fn check_dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    for (i, case) in reference_table(name).records_with_key("cases").iter().enumerate() {
+    for (i, case) in load_robot_reference_record(name).records_with_key("cases").iter().enumerate() {
         let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
         let (q, v, a, tau) = (
             &case.vector_with_key("q"),
@@ -69,7 +69,7 @@ fn check_inputs<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M,
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let joints = reference_table(name).strings_with_key("velocities");
+    let joints = load_robot_reference_record(name).strings_with_key("velocities");
     let joints = &joints[joints.len() - NU..];
     assert_eq!(M::INPUTS[..], *joints);
     assert_eq!(M::VELOCITIES[NV - NU..], *joints);
@@ -86,9 +86,9 @@ where
 /// Checks the placements of all links, in any order.
 macro_rules! check_frames {
     ($robot:ident, $name:literal) => {
-        for (i, case) in reference_table($name).records_with_key("cases").iter().enumerate() {
+        for (i, case) in load_robot_reference_record($name).records_with_key("cases").iter().enumerate() {
             let placements = $robot.frame_placements(&case.vector_with_key("q"));
-            for (link, expected) in case.named_lists("frames") {
+            for (link, expected) in case.number_lists_with_names("frames") {
                 let index = $robot::FRAMES.iter().position(|frame| *frame == link);
                 let placement = placements[index.unwrap_or_else(|| panic!("no frame `{link}`"))];
                 let rotation = placement.rotation.matrix().transpose();
@@ -102,9 +102,9 @@ macro_rules! check_frames {
 /// Checks the motion of the last link, and of the robot as a whole.
 macro_rules! check_kinematics {
     ($robot:ident, $name:literal, $last:literal) => {
-        assert_eq!(reference_table($name).string_with_key("last_link"), $last);
+        assert_eq!(load_robot_reference_record($name).string_with_key("last_link"), $last);
         let last = frame!($robot, $last);
-        for (i, case) in reference_table($name).records_with_key("cases").iter().enumerate() {
+        for (i, case) in load_robot_reference_record($name).records_with_key("cases").iter().enumerate() {
             let label_of_case = |what: &str| format!("{}, case {i}: {what}", $name);
             let (q, v, a) =
                 (&case.vector_with_key("q"), &case.vector_with_key("v"), &case.vector_with_key("a"));
@@ -191,7 +191,9 @@ mod panda_mimic {
     #[test]
     fn mimic_panda_dynamics_agree_with_pinocchio() {
         let robot = PandaMimic;
-        for (i, case) in reference_table("panda_mimic").records_with_key("cases").iter().enumerate() {
+        for (i, case) in
+            load_robot_reference_record("panda_mimic").records_with_key("cases").iter().enumerate()
+        {
             let label_of_case = |what: &str| format!("panda with mimic, case {i}: {what}");
             let (q, v, a) =
                 (&case.vector_with_key("q"), &case.vector_with_key("v"), &case.vector_with_key("a"));
@@ -234,7 +236,7 @@ mod panda_mimic {
     /// first.
     #[test]
     fn mimic_joint_equals_an_independent_identical_finger() {
-        for case in reference_table("panda_mimic").records_with_key("cases") {
+        for case in load_robot_reference_record("panda_mimic").records_with_key("cases") {
             let (q, v) = (case.vector_with_key::<8>("q"), case.vector_with_key::<8>("v"));
             let (q_free, v_free) = (q.insert_row(8, q[7]), v.insert_row(8, v[7]));
             let energies = [PandaMimic.kinetic_energy(&q, &v), PandaMimic.potential_energy(&q)];
@@ -254,11 +256,12 @@ mod panda_mimic {
 /// Locked joints stay at zero: rows and columns of the other joints remain.
 #[test]
 fn locked_joints_stay_at_zero() {
-    for case in reference_table("panda").records_with_key("cases") {
+    for case in load_robot_reference_record("panda").records_with_key("cases") {
         let [q, v, a] =
             ["q", "v", "a"].map(|key| case.vector_with_key::<9>(key).fixed_rows::<7>(0).into_owned());
-        let add_finger_entries = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
-        let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| add_finger_entries(x)[i]));
+        let insert_zero_finger_entries = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
+        let [q_free, v_free, a_free] =
+            [q, v, a].map(|x| SVector::from_fn(|i, _| insert_zero_finger_entries(x)[i]));
 
         let mass_matrix = Panda.mass_matrix(&q_free).fixed_view::<7, 7>(0, 0).into_owned();
         assert_close("mass matrix", PandaArm.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), DYNAMICS);

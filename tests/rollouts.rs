@@ -17,7 +17,7 @@ struct Solo12;
 
 /// Pole on a cart that a magnet attracts: at the magnet itself the force is not finite.
 #[mechanism(gravity = -9.81 * y, batch)]
-struct Trap {
+struct CartPoleWithMagnet {
     #[body(mass = 1)]
     cart: Body,
     #[body(mass = 0.2, com = 0.3 * y, inertia = rod(0.2, 0.6, y))]
@@ -105,12 +105,12 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
 
 #[test]
 fn rollout_equals_integrator_runs_of_each_state() {
-    fn check_lockstep_method<S: Lockstep<f64> + Copy>(method: S) {
+    fn check_lockstep_equals_sequential<S: Lockstep<f64> + Copy>(method: S) {
         for count in [1, 5, 8, 19] {
             let mut expected = States::new(&Ur5, count);
             one_by_one(method, 50, &mut expected, count);
             let rollout = Rollout::new(method, 50).from_time(0.5);
-            let compare_bits = |found: &States, what: &str| {
+            let assert_bitwise_equal_states = |found: &States, what: &str| {
                 assert_eq!(bits_of_numbers(&found.q), bits_of_numbers(&expected.q), "{what}, {count} states");
                 assert_eq!(bits_of_numbers(&found.v), bits_of_numbers(&expected.v), "{what}, {count} states");
             };
@@ -118,16 +118,16 @@ fn rollout_equals_integrator_runs_of_each_state() {
             Ur5.lanes::<4>()
                 .roll_out(&rollout, &mut four.q, &mut four.v, proportional_derivative_law, unwatched)
                 .expect("finite");
-            compare_bits(&four, "four lanes");
+            assert_bitwise_equal_states(&four, "four lanes");
             let mut eight = States::new(&Ur5, count);
             Ur5.lanes::<8>()
                 .roll_out(&rollout, &mut eight.q, &mut eight.v, proportional_derivative_law, unwatched)
                 .expect("finite");
-            compare_bits(&eight, "eight lanes");
+            assert_bitwise_equal_states(&eight, "eight lanes");
         }
     }
-    check_lockstep_method(Rk4::step(2e-3));
-    check_lockstep_method(SemiImplicitEuler::step(1e-3));
+    check_lockstep_equals_sequential(Rk4::step(2e-3));
+    check_lockstep_equals_sequential(SemiImplicitEuler::step(1e-3));
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn failing_state_does_not_affect_other_states() {
     let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
     let mut q: Vec<f64> = (0..2 * count).map(|k| if k < count { 5.0 + k as f64 } else { 0.1 }).collect();
     let (start, mut v) = (q.clone(), vec![0.0; 2 * count]);
-    let lanes = Trap.lanes::<4>();
+    let lanes = CartPoleWithMagnet.lanes::<4>();
     let (mut good, mut good_v) = (q.clone(), v.clone());
     lanes.roll_out(&rollout, &mut good, &mut good_v, zero_inputs, unwatched).expect("far from the magnet");
     // These two states start at the magnet.

@@ -4,7 +4,7 @@ use linkwork::discrete::{self, StepByParameters};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::{Rk4, SemiImplicitEuler};
 use linkwork::{Derivatives, Sensitivities, mechanism};
-use support::compare::assert_similar;
+use support::compare::assert_close_relative_to_largest;
 use support::random::Random;
 
 /// Tolerance of derivatives against finite differences.
@@ -124,15 +124,15 @@ fn arm_sensitivities_agree_with_differences() {
         let [v, a, tau] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(5.0)];
         let inverse = arm.inverse_dynamics_by_parameters(&q, &v, &a);
         let expected = parameter_derivatives(arm, parameters, |arm| arm.inverse_dynamics(&q, &v, &a));
-        assert_similar("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
+        assert_close_relative_to_largest("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
         let forward = arm.forward_dynamics_by_parameters(&q, &v, &tau);
         let expected = parameter_derivatives(arm, parameters, |arm| arm.forward_dynamics(&q, &v, &tau));
-        assert_similar("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
+        assert_close_relative_to_largest("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
         let prepared = arm.prepare();
         let again = prepared.inverse_dynamics_by_parameters(&q, &v, &a);
-        assert_similar("prepared ∂τ/∂p", again.as_slice(), inverse.as_slice(), 1e-12);
+        assert_close_relative_to_largest("prepared ∂τ/∂p", again.as_slice(), inverse.as_slice(), 1e-12);
         let again = prepared.forward_dynamics_by_parameters(&q, &v, &tau);
-        assert_similar("prepared ∂v̇/∂p", again.as_slice(), forward.as_slice(), 1e-10);
+        assert_close_relative_to_largest("prepared ∂v̇/∂p", again.as_slice(), forward.as_slice(), 1e-10);
     }
 }
 
@@ -146,10 +146,10 @@ fn loaded_robot_sensitivities_agree_with_differences() {
     let [v, a, tau] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(5.0)];
     let inverse = robot.inverse_dynamics_by_parameters(&q, &v, &a);
     let expected = parameter_derivatives(robot, parameters, |robot| robot.inverse_dynamics(&q, &v, &a));
-    assert_similar("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
+    assert_close_relative_to_largest("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
     let forward = robot.forward_dynamics_by_parameters(&q, &v, &tau);
     let expected = parameter_derivatives(robot, parameters, |robot| robot.forward_dynamics(&q, &v, &tau));
-    assert_similar("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
+    assert_close_relative_to_largest("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
 }
 
 /// The hoop's bead satisfies `m r² θ̈ = m r (r Ω² cos θ − g) sin θ`, whose derivatives with respect to the
@@ -167,7 +167,7 @@ fn driven_hoop_sensitivities_have_closed_forms() {
         hoop.g * sin / (r * r) - 2.0 * 0.02 / (m * r * r * r),
         2.0 * hoop.spin * sin * cos,
     ];
-    assert_similar("∂v̇/∂p", by.as_slice(), &expected, 1e-12);
+    assert_close_relative_to_largest("∂v̇/∂p", by.as_slice(), &expected, 1e-12);
 }
 
 /// Flying body with a pendulum and a force at the end of an arm whose length is a parameter.
@@ -226,7 +226,14 @@ struct Gimbal {
 }
 
 /// Compares the derivatives of a step with differences, as displacements of the end of the step.
-fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+fn check_step_parameter_derivatives<
+    M,
+    S,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NP: usize,
+>(
     what: &str,
     m: M,
     method: &S,
@@ -244,9 +251,19 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP:
         let (by_q, by_v) = discrete::by_parameters(&m, method, t, &q, &v, &u).expect("it moves");
         let expected =
             parameter_derivatives(m, parameters, |other| m.difference(&end.0, &step_mechanism(other).0));
-        assert_similar(&format!("{what}: ∂q/∂p"), by_q.as_slice(), expected.as_slice(), TOLERANCE);
+        assert_close_relative_to_largest(
+            &format!("{what}: ∂q/∂p"),
+            by_q.as_slice(),
+            expected.as_slice(),
+            TOLERANCE,
+        );
         let expected = parameter_derivatives(m, parameters, |other| step_mechanism(other).1);
-        assert_similar(&format!("{what}: ∂v/∂p"), by_v.as_slice(), expected.as_slice(), TOLERANCE);
+        assert_close_relative_to_largest(
+            &format!("{what}: ∂v/∂p"),
+            by_v.as_slice(),
+            expected.as_slice(),
+            TOLERANCE,
+        );
     }
 }
 
@@ -255,16 +272,16 @@ fn step_sensitivities_agree_with_differences() {
     let flyer = Flyer { g: 9.7, m: 1.3, l: 0.6 };
     let of_flyer: [fn(&mut Flyer) -> &mut f64; 3] = [|m| &mut m.g, |m| &mut m.m, |m| &mut m.l];
     assert_eq!(<Flyer as Sensitivities<_, _, _, _>>::PARAMETERS, Flyer::PARAMETERS);
-    check_step("flyer, Rk4", flyer, &Rk4::step(0.1), of_flyer);
-    check_step("flyer, Euler", flyer, &SemiImplicitEuler::step(0.1), of_flyer);
+    check_step_parameter_derivatives("flyer, Rk4", flyer, &Rk4::step(0.1), of_flyer);
+    check_step_parameter_derivatives("flyer, Euler", flyer, &SemiImplicitEuler::step(0.1), of_flyer);
     let hoop = Hoop { g: 9.7, m: 0.4, radius: 0.3, spin: 5.0 };
     let of_hoop: [fn(&mut Hoop) -> &mut f64; 4] =
         [|m| &mut m.g, |m| &mut m.m, |m| &mut m.radius, |m| &mut m.spin];
-    check_step("hoop, Rk4", hoop, &Rk4::step(0.05), of_hoop);
+    check_step_parameter_derivatives("hoop, Rk4", hoop, &Rk4::step(0.05), of_hoop);
     let gimbal = Gimbal { g: 9.7, m: 1.3, l: 0.6 };
     let of_gimbal: [fn(&mut Gimbal) -> &mut f64; 3] = [|m| &mut m.g, |m| &mut m.m, |m| &mut m.l];
-    check_step("gimbal, Rk4", gimbal, &Rk4::step(0.02), of_gimbal);
-    check_step("gimbal, Euler", gimbal, &SemiImplicitEuler::step(0.02), of_gimbal);
+    check_step_parameter_derivatives("gimbal, Rk4", gimbal, &Rk4::step(0.02), of_gimbal);
+    check_step_parameter_derivatives("gimbal, Euler", gimbal, &SemiImplicitEuler::step(0.02), of_gimbal);
 }
 
 #[test]

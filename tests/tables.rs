@@ -3,7 +3,7 @@
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Lanes, Real, Table, mechanism};
-use support::compare::assert_similar;
+use support::compare::assert_close_relative_to_largest;
 use support::random::Random;
 
 /// Tolerance between an interpolated table and the formula from which its values were computed.
@@ -118,8 +118,9 @@ fn table_of_a_parabola_equals_the_parabola() {
     let (table, formula) = (tabulated_aircraft(900.0, 16.0), Written { mass: 900.0, area: 16.0 });
     let prepared = table.prepare();
     for State { q, v, u } in random_states() {
-        let check_same_values =
-            |what: &str, found: &[f64], expected: &[f64]| assert_similar(what, found, expected, FORMULA);
+        let check_same_values = |what: &str, found: &[f64], expected: &[f64]| {
+            assert_close_relative_to_largest(what, found, expected, FORMULA)
+        };
         let (tau, expected) = (table.generalized_forces(&q, &v, &u), formula.generalized_forces(&q, &v, &u));
         check_same_values("τ", tau.as_slice(), expected.as_slice());
         check_same_values(
@@ -163,14 +164,24 @@ fn table_derivatives_agree_with_high_order_differences() {
                 let by_q = derivative_at_zero(|s| acceleration_at_change(&(unit * s), &zero, &none));
                 let by_v = derivative_at_zero(|s| acceleration_at_change(&zero, &(unit * s), &none));
                 let acceleration_rows = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
-                assert_similar("by q", acceleration_rows(k).as_slice(), by_q.as_slice(), DIFFERENCE);
-                assert_similar("by v", acceleration_rows(6 + k).as_slice(), by_v.as_slice(), DIFFERENCE);
+                assert_close_relative_to_largest(
+                    "by q",
+                    acceleration_rows(k).as_slice(),
+                    by_q.as_slice(),
+                    DIFFERENCE,
+                );
+                assert_close_relative_to_largest(
+                    "by v",
+                    acceleration_rows(6 + k).as_slice(),
+                    by_v.as_slice(),
+                    DIFFERENCE,
+                );
             }
             for k in 0..2 {
                 let unit = SVector::<f64, 2>::from_fn(|i, _| f64::from(u8::from(i == k)));
                 let by_u = derivative_at_zero(|s| acceleration_at_change(&zero, &zero, &(unit * s)));
                 let column = input.fixed_view::<6, 1>(6, k).into_owned();
-                assert_similar("by u", column.as_slice(), by_u.as_slice(), DIFFERENCE);
+                assert_close_relative_to_largest("by u", column.as_slice(), by_u.as_slice(), DIFFERENCE);
             }
         }
     }
@@ -201,14 +212,24 @@ fn batched_table_lookups_are_independent() {
     for (lane, state) in states.iter().enumerate() {
         let one = aircraft.generalized_forces(&state.q, &state.v, &state.u);
         let lane_values = |all: &SVector<Lanes<f64, 4>, 6>| all.map(|x| x.0[lane]);
-        assert_similar("numbers of lanes", lane_values(&all).as_slice(), one.as_slice(), 1e-12);
-        assert_similar("functions of lanes", lane_values(&batched).as_slice(), one.as_slice(), 1e-12);
+        assert_close_relative_to_largest(
+            "numbers of lanes",
+            lane_values(&all).as_slice(),
+            one.as_slice(),
+            1e-12,
+        );
+        assert_close_relative_to_largest(
+            "functions of lanes",
+            lane_values(&batched).as_slice(),
+            one.as_slice(),
+            1e-12,
+        );
     }
 }
 
 /// Airframe whose outputs are the angles of flight for a known attitude and velocity.
 #[mechanism]
-struct Attitude {
+struct AirframeWithFlightAngles {
     #[body(mass = 1, inertia = sphere(1, 1))]
     airframe: Body,
     #[joint(ground -> airframe)]
@@ -237,13 +258,28 @@ fn flight_angles_reproduce_the_attitude() {
     let (attack, slip, speed) = (0.2_f64, -0.1_f64, 50.0);
     let body = Vector3::new(attack.cos() * slip.cos(), slip.sin(), attack.sin() * slip.cos()) * speed;
     let v = SVector::from_column_slice(&[body[0], body[1], body[2], 0.0, 0.0, 0.0]);
-    assert_similar("attitude", Attitude.attitude(&q).as_slice(), &[heading, elevation, bank], 1e-14);
-    assert_similar("incidence", Attitude.incidence(&q, &v).as_slice(), &[attack, slip, 0.0], 1e-14);
+    assert_close_relative_to_largest(
+        "attitude",
+        AirframeWithFlightAngles.attitude(&q).as_slice(),
+        &[heading, elevation, bank],
+        1e-14,
+    );
+    assert_close_relative_to_largest(
+        "incidence",
+        AirframeWithFlightAngles.incidence(&q, &v).as_slice(),
+        &[attack, slip, 0.0],
+        1e-14,
+    );
     let path = turn * body;
     let expected = [path[1].atan2(path[0]), (-path[2] / speed).asin(), 0.0];
-    assert_similar("path", Attitude.path(&q, &v).as_slice(), &expected, 1e-14);
+    assert_close_relative_to_largest(
+        "path",
+        AirframeWithFlightAngles.path(&q, &v).as_slice(),
+        &expected,
+        1e-14,
+    );
     // U.S. Standard Atmosphere 1976, table III: 295.154 m/s at 11 km.
-    assert!((Attitude.sound(&q) - 295.154).abs() < 1e-3);
+    assert!((AirframeWithFlightAngles.sound(&q) - 295.154).abs() < 1e-3);
 }
 
 /// Fan whose drive torque and output come from a table of torque over speed, looked up at constant arguments.

@@ -34,23 +34,23 @@ fn machine_source(more: &str) -> String {
     )
 }
 
-fn units_of_machine(more: &str) -> Result<Units, Vec<String>> {
+fn units_of_test_machine(more: &str) -> Result<Units, Vec<String>> {
     units_of_mechanism("", &machine_source(more))
 }
 
 /// Checks the units of the parameters `a`, `b`, … of a machine. The length of `expected` is the number of
 /// parameters.
 #[track_caller]
-fn check_units(fields: &str, expected: &[&str]) {
+fn check_parameter_units(fields: &str, expected: &[&str]) {
     let names: String = ('a'..='f').take(expected.len()).map(|c| format!("{c}: f64, ")).collect();
-    match units_of_machine(&format!("{names}{fields}")) {
+    match units_of_test_machine(&format!("{names}{fields}")) {
         Ok(units) => assert_eq!(units.parameters, expected, "{fields}"),
         Err(messages) => panic!("{fields}: {messages:?}"),
     }
 }
 
 /// Returns the text of a line of a compiler message if the line is a note.
-fn note_of_line(line: &str) -> Option<&str> {
+fn note_text_in_line(line: &str) -> Option<&str> {
     line.strip_prefix("= note: ")
 }
 
@@ -67,11 +67,12 @@ fn check_unit_errors(fields: &str, expected: &[&str]) {
         |name: &&&str| fields.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == **name);
     let names: String = ["a", "b", "c"].iter().filter(has_word).map(|n| format!("{n}: f64, ")).collect();
     let names = if fields.contains("unit(") { String::new() } else { names };
-    match units_of_machine(&format!("{names}{fields}")) {
+    match units_of_test_machine(&format!("{names}{fields}")) {
         Ok(units) => panic!("{fields} is accepted with {units:?}"),
         Err(messages) => {
             let first: Vec<&str> = messages.iter().map(|m| m.lines().next().unwrap_or_default()).collect();
-            let notes: Vec<&str> = messages.iter().flat_map(|m| m.lines()).filter_map(note_of_line).collect();
+            let notes: Vec<&str> =
+                messages.iter().flat_map(|m| m.lines()).filter_map(note_text_in_line).collect();
             let (told, errors): (Vec<&str>, Vec<&str>) = expected.iter().partition(|text| is_note_text(text));
             assert_eq!(first, errors, "{fields}");
             assert_eq!(notes.len(), told.len(), "{fields}: {notes:?}");
@@ -84,57 +85,57 @@ fn check_unit_errors(fields: &str, expected: &[&str]) {
 
 #[test]
 fn units_are_inferred_from_every_use() {
-    check_units(
+    check_parameter_units(
         "#[body(mass = a, com = b * x, inertia = diagonal(c, c, c))] k: Body, #[joint(arm -> k)] j: Ball,",
         &["kg", "m", "kg·m²"],
     );
-    check_units(
+    check_parameter_units(
         "#[body(mass = 1, inertia = cuboid(a, b, b, 2 * b).rotated(z(c)))] k: Body, \
          #[joint(arm -> k)] j: Ball,",
         &["kg", "m", "rad"],
     );
-    check_units(
+    check_parameter_units(
         "#[body(mass = 1, inertia = sphere(1, 1))] k: Body, \
          #[joint(arm.at(a / 2 * x).rotated(z(b)) -> k, about = z, pitch = c)] j: Screw,",
         &["m", "rad", "m/rad"],
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, stiffness = a, free_length = b)] s: Spring, \
          #[acts(on = hinge, stiffness = c, free_angle = d)] t: Spring,",
         &["N/m", "m", "N·m/rad", "rad"],
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, damping = a)] s: Dashpot, #[acts(on = hinge, damping = b)] t: Dashpot,",
         &["N·s/m", "N·m·s/rad"],
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, inertance = a)] s: Inerter, #[acts(on = hinge, inertance = b)] t: Inerter,",
         &["kg", "kg·m²"],
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, coulomb = a, stiction = b, stribeck_speed = c, viscous = d, speed = e)] s: \
          Friction,",
         &["N", "N", "m/s", "N·s/m", "m/s"],
     );
-    check_units(
+    check_parameter_units(
         "#[particle(mass = 1)] p: Particle, #[joint(ground -> p, along = (x, y))] table: Stage, \
          #[acts(between = (ground, p), mu = a)] s: Gravity, \
          #[acts(between = (cart, p), constant = b)] t: Gravity, \
          #[acts(between = (arm, p), strength = c)] u: Attraction,",
         &["m³/s²", "m³/(kg·s²)", "N·m²"],
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, force = a * stretch + b * pow(stretch, 3))] s: Spring, \
          #[acts(on = hinge, energy = c * stretch * stretch / 2)] t: Spring, \
          #[acts(on = rail, force = d * speed * abs(speed))] u: Dashpot,",
         &["N/m", "kg/(m²·s²)", "N·m", "kg/m"],
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, value = a * cos(b * t))] s: Force, \
          #[acts(on = hinge, value = c * exp(-t / d))] t_: Torque,",
         &["N", "1/s", "N·m", "s"],
     );
-    check_units(
+    check_parameter_units(
         "#[energy(a / 2 * rail * rail)] s: Potential, \
          #[dissipation(b * rate(rail) * rate(rail))] t_: Rayleigh, #[energy(c)] u: Potential,",
         &["N/m", "N·s/m", "J"],
@@ -143,41 +144,41 @@ fn units_are_inferred_from_every_use() {
 
 #[test]
 fn units_propagate_through_expressions() {
-    check_units(
+    check_parameter_units(
         "#[acts(on = cart, value = sqrt(a * b) * x)] s: Force, #[energy(a * rail + b * rail)] t_: Potential,",
         &["N", "N"],
     );
     // The square root of a product whose factors have their units from other uses.
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, damping = 2 * c * sqrt(a * b))] s: Dashpot, \
          #[acts(on = rail, stiffness = a)] k: Spring, #[body(mass = b)] w: Body, \
          #[joint(cart -> w)] j: Weld,",
         &["N/m", "kg", "1"],
     );
-    check_units(
+    check_parameter_units(
         "#[output(a * dot(v(arm / ground / ground), x))] s: Scalar, \
          #[acts(on = cart, value = a * v(cart / ground / ground))] t_: Force,",
         &["N·s/m"],
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = arm, value = a * omega(arm / ground) + b * alpha_ * rate(hinge) * z)] s: Torque, \
          #[define(atan2(a, b))] alpha_: Scalar,",
         &["N·m·s", "N·m·s"].map(|_| "kg·m²/s"),
     );
-    check_units(
+    check_parameter_units(
         "#[acts(on = rail, value = min(a, max(b, c * r2)))] s: Force, \
          #[define(dot(r(arm.at(x) / ground), r(arm.at(d * x) / ground)))] r2: Scalar,",
         &["N", "N", "kg/(m·s²)", "m"],
     );
-    check_units("#[acts(on = rail, value = a * pow(rail / b, c))] s: Force,", &["N", "m", "1"]);
-    check_units("#[acts(on = rail, value = a * pow(rail, b))] s: Force,", &["any", "1"]);
+    check_parameter_units("#[acts(on = rail, value = a * pow(rail / b, c))] s: Force,", &["N", "m", "1"]);
+    check_parameter_units("#[acts(on = rail, value = a * pow(rail, b))] s: Force,", &["any", "1"]);
     // A ratio of two parameters determines neither unit.
-    check_units("#[acts(on = hinge, value = 3 * sin(a / b))] s: Torque,", &["any", "any"]);
-    check_units(
+    check_parameter_units("#[acts(on = hinge, value = 3 * sin(a / b))] s: Torque,", &["any", "any"]);
+    check_parameter_units(
         "#[acts(on = cart, value = [a, 0, b] - c * unit(r(arm.at(x) / ground)))] s: Force,",
         &["N", "N", "N"],
     );
-    check_units(
+    check_parameter_units(
         "#[frame(ground, z(a), eigenaxis(x, b * t))] f: Frame, \
          #[acts(on = cart, value = c * f.x + d * cross(f.y, x))] s: Force,",
         &["rad", "1/s", "N", "N"],
@@ -201,7 +202,7 @@ fn numeric_literals_take_any_unit() {
         "#[acts(on = cart, value = sin(t) * x - 3 * v(cart / ground / ground))] s: Force, \
          #[energy(a)] e: Potential,",
     ] {
-        if let Err(messages) = units_of_machine(&format!("a: f64, {fields}")) {
+        if let Err(messages) = units_of_test_machine(&format!("a: f64, {fields}")) {
             panic!("{fields}: {messages:?}");
         }
     }
@@ -209,7 +210,7 @@ fn numeric_literals_take_any_unit() {
 
 #[test]
 fn coordinates_inputs_and_outputs_have_units() {
-    let units = units_of_machine(
+    let units = units_of_test_machine(
         "m: f64, s: Coordinate, phi: Coordinate, gain: f64, #[unit(m)] lever: f64, steer: Input,
         #[particle(mass = m, at = s * (cos(phi) * x + sin(phi) * y))] p: Particle,
         #[acts(on = rail)] push: Force, #[acts(on = hinge)] turn: Torque,
@@ -287,26 +288,26 @@ fn unit_errors_are_reported_with_topology_errors() {
 fn sums_of_different_units_are_rejected() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";
     let sites = ["`a` is a mass (kg) in", "`b` is a length (m) in"];
-    let message_with_sites = |first: &'static str| [first, sites[0], sites[1]];
+    let message_with_unit_origins = |first: &'static str| [first, sites[0], sites[1]];
     check_unit_errors(
         &format!("{known} #[energy(3.5 * (a + b))] e: Potential,"),
-        &message_with_sites("a length (m) cannot be added to a mass (kg)"),
+        &message_with_unit_origins("a length (m) cannot be added to a mass (kg)"),
     );
     check_unit_errors(
         &format!("{known} #[energy(3.5 * (a - b))] e: Potential,"),
-        &message_with_sites("a length (m) cannot be subtracted from a mass (kg)"),
+        &message_with_unit_origins("a length (m) cannot be subtracted from a mass (kg)"),
     );
     check_unit_errors(
         &format!("{known} #[energy(3.5 * max(a, b))] e: Potential,"),
-        &message_with_sites("`max` cannot compare a mass (kg) with a length (m)"),
+        &message_with_unit_origins("`max` cannot compare a mass (kg) with a length (m)"),
     );
     check_unit_errors(
         &format!("{known} #[energy(3.5 * norm([a, 0, b]))] e: Potential,"),
-        &message_with_sites("this component is a length (m), but another is a mass (kg)"),
+        &message_with_unit_origins("this component is a length (m), but another is a mass (kg)"),
     );
     check_unit_errors(
         &format!("{known} #[energy(3.5 * atan2(a, b))] e: Potential,"),
-        &message_with_sites("`atan2` cannot compare a mass (kg) with a length (m)"),
+        &message_with_unit_origins("`atan2` cannot compare a mass (kg) with a length (m)"),
     );
     check_unit_errors(
         "#[energy(a * rail + a * hinge)] e: Potential,",
@@ -380,21 +381,25 @@ fn factors_of_parameters_are_dimensionless() {
             format!("#[unit(kg / m)] rho: f64, #[body(mass = {value})] w: Body, #[joint(cart -> w)] j: Weld,")
         };
         for value in [format!("rho * {number}"), format!("{number} * rho"), format!("rho / ({number})")] {
-            let messages = units_of_machine(&body_with_mass(&value)).unwrap_err();
+            let messages = units_of_test_machine(&body_with_mass(&value)).unwrap_err();
             assert!(
                 messages[0].starts_with("`rho` is declared as a quantity in kg/m, but used as a mass (kg)")
             );
             assert!(messages[0].contains("`#[define(9.81)] g: Scalar`"), "{messages:?}");
         }
-        units_of_machine(&format!("{} #[define({number})] length: Scalar,", body_with_mass("rho * length")))
-            .unwrap();
+        units_of_test_machine(&format!(
+            "{} #[define({number})] length: Scalar,",
+            body_with_mass("rho * length")
+        ))
+        .unwrap();
     }
 }
 
 #[test]
 fn unit_attributes_fix_the_units_of_parameters() {
     let unit_of_attribute = |written: &str| {
-        let units = units_of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
+        let units =
+            units_of_test_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
         Ok::<String, Vec<String>>(units.parameters[0].clone())
     };
     for (written, shown) in [

@@ -90,17 +90,22 @@ fn passive_forces_have_the_coefficients_of_the_file() {
         gravity = x - 9 * z,
         friction_speed = 0.02
     )]
-    struct Passive;
+    struct FileWithPassiveForces;
 
     let mut random = Random::new(19);
     for speed in [0.0, 0.01, 1.0] {
-        let q = random.random_configuration(&Passive);
+        let q = random.random_configuration(&FileWithPassiveForces);
         let v = random.random_vector(speed);
         let mut expected = Everything.bias_forces(&q, &v);
         expected[6] += 0.3 * v[6] + 0.1 * (v[6] / 0.02).tanh();
         expected[8] += 2.0 * v[8];
-        assert_close("bias forces", Passive.bias_forces(&q, &v).as_slice(), expected.as_slice(), TOLERANCE);
-        let acceleration = Passive.forward_dynamics(&q, &v, &expected);
+        assert_close(
+            "bias forces",
+            FileWithPassiveForces.bias_forces(&q, &v).as_slice(),
+            expected.as_slice(),
+            TOLERANCE,
+        );
+        let acceleration = FileWithPassiveForces.forward_dynamics(&q, &v, &expected);
         assert_close("at rest", acceleration.as_slice(), &[0.0; 12], 1e-11);
     }
 }
@@ -110,7 +115,7 @@ fn passive_forces_have_the_coefficients_of_the_file() {
 #[test]
 fn mimic_joint_has_factor_and_offset() {
     #[mechanism(urdf = "data/urdf/everything.urdf", passive = ignore, gravity = x - 9 * z)]
-    struct Following;
+    struct RobotWithMimicJoints;
 
     // The relation maps the remaining velocities to those of the independent joints.
     let relation = SMatrix::<f64, 12, 11>::from_fn(|i, j| match (i, j) {
@@ -118,39 +123,50 @@ fn mimic_joint_has_factor_and_offset() {
         (i, j) if i < 7 && i == j || i > 7 && i == j + 1 => 1.0,
         _ => 0.0,
     });
-    assert_eq!(Following::INPUTS, ["b_turn", "z_slide"]);
+    assert_eq!(RobotWithMimicJoints::INPUTS, ["b_turn", "z_slide"]);
     let mut random = Random::new(20);
     for _ in 0..10 {
-        let q = random.random_configuration(&Following);
+        let q = random.random_configuration(&RobotWithMimicJoints);
         let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
         // The coordinates are seven of the free joint, then b_turn.
         let q_free = q.insert_row(8, 0.2 - 0.5 * q[7]);
         let (v_free, a_free) = (relation * v, relation * a);
         let mass_matrix = relation.transpose() * Everything.mass_matrix(&q_free) * relation;
-        assert_close("mass matrix", Following.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), TOLERANCE);
+        assert_close(
+            "mass matrix",
+            RobotWithMimicJoints.mass_matrix(&q).as_slice(),
+            mass_matrix.as_slice(),
+            TOLERANCE,
+        );
         let forces = relation.transpose() * Everything.inverse_dynamics(&q_free, &v_free, &a_free);
         assert_close(
             "forces",
-            Following.inverse_dynamics(&q, &v, &a).as_slice(),
+            RobotWithMimicJoints.inverse_dynamics(&q, &v, &a).as_slice(),
             forces.as_slice(),
             TOLERANCE,
         );
-        let acceleration = Following.forward_dynamics(&q, &v, &forces);
+        let acceleration = RobotWithMimicJoints.forward_dynamics(&q, &v, &forces);
         assert_close("forward dynamics", acceleration.as_slice(), a.as_slice(), 1e-11);
-        let energies = [Following.kinetic_energy(&q, &v), Following.potential_energy(&q)];
+        let energies =
+            [RobotWithMimicJoints.kinetic_energy(&q, &v), RobotWithMimicJoints.potential_energy(&q)];
         let expected = [Everything.kinetic_energy(&q_free, &v_free), Everything.potential_energy(&q_free)];
         assert_close("energies", &energies, &expected, TOLERANCE);
         let momentum = relation.transpose() * Everything.generalized_momentum(&q_free, &v_free);
-        assert_close("p", Following.generalized_momentum(&q, &v).as_slice(), momentum.as_slice(), TOLERANCE);
+        assert_close(
+            "p",
+            RobotWithMimicJoints.generalized_momentum(&q, &v).as_slice(),
+            momentum.as_slice(),
+            TOLERANCE,
+        );
 
-        let (link, link_free) = (frame!(Following, "follower"), frame!(Everything, "follower"));
-        let jacobian = Following.frame_jacobian(link, &q);
+        let (link, link_free) = (frame!(RobotWithMimicJoints, "follower"), frame!(Everything, "follower"));
+        let jacobian = RobotWithMimicJoints.frame_jacobian(link, &q);
         let expected = Everything.frame_jacobian(link_free, &q_free) * relation;
         assert_close("Jacobian", jacobian.as_slice(), expected.as_slice(), TOLERANCE);
-        let acceleration = Following.frame_acceleration(link, &q, &v, &a);
+        let acceleration = RobotWithMimicJoints.frame_acceleration(link, &q, &v, &a);
         let expected = Everything.frame_acceleration(link_free, &q_free, &v_free, &a_free);
         assert_close("acceleration", acceleration.as_slice(), expected.as_slice(), TOLERANCE);
-        let push = Following.generalized_forces(&q, &SVector::from([2.0, 3.0]));
+        let push = RobotWithMimicJoints.generalized_forces(&q, &SVector::from([2.0, 3.0]));
         let expected =
             relation.transpose() * Everything.generalized_forces(&q_free, &SVector::from([2.0, 0.0, 3.0]));
         assert_close("inputs", push.as_slice(), expected.as_slice(), TOLERANCE);
@@ -165,15 +181,20 @@ fn locked_joints_of_a_free_base_leave_the_coordinates() {
         inputs = none,
         lock = ["b_turn", "z_slide"]
     )]
-    struct Floating;
+    struct RobotOnFreeBase;
 
     // The follower is locked at its offset, together with its leader.
-    assert_eq!((Floating::NQ, Floating::NV, Floating::NU), (7 + 7 + 3, 6 + 6 + 3, 0));
-    assert_close("mass", &[Floating.total_mass()], &[7.0 + 0.9 + 1.5 + 0.6 + 0.4 + 0.5 + 0.2], TOLERANCE);
-    let q = Floating.neutral();
+    assert_eq!((RobotOnFreeBase::NQ, RobotOnFreeBase::NV, RobotOnFreeBase::NU), (7 + 7 + 3, 6 + 6 + 3, 0));
+    assert_close(
+        "mass",
+        &[RobotOnFreeBase.total_mass()],
+        &[7.0 + 0.9 + 1.5 + 0.6 + 0.4 + 0.5 + 0.2],
+        TOLERANCE,
+    );
+    let q = RobotOnFreeBase.neutral();
     let mut q_free = Everything.neutral();
     q_free[8] = 0.2;
-    let follower = Floating.frame_placement(frame!(Floating, "follower"), &q).to_homogeneous();
+    let follower = RobotOnFreeBase.frame_placement(frame!(RobotOnFreeBase, "follower"), &q).to_homogeneous();
     let expected = Everything.frame_placement(frame!(Everything, "follower"), &q_free).to_homogeneous();
     assert_close("follower", follower.as_slice(), expected.as_slice(), TOLERANCE);
 }
@@ -181,9 +202,9 @@ fn locked_joints_of_a_free_base_leave_the_coordinates() {
 #[test]
 fn impossible_inertia_is_accepted_with_trust() {
     #[mechanism(urdf = "data/urdf/impossible.urdf", inertia = trust)]
-    struct Impossible;
+    struct RobotWithImpossibleInertia;
 
-    assert_eq!(Impossible.mass_matrix(&Impossible.neutral())[0], 3.0);
+    assert_eq!(RobotWithImpossibleInertia.mass_matrix(&RobotWithImpossibleInertia.neutral())[0], 3.0);
 }
 
 #[test]
@@ -192,11 +213,11 @@ fn urdf_mechanism_supports_single_precision() {
         urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z,
         scalar = f32
     )]
-    struct Single;
+    struct SinglePrecisionRobot;
 
     let q = Random::new(21).random_configuration(&Everything);
     let v = SVector::<f64, 12>::repeat(0.5);
-    let forces = Single.inverse_dynamics(&q.cast::<f32>(), &v.cast::<f32>(), &v.cast::<f32>());
+    let forces = SinglePrecisionRobot.inverse_dynamics(&q.cast::<f32>(), &v.cast::<f32>(), &v.cast::<f32>());
     let expected = Everything.inverse_dynamics(&q, &v, &v);
     assert_close("forces", forces.cast::<f64>().as_slice(), expected.as_slice(), 1e-5);
 }
@@ -207,12 +228,13 @@ fn nearly_right_angles_are_rounded_to_exact_ones() {
     #[mechanism(urdf = "../models/urdf/gen3.urdf")]
     struct Written;
     #[mechanism(urdf = "../models/urdf/gen3.urdf", snap = 1e-4)]
-    struct Meant;
+    struct ArmWithExactRightAngles;
 
     let mut random = Random::new(23);
     for _ in 0..10 {
         let (q, v, a) = (random.random_vector(3.0), random.random_vector(1.0), random.random_vector(1.0));
-        let (written, meant) = (Written.inverse_dynamics(&q, &v, &a), Meant.inverse_dynamics(&q, &v, &a));
+        let (written, meant) =
+            (Written.inverse_dynamics(&q, &v, &a), ArmWithExactRightAngles.inverse_dynamics(&q, &v, &a));
         let difference = (written - meant).norm() / written.norm();
         assert!(difference > 1e-9 && difference < 1e-4, "{difference}");
     }
@@ -220,7 +242,9 @@ fn nearly_right_angles_are_rounded_to_exact_ones() {
     // the file add to that.
     let up = SVector::zeros();
     let aside = 0.005375 + 3.0 * 0.006375 + 2.0 * 0.00017505;
-    let meant = Meant.frame_placement(frame!(Meant, "EndEffector_Link"), &up).translation;
+    let meant = ArmWithExactRightAngles
+        .frame_placement(frame!(ArmWithExactRightAngles, "EndEffector_Link"), &up)
+        .translation;
     assert!((meant.y + aside).abs() < 1e-15 && meant.x.abs() < 1e-15, "{meant}");
     let written = Written.frame_placement(frame!(Written, "EndEffector_Link"), &up).translation;
     assert!((written.y + aside).abs() > 1e-7, "{written}");
@@ -288,24 +312,27 @@ fn urdf_kinematics_need_no_inertia() {
 #[test]
 fn kinematics_without_inertia_equal_those_of_the_robot() {
     #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, inertia = none)]
-    struct Outside;
+    struct EverythingWithoutInertia;
 
-    assert_eq!(Outside::FRAMES, Everything::FRAMES);
+    assert_eq!(EverythingWithoutInertia::FRAMES, Everything::FRAMES);
     let mut random = Random::new(24);
     for _ in 0..10 {
         let q = random.random_configuration(&Everything);
         let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
-        for (one, other) in Outside.frame_placements(&q).iter().zip(Everything.frame_placements(&q)) {
+        for (one, other) in
+            EverythingWithoutInertia.frame_placements(&q).iter().zip(Everything.frame_placements(&q))
+        {
             let expected = other.to_homogeneous();
             assert_close("placement", one.to_homogeneous().as_slice(), expected.as_slice(), TOLERANCE);
         }
-        let (one, other) = (frame!(Outside, "plate"), frame!(Everything, "plate"));
-        let (jacobian, expected) = (Outside.frame_jacobian(one, &q), Everything.frame_jacobian(other, &q));
+        let (one, other) = (frame!(EverythingWithoutInertia, "plate"), frame!(Everything, "plate"));
+        let (jacobian, expected) =
+            (EverythingWithoutInertia.frame_jacobian(one, &q), Everything.frame_jacobian(other, &q));
         assert_close("Jacobian", jacobian.as_slice(), expected.as_slice(), TOLERANCE);
-        let acceleration = Outside.frame_acceleration(one, &q, &v, &a);
+        let acceleration = EverythingWithoutInertia.frame_acceleration(one, &q, &v, &a);
         let expected = Everything.frame_acceleration(other, &q, &v, &a);
         assert_close("acceleration", acceleration.as_slice(), expected.as_slice(), TOLERANCE);
-        assert_eq!(Outside.integrate(&q, &v), Everything.integrate(&q, &v));
+        assert_eq!(EverythingWithoutInertia.integrate(&q, &v), Everything.integrate(&q, &v));
     }
 }
 
@@ -350,20 +377,20 @@ fn linkage_without_inertia_has_constraints_and_outputs() {
 #[test]
 fn link_named_ground_is_the_fixed_root() {
     #[mechanism(urdf = "data/urdf/grounded.urdf")]
-    struct Grounded;
+    struct RobotRootedAtGround;
 
-    assert_eq!(Grounded::FRAMES, ["ground", "hand"]);
+    assert_eq!(RobotRootedAtGround::FRAMES, ["ground", "hand"]);
     let q = [0.4].into();
-    let placement = Grounded.frame_placement(frame!(Grounded, "ground"), &q);
+    let placement = RobotRootedAtGround.frame_placement(frame!(RobotRootedAtGround, "ground"), &q);
     assert_eq!(placement.to_homogeneous(), SMatrix::<f64, 4, 4>::identity());
     assert_close(
         "hand",
-        Grounded.frame_placements(&q)[1].translation.vector.as_slice(),
+        RobotRootedAtGround.frame_placements(&q)[1].translation.vector.as_slice(),
         &[0.4, 0.0, 0.0],
         0.0,
     );
     // Bodies that are fixed to the ground have no effect on the motion.
-    assert_eq!((Grounded.total_mass(), Grounded.mass_matrix(&q)[0]), (2.0, 2.0));
+    assert_eq!((RobotRootedAtGround.total_mass(), RobotRootedAtGround.mass_matrix(&q)[0]), (2.0, 2.0));
 }
 
 /// Parallelogram linkage of two parallel cranks and a coupler, whose loop is closed by one of its joints.
@@ -372,11 +399,11 @@ struct Parallelogram;
 
 /// Parallelogram linkage whose loop is closed by an element of Isaac Sim.
 #[mechanism(urdf = "data/urdf/parallelogram_loop_joint.urdf", loops = close)]
-struct LoopJoint;
+struct ParallelogramWithLoopJoint;
 
 /// Parallelogram linkage whose loop is closed by a joint in a `<gazebo>` element.
 #[mechanism(urdf = "data/urdf/parallelogram_gazebo.urdf", loops = close)]
-struct GazeboJoint;
+struct ParallelogramWithGazeboJoint;
 
 /// Parallelogram linkage whose loop is closed by a ball constraint of Drake.
 #[mechanism(urdf = "data/urdf/parallelogram_drake.urdf", loops = close)]
@@ -408,7 +435,7 @@ fn urdf_joint_closes_a_loop() {
 
 #[test]
 fn extensions_of_other_tools_close_loops() {
-    check_parallelogram!(LoopJoint);
-    check_parallelogram!(GazeboJoint);
+    check_parallelogram!(ParallelogramWithLoopJoint);
+    check_parallelogram!(ParallelogramWithGazeboJoint);
     check_parallelogram!(BallConstraint);
 }

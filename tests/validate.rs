@@ -183,7 +183,7 @@ fn mass_properties_at_the_physical_bound_are_valid() {
 /// Trusted inertia is not validated, nor is a parameter that no element uses, nor the sign of a stiffness,
 /// which may be negative.
 #[mechanism(inertia = trust)]
-struct Trusted {
+struct ArmWithTrustedInertia {
     moment: f64,
     stiffness: f64,
     _own: f64,
@@ -197,10 +197,10 @@ struct Trusted {
 
 #[test]
 fn trusted_inertia_need_only_be_finite() {
-    let sound = Trusted { moment: 5.0, stiffness: -1.0, _own: f64::NAN };
+    let sound = ArmWithTrustedInertia { moment: 5.0, stiffness: -1.0, _own: f64::NAN };
     assert_eq!(sound.validate(), Ok(()));
-    let error = Trusted { moment: f64::NAN, ..sound }.validate().unwrap_err();
+    let error = ArmWithTrustedInertia { moment: f64::NAN, ..sound }.validate().unwrap_err();
     assert_eq!((error.fault, error.parameters), (Fault::NotFinite, &["moment"][..]));
-    let error = Trusted { stiffness: f64::INFINITY, ..sound }.validate().unwrap_err();
+    let error = ArmWithTrustedInertia { stiffness: f64::INFINITY, ..sound }.validate().unwrap_err();
     assert_eq!(error.to_string(), "the parameter `stiffness` is not a finite number: it is inf");
 }

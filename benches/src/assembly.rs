@@ -62,7 +62,7 @@ impl RoutineReader {
         let (name, operands) = instruction.split_once('\t').unwrap_or((instruction, ""));
         match name {
             "pushq" => self.routine.stack += 8,
-            "subq" => self.take_stack(operands),
+            "subq" => self.record_stack_bytes(operands),
             "leaq" if operands.ends_with("(%rsp), %r11") && operands.starts_with('-') => {
                 self.routine.stack += parse_integer(&operands[1..]);
                 self.probing = true;
@@ -86,7 +86,7 @@ impl RoutineReader {
         }
     }
 
-    fn take_stack(&mut self, operands: &str) {
+    fn record_stack_bytes(&mut self, operands: &str) {
         if let Some(bytes) = operands.strip_suffix(", %rsp").and_then(|bytes| bytes.strip_prefix('$'))
             && !self.probing
         {

@@ -28,7 +28,7 @@ fn link_parameter_names(k: usize, n: usize) -> impl Iterator<Item = String> {
 }
 
 /// Returns the index of the axis of joint `k`: x, y or z.
-fn axis_of_joint(k: usize) -> usize {
+fn axis_index_of_joint(k: usize) -> usize {
     [2, 1, 0][k % 3]
 }
 
@@ -45,7 +45,7 @@ pub fn chain_source(name: &str, n: usize, symbolic: bool) -> Source {
                 let _ = writeln!(item, "pub {parameter}: f64,");
             }
         }
-        let axis = ["x", "y", "z"][axis_of_joint(k)];
+        let axis = ["x", "y", "z"][axis_index_of_joint(k)];
         let _ = writeln!(
             item,
             "#[body(mass = {m}, com = {c} * z, inertia = diagonal({a}, {b}, {e}))] link{k}: Body,"
@@ -70,7 +70,7 @@ pub fn chain_as_urdf(n: usize) -> String {
     let mut length = "0".to_string();
     for k in 1..=n {
         let [m, c, a, b, e, l] = link_values_text(k);
-        let axis = ["1 0 0", "0 1 0", "0 0 1"][axis_of_joint(k)];
+        let axis = ["1 0 0", "0 1 0", "0 0 1"][axis_index_of_joint(k)];
         let _ = write!(
             text,
             r#"  <link name="link{k}">

@@ -14,7 +14,7 @@ const PERIOD: Duration = Duration::from_millis(3);
 const TICKS: f64 = 100.0;
 
 /// Compiled runtime crate, to which generated code is linked.
-pub struct Library {
+pub struct CompiledRuntime {
     /// Path of the rlib that rustc links; its dependencies are in the folder `deps` next to it.
     pub rlib: PathBuf,
 }
@@ -28,9 +28,9 @@ pub struct Cost {
     pub memory: f64,
 }
 
-impl Library {
+impl CompiledRuntime {
     /// Compiles the runtime crate in the dev profile.
-    pub fn build_runtime() -> Result<Library, Box<dyn Error>> {
+    pub fn build_runtime_crate() -> Result<CompiledRuntime, Box<dyn Error>> {
         let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
         let build =
             ["build", "--quiet", "--locked", "-p", "linkwork", "--message-format=json-render-diagnostics"];
@@ -39,12 +39,12 @@ impl Library {
         let artifact =
             messages.lines().rfind(|line| line.contains("/liblinkwork-") && line.contains(".rlib\""));
         let file = artifact.and_then(|line| line.split('"').find(|word| word.ends_with(".rlib")));
-        Ok(Library { rlib: file.ok_or("cargo told of no library")?.into() })
+        Ok(CompiledRuntime { rlib: file.ok_or("cargo told of no library")?.into() })
     }
 }
 
 /// Runs rustc on a library of this text, with the options of the dev profile, up to its metadata.
-pub fn check_with_rustc(library: &Library, text: &str) -> Result<Cost, Box<dyn Error>> {
+pub fn check_with_rustc(library: &CompiledRuntime, text: &str) -> Result<Cost, Box<dyn Error>> {
     let folder = std::env::temp_dir().join(format!("linkwork-expansion-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     let file = folder.join("expanded.rs");
@@ -75,7 +75,7 @@ pub fn check_with_rustc(library: &Library, text: &str) -> Result<Cost, Box<dyn E
 fn wait_for_process(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
     let mut cost = Cost::default();
     loop {
-        cost = cost_of_process(child.id()).unwrap_or(cost);
+        cost = time_and_memory_of_process(child.id()).unwrap_or(cost);
         if let Some(status) = child.try_wait()? {
             return if status.success() { Ok(cost) } else { Err("rustc refuses the output".into()) };
         }
@@ -84,7 +84,7 @@ fn wait_for_process(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
 }
 
 /// Returns processor time and peak memory of a process so far.
-fn cost_of_process(process: u32) -> Option<Cost> {
+fn time_and_memory_of_process(process: u32) -> Option<Cost> {
     let status = read_to_string(format!("/proc/{process}/status")).ok()?;
     let memory = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kilobytes: f64 = memory.split_whitespace().next()?.parse().ok()?;

@@ -8,7 +8,7 @@ const LINKS: usize = 4;
 
 /// Returns an arm of spatial pins with this number of springs between points of the ground and points of its
 /// links.
-pub fn sprung_arm(springs: usize) -> Source {
+pub fn arm_with_springs_source(springs: usize) -> Source {
     let mut item = "pub struct Arm {\n".to_string();
     let mut parent = "ground".to_string();
     for k in 0..LINKS {
@@ -37,7 +37,7 @@ pub fn sprung_arm(springs: usize) -> Source {
 
 /// Returns a planar chain of particles on rods; the position of each particle is an expression of the angles
 /// of all rods before it.
-pub fn placed_chain(particles: usize) -> Source {
+pub fn particle_chain_source(particles: usize) -> Source {
     let mut item = "pub struct Placed {\n".to_string();
     let (mut x, mut z) = (Vec::new(), Vec::new());
     for k in 1..=particles {

@@ -8,7 +8,7 @@
 mod spatial;
 mod urdf;
 
-pub use spatial::{Articulated, Inertia, Placement, Spatial};
+pub use spatial::{ArticulatedInertia, Inertia, Placement, Spatial};
 pub use urdf::Options;
 
 use nalgebra::{DMatrix, Matrix3, Matrix6xX, Quaternion, Unit, UnitQuaternion, Vector3, Vector6};
@@ -26,7 +26,7 @@ pub enum Motion {
 
 impl Motion {
     /// Returns the number of entries of `q` and of `v`.
-    fn coordinate_counts(self) -> (usize, usize) {
+    fn entry_counts_of_q_and_v(self) -> (usize, usize) {
         match self {
             Motion::Turn(_) | Motion::Slide(_) => (1, 1),
             Motion::Free => (7, 6),
@@ -127,13 +127,13 @@ pub struct Model {
 
 /// Intermediate results of the recursive algorithms for one link.
 #[derive(Clone, Debug)]
-struct LinkData {
+struct LinkIntermediateResults {
     placement: Placement,
     twist: Spatial,
     acceleration: Spatial,
     wrench: Spatial,
     composite: Inertia,
-    articulated: Articulated,
+    articulated: ArticulatedInertia,
     /// `U = IA s`, `1 / D` and `u = τ − s · pA` of a joint with one degree of freedom.
     column: Spatial,
     inverse: f64,
@@ -142,7 +142,7 @@ struct LinkData {
 
 /// Working storage of the recursive algorithms, one entry for each link.
 #[derive(Clone, Debug)]
-pub struct Workspace(Vec<LinkData>);
+pub struct Workspace(Vec<LinkIntermediateResults>);
 
 impl Model {
     /// Reads a URDF file.
@@ -151,14 +151,14 @@ impl Model {
     }
 
     /// Allocates the working storage of the recursive algorithms.
-    pub fn allocate_data(&self) -> Workspace {
-        let initial_link_data = |link: &Link| LinkData {
+    pub fn allocate_workspace(&self) -> Workspace {
+        let initial_link_data = |link: &Link| LinkIntermediateResults {
             placement: link.placement,
             twist: Spatial::zero(),
             acceleration: Spatial::zero(),
             wrench: Spatial::zero(),
             composite: link.inertia,
-            articulated: Articulated::from_rigid_inertia(&link.inertia),
+            articulated: ArticulatedInertia::from_rigid_inertia(&link.inertia),
             column: Spatial::zero(),
             inverse: 0.0,
             force: 0.0,
@@ -187,7 +187,7 @@ impl Model {
         for (k, link) in self.links.iter().enumerate().rev() {
             let d = &data.0[k];
             let (wrench, placement) = (d.wrench, d.placement);
-            for dof in 0..link.motion.coordinate_counts().1 {
+            for dof in 0..link.motion.entry_counts_of_q_and_v().1 {
                 tau[link.v + dof] = link.motion.subspace_column(dof).dot(&wrench);
             }
             if let Some(p) = link.parent {
@@ -199,7 +199,7 @@ impl Model {
     /// Computes twists, accelerations and inertial wrenches of the links, from the base outwards.
     fn propagate_outward(&self, data: &mut Workspace, v: &[f64], a: Option<&[f64]>) {
         for (k, link) in self.links.iter().enumerate() {
-            let nv = link.motion.coordinate_counts().1;
+            let nv = link.motion.entry_counts_of_q_and_v().1;
             let (before, rest) = data.0.split_at_mut(k);
             let d = &mut rest[0];
             let own = link.motion.twist_from_rates(&v[link.v..link.v + nv]);
@@ -231,13 +231,13 @@ impl Model {
         }
         m.fill(0.0);
         for (k, link) in self.links.iter().enumerate() {
-            for dof in 0..link.motion.coordinate_counts().1 {
+            for dof in 0..link.motion.entry_counts_of_q_and_v().1 {
                 let mut wrench = data.0[k].composite.momentum_of_twist(&link.motion.subspace_column(dof));
                 let row = link.v + dof;
                 let mut at = k;
                 loop {
                     let other = &self.links[at];
-                    let count = if at == k { dof + 1 } else { other.motion.coordinate_counts().1 };
+                    let count = if at == k { dof + 1 } else { other.motion.entry_counts_of_q_and_v().1 };
                     for c in 0..count {
                         let entry = other.motion.subspace_column(c).dot(&wrench);
                         m[(row, other.v + c)] = entry;
@@ -260,7 +260,7 @@ impl Model {
             let d = &mut data.0[k];
             d.twist = d.placement.twist_to_child(&parent) + own;
             d.acceleration = d.twist.cross(&own);
-            d.articulated = Articulated::from_rigid_inertia(&link.inertia);
+            d.articulated = ArticulatedInertia::from_rigid_inertia(&link.inertia);
             d.wrench = d.twist.cross_force(&link.inertia.momentum_of_twist(&d.twist));
         }
         for (k, link) in self.links.iter().enumerate().rev() {
@@ -274,7 +274,7 @@ impl Model {
                     d.column = d.articulated.wrench_of_acceleration(&s);
                     d.inverse = 1.0 / s.dot(&d.column);
                     d.force = tau[link.v] - s.dot(&d.wrench);
-                    let reduced = d.articulated.subtract_rank_one(&d.column, d.inverse);
+                    let reduced = d.articulated.inertia_after_joint_elimination(&d.column, d.inverse);
                     let wrench = d.wrench
                         + reduced.wrench_of_acceleration(&d.acceleration)
                         + d.column * (d.force * d.inverse);
@@ -349,7 +349,7 @@ impl Model {
             let link = &self.links[k];
             let d = &mut data.0[k];
             d.placement = link.placement.compose_with(&link.motion.placement_in_joint_frame(&q[link.q..]));
-            for dof in 0..link.motion.coordinate_counts().1 {
+            for dof in 0..link.motion.entry_counts_of_q_and_v().1 {
                 let column = seen.twist_to_parent(&link.motion.subspace_column(dof));
                 jacobian.set_column(link.v + dof, &column.as_six_vector());
             }
@@ -361,7 +361,7 @@ impl Model {
         at = frame.link;
         while let Some(k) = at {
             let link = &self.links[k];
-            for column in link.v..link.v + link.motion.coordinate_counts().1 {
+            for column in link.v..link.v + link.motion.entry_counts_of_q_and_v().1 {
                 let turned = Spatial::from_slice(jacobian.column(column).as_slice()).map(|v| axes * v);
                 jacobian.set_column(column, &turned.as_six_vector());
             }

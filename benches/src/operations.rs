@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Size of one generated function: operations, and calls of elementary functions.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Size {
+pub struct FunctionSize {
     /// Number of multiplications, additions and divisions.
     pub operations: usize,
     /// Number of operations if each product and its sum count as one instruction.
@@ -19,9 +19,9 @@ pub struct Size {
     pub calls: usize,
 }
 
-impl Size {
-    fn sum_of_programs<'a>(programs: impl IntoIterator<Item = &'a Program>) -> Size {
-        let mut size = Size::default();
+impl FunctionSize {
+    fn total_size_of_programs<'a>(programs: impl IntoIterator<Item = &'a Program>) -> FunctionSize {
+        let mut size = FunctionSize::default();
         for program in programs {
             size.operations += program.counts.total_operations();
             size.fused += program.instructions.len() - program.counts.calls;
@@ -57,13 +57,13 @@ impl Operations {
     }
 
     /// Returns the numbers of operations of a generated function; zero if it does not exist.
-    pub fn size_of_function(&self, name: &str) -> Size {
+    pub fn operation_counts_of_function(&self, name: &str) -> FunctionSize {
         let found = self.output.functions.iter().filter(|f| f.name == name);
-        Size::sum_of_programs(found.map(|f| &f.program))
+        FunctionSize::total_size_of_programs(found.map(|f| &f.program))
     }
 
     /// Returns the numbers of operations of a frame's Jacobian: the steps along the path to its link.
-    pub fn size_of_jacobian(&self, frame: &str) -> Size {
+    pub fn jacobian_operation_counts(&self, frame: &str) -> FunctionSize {
         let frame = self.output.frames.iter().find(|f| f.name == frame);
         let mut programs: Vec<&Program> = frame.map(|f| &f.placement).into_iter().collect();
         let mut at = frame.and_then(|f| f.link);
@@ -72,6 +72,6 @@ impl Operations {
             programs.extend([&link.placement, &link.columns]);
             at = link.parent;
         }
-        Size::sum_of_programs(programs)
+        FunctionSize::total_size_of_programs(programs)
     }
 }

@@ -1,7 +1,7 @@
 //! Generated functions and the generic implementation of the same functions, on the same random states.
 
 use crate::generic::{Model, Options, Workspace};
-use crate::operations::{Operations, Size};
+use crate::operations::{FunctionSize, Operations};
 use crate::robots::Panda;
 use crate::states::{STATES, State, random_states};
 use linkwork::{Mechanism, frame};
@@ -11,7 +11,7 @@ use std::hint::black_box;
 use std::rc::Rc;
 
 /// Function of a robot in both implementations. The closures take the index of a state.
-pub struct Pair {
+pub struct ImplementationPair {
     /// Name of the measured function.
     pub function: &'static str,
     /// Closure that calls the generated function at one of the states.
@@ -21,7 +21,7 @@ pub struct Pair {
     /// Closure that returns the largest difference of both results, relative to one plus their magnitude.
     pub difference: Box<dyn FnMut(usize) -> f64>,
     /// Size of the generated function, in operations.
-    pub size: Size,
+    pub size: FunctionSize,
 }
 
 /// Robot with its functions in both implementations.
@@ -29,7 +29,7 @@ pub struct Robot {
     /// Name of the robot.
     pub name: &'static str,
     /// Measured functions of the robot, each in both implementations.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<ImplementationPair>,
 }
 
 /// Returns all robots of the comparison of generated and generic code.
@@ -43,7 +43,9 @@ pub fn benchmark_robots() -> Vec<Robot> {
                 arguments: concat!("urdf = \"../models/urdf/", $file, ".urdf\"", $arguments),
                 frame: $frame,
             };
-            robot_with_pairs(&source, &$robot, |q| $robot.frame_jacobian(frame!($robot, $frame), q))
+            robot_with_compared_functions(&source, &$robot, |q| {
+                $robot.frame_jacobian(frame!($robot, $frame), q)
+            })
         }};
     }
     let fixed = Options::default();
@@ -89,9 +91,10 @@ struct GenericModel {
 }
 
 /// Type of closures that run a function of the generic implementation and return its result.
-type Run<const NQ: usize, const NV: usize> = for<'s> fn(&'s mut GenericModel, &State<NQ, NV>) -> &'s [f64];
+type GenericRun<const NQ: usize, const NV: usize> =
+    for<'s> fn(&'s mut GenericModel, &State<NQ, NV>) -> &'s [f64];
 
-fn robot_with_pairs<M, J, const NQ: usize, const NV: usize, const NU: usize>(
+fn robot_with_compared_functions<M, J, const NQ: usize, const NV: usize, const NU: usize>(
     source: &Source,
     robot: &'static M,
     jacobian: J,
@@ -104,20 +107,24 @@ where
     let model = Rc::new(model.unwrap_or_else(|message| panic!("{}: {message}", source.name)));
     let operations = Operations::compile(source.arguments, "pub struct Robot;");
     let states = Rc::new(random_states(&model));
-    let bench = GenericBench { frame: model.index_of_frame(source.frame).unwrap_or_default(), model, states };
+    let bench = GenericModelBenchmark {
+        frame: model.index_of_frame(source.frame).unwrap_or_default(),
+        model,
+        states,
+    };
     let pairs = vec![
-        bench.pair_of_implementations(
+        bench.generated_and_generic_pair(
             "mass matrix",
-            operations.size_of_function("mass_matrix"),
+            operations.operation_counts_of_function("mass_matrix"),
             |s| robot.mass_matrix(0.0, &s.q),
             |g, s| {
                 g.model.mass_matrix(&mut g.data, s.q.as_slice(), &mut g.matrix);
                 g.matrix.as_slice()
             },
         ),
-        bench.pair_of_implementations(
+        bench.generated_and_generic_pair(
             "bias forces",
-            operations.size_of_function("bias_forces"),
+            operations.operation_counts_of_function("bias_forces"),
             |s| robot.bias_forces(0.0, &s.q, &s.v),
             |g, s| {
                 let tau = g.vector.as_mut_slice();
@@ -126,9 +133,9 @@ where
                 g.vector.as_slice()
             },
         ),
-        bench.pair_of_implementations(
+        bench.generated_and_generic_pair(
             "inverse dynamics",
-            operations.size_of_function("inverse_dynamics"),
+            operations.operation_counts_of_function("inverse_dynamics"),
             |s| robot.inverse_dynamics(0.0, &s.q, &s.v, &s.a),
             |g, s| {
                 let tau = g.vector.as_mut_slice();
@@ -137,9 +144,9 @@ where
                 g.vector.as_slice()
             },
         ),
-        bench.pair_of_implementations(
+        bench.generated_and_generic_pair(
             "forward dynamics",
-            operations.size_of_function("forward_dynamics"),
+            operations.operation_counts_of_function("forward_dynamics"),
             |s| robot.forward_dynamics(0.0, &s.q, &s.v, &s.tau),
             |g, s| {
                 let a = g.vector.as_mut_slice();
@@ -148,9 +155,9 @@ where
                 g.vector.as_slice()
             },
         ),
-        bench.pair_of_implementations(
+        bench.generated_and_generic_pair(
             "kinetic energy",
-            operations.size_of_function("kinetic_energy"),
+            operations.operation_counts_of_function("kinetic_energy"),
             |s| SVector::<f64, 1>::new(robot.kinetic_energy(0.0, &s.q, &s.v)),
             |g, s| {
                 let energy = g.model.kinetic_energy(&mut g.data, s.q.as_slice(), s.v.as_slice());
@@ -158,9 +165,9 @@ where
                 &g.vector.as_slice()[..1]
             },
         ),
-        bench.pair_of_implementations(
+        bench.generated_and_generic_pair(
             "frame Jacobian",
-            operations.size_of_jacobian(source.frame),
+            operations.jacobian_operation_counts(source.frame),
             move |s| jacobian(&s.q),
             |g, s| {
                 let q = s.q.as_slice();
@@ -173,17 +180,17 @@ where
 }
 
 /// Generic model with the states at which it is evaluated.
-struct GenericBench<const NQ: usize, const NV: usize> {
+struct GenericModelBenchmark<const NQ: usize, const NV: usize> {
     model: Rc<Model>,
     frame: usize,
     states: Rc<Vec<State<NQ, NV>>>,
 }
 
-impl<const NQ: usize, const NV: usize> GenericBench<NQ, NV> {
-    fn generic_algorithms(&self) -> GenericModel {
+impl<const NQ: usize, const NV: usize> GenericModelBenchmark<NQ, NV> {
+    fn allocate_generic_model(&self) -> GenericModel {
         GenericModel {
             model: self.model.clone(),
-            data: self.model.allocate_data(),
+            data: self.model.allocate_workspace(),
             vector: DVector::zeros(NV),
             matrix: DMatrix::zeros(NV, NV),
             jacobian: Matrix6xX::zeros(NV),
@@ -191,19 +198,19 @@ impl<const NQ: usize, const NV: usize> GenericBench<NQ, NV> {
         }
     }
 
-    fn pair_of_implementations<F, const R: usize, const C: usize>(
+    fn generated_and_generic_pair<F, const R: usize, const C: usize>(
         &self,
         function: &'static str,
-        size: Size,
+        size: FunctionSize,
         generated: F,
-        generic: Run<NQ, NV>,
-    ) -> Pair
+        generic: GenericRun<NQ, NV>,
+    ) -> ImplementationPair
     where
         F: Fn(&State<NQ, NV>) -> SMatrix<f64, R, C> + Copy + 'static,
     {
-        let (mut room, mut room_again) = (self.generic_algorithms(), self.generic_algorithms());
+        let (mut room, mut room_again) = (self.allocate_generic_model(), self.allocate_generic_model());
         let [states, states_again, states_too] = [(); 3].map(|()| self.states.clone());
-        Pair {
+        ImplementationPair {
             function,
             generated: Box::new(move |k| {
                 let result = generated(black_box(&states[k % STATES]));

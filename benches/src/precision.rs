@@ -98,7 +98,7 @@ struct CountingMechanism<'m, M> {
     derivatives: &'m Cell<usize>,
 }
 
-fn increment_count(cell: &Cell<usize>) {
+fn increment_counter(cell: &Cell<usize>) {
     cell.set(cell.get() + 1);
 }
 
@@ -138,7 +138,7 @@ where
         v: &SVector<f64, NV>,
         tau: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        increment_count(self.evaluations);
+        increment_counter(self.evaluations);
         self.mechanism.forward_dynamics(t, q, v, tau)
     }
     fn generalized_forces(
@@ -185,7 +185,7 @@ where
         v: &SVector<f64, NV>,
         u: &SVector<f64, 0>,
     ) -> Option<ByMotion<f64, NV, 0>> {
-        increment_count(self.derivatives);
+        increment_counter(self.derivatives);
         self.mechanism.acceleration_derivatives(t, q, v, u)
     }
     pass! {
@@ -210,14 +210,14 @@ pub struct IntegrationResult {
 pub const PROBLEMS: [&str; 4] = ["pleiades", "car axis", "Andrews' squeezer", "stiff governor"];
 
 /// Operation on a test problem, generic over the type of its mechanism.
-trait Visit {
+trait ProblemVisitor {
     type Result;
     fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
     where
         M: Mechanism<N, N, 0, Scalar = f64>;
 }
 
-fn visit_problem<V: Visit>(problem: usize, visit: V) -> V::Result {
+fn visit_problem<V: ProblemVisitor>(problem: usize, visit: V) -> V::Result {
     match problem {
         0 => visit.visit(&Pleiades {}, Pleiades::START, 3.0),
         1 => visit.visit(&CarAxle {}, ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]), 3.0),
@@ -226,9 +226,9 @@ fn visit_problem<V: Visit>(problem: usize, visit: V) -> V::Result {
     }
 }
 
-struct SolveVisitor<S>(S);
+struct IntegrationVisitor<S>(S);
 
-impl<S: Method<f64> + Clone> Visit for SolveVisitor<S> {
+impl<S: Method<f64> + Clone> ProblemVisitor for IntegrationVisitor<S> {
     type Result = Result<IntegrationResult, Error>;
 
     fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
@@ -264,12 +264,12 @@ impl<S: Method<f64> + Clone> Visit for SolveVisitor<S> {
 ///
 /// Returns the errors of the simulation.
 pub fn solve_problem<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<IntegrationResult, Error> {
-    visit_problem(problem, SolveVisitor(method))
+    visit_problem(problem, IntegrationVisitor(method))
 }
 
-struct StartVisitor;
+struct StartStateVisitor;
 
-impl Visit for StartVisitor {
+impl ProblemVisitor for StartStateVisitor {
     type Result = (Vec<f64>, f64);
 
     fn visit<M, const N: usize>(self, _: &M, (q, v): ([f64; N], [f64; N]), end: f64) -> Self::Result
@@ -282,7 +282,7 @@ impl Visit for StartVisitor {
 
 /// Returns the initial state, configuration and velocity, and the final time of a problem, s.
 pub fn initial_state_of_problem(problem: usize) -> (Vec<f64>, f64) {
-    visit_problem(problem, StartVisitor)
+    visit_problem(problem, StartStateVisitor)
 }
 
 struct RateVisitor<'a> {
@@ -291,7 +291,7 @@ struct RateVisitor<'a> {
     rate: &'a mut [f64],
 }
 
-impl Visit for RateVisitor<'_> {
+impl ProblemVisitor for RateVisitor<'_> {
     type Result = ();
 
     fn visit<M, const N: usize>(self, m: &M, _: ([f64; N], [f64; N]), _: f64)

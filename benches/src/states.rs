@@ -23,7 +23,7 @@ pub struct State<const NQ: usize, const NV: usize> {
 impl<const NQ: usize, const NV: usize> State<NQ, NV> {
     /// Returns a state with random coordinates and unit quaternions; velocities, accelerations and forces are
     /// of order one.
-    fn random_for_model(model: &Model, random: &mut Random) -> State<NQ, NV> {
+    fn random_state_of_model(model: &Model, random: &mut Random) -> State<NQ, NV> {
         let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.uniform_within(3.0));
         for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
             let mut quaternion = q.fixed_rows_mut::<4>(link.q + 3);
@@ -34,7 +34,7 @@ impl<const NQ: usize, const NV: usize> State<NQ, NV> {
     }
 
     /// Returns all numbers of the state: `q`, `v`, `a` and `τ`, concatenated.
-    pub fn all_numbers(&self) -> impl Iterator<Item = f64> {
+    pub fn concatenated_state_numbers(&self) -> impl Iterator<Item = f64> {
         [self.q.as_slice(), self.v.as_slice(), self.a.as_slice(), self.tau.as_slice()].concat().into_iter()
     }
 }
@@ -43,5 +43,5 @@ impl<const NQ: usize, const NV: usize> State<NQ, NV> {
 pub fn random_states<const NQ: usize, const NV: usize>(model: &Model) -> Vec<State<NQ, NV>> {
     assert_eq!((model.nq, model.nv), (NQ, NV), "size of the model");
     let mut random = Random::new(1);
-    (0..STATES).map(|_| State::random_for_model(model, &mut random)).collect()
+    (0..STATES).map(|_| State::random_state_of_model(model, &mut random)).collect()
 }

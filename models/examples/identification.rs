@@ -83,7 +83,7 @@ impl IdentifiedArm {
         [damping, friction, rotors].map(JointVector::from)
     }
 
-    fn with_joints(self, [damping, friction, rotors]: [JointVector; 3]) -> IdentifiedArm {
+    fn with_joint_parameters(self, [damping, friction, rotors]: [JointVector; 3]) -> IdentifiedArm {
         IdentifiedArm {
             panda_joint1_damping: damping[0],
             panda_joint2_damping: damping[1],
@@ -165,7 +165,7 @@ fn perturbed_robot() -> IdentifiedArm {
     };
     arm.set_inertials(&arm.inertials().map(perturbed_inertial));
     arm.panda_hand = arm.panda_hand.plus(&Inertial::point(1.2, [0.01, 0.02, 0.12]));
-    arm.with_joints([
+    arm.with_joint_parameters([
         [0.8, 0.7, 0.6, 0.5, 0.3, 0.25, 0.2].into(),
         [0.9, 0.8, 0.5, 0.6, 0.3, 0.3, 0.2].into(),
         [0.6, 0.5, 0.4, 0.4, 0.15, 0.12, 0.1].into(),
@@ -220,9 +220,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Conversion: the parameters of the joints, then the bodies nearest to the file's that reproduce the
     // measurements. Because of the noise, no consistent bodies may reproduce them exactly.
-    let joint_values_from = |first: usize| JointVector::from_fn(|j, _| found[first + j]);
+    let joint_parameters_from_index = |first: usize| JointVector::from_fn(|j, _| found[first + j]);
     let rotors = JointVector::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
-    arm = arm.with_joints([joint_values_from(BASE), joint_values_from(BASE + 7), rotors]);
+    arm = arm.with_joint_parameters([
+        joint_parameters_from_index(BASE),
+        joint_parameters_from_index(BASE + 7),
+        rotors,
+    ]);
     let base = found.fixed_rows::<BASE>(0).into_owned();
     approach(&mut arm, &base, 1e-6)?;
     arm.validate()?;

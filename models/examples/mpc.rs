@@ -117,7 +117,7 @@ impl QuadraticProgram {
 
     /// Adds the limits of the force in each step and of the position after it to the quadratic program, in
     /// both directions.
-    fn add_limits(&mut self) {
+    fn add_force_and_position_limits(&mut self) {
         let m = RailCartPole {};
         let (least, most) = (m.lower_limits()[RAIL], m.upper_limits()[RAIL]);
         let strength = m.effort_limits()[RAIL];
@@ -168,7 +168,7 @@ fn plan_forces(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<
     let (hessian, rows) = (TripletEntries::default(), TripletEntries::default());
     let mut program = QuadraticProgram { hessian, gradient: [0.0; SIZE * STEPS], rows, right: Vec::new() };
     program.add_motion_equations(x, plan)?;
-    program.add_limits();
+    program.add_force_and_position_limits();
     program.add_costs(to_go);
     Ok(program.optimal_forces())
 }

@@ -52,7 +52,7 @@ type GaitState = [f64; 2];
 const PUBLISHED: GaitState = [0.200310900544287, -0.199832473004977];
 
 /// Returns the state with this gait and the left leg at the origin.
-fn state_of_gait([angle, rate]: GaitState) -> (SVector<f64, 4>, SVector<f64, 4>) {
+fn walker_state_of_gait([angle, rate]: GaitState) -> (SVector<f64, 4>, SVector<f64, 4>) {
     let (sin, cos) = angle.sin_cos();
     let q = [-sin, cos, angle, -angle].into();
     (q, [-cos * rate, -sin * rate, rate, rate * (2.0 * angle).cos()].into())
@@ -64,7 +64,7 @@ fn simulate_step(
     walker: &CompassWalker,
     gait: GaitState,
 ) -> Result<(GaitState, f64, f64, f64), Box<dyn std::error::Error>> {
-    let (q, v) = state_of_gait(gait);
+    let (q, v) = walker_state_of_gait(gait);
     let stance = contact::hold(walker, [Touch::Sticks, Touch::Open]);
     // Both feet are also on the ground in mid-swing, when the sum of the angles rises through zero: that
     // crossing is ignored.

@@ -155,7 +155,7 @@ fn steering_thrusts(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &State
 
 /// Mean squared errors of the estimate during a flight.
 #[derive(Default)]
-struct FlightErrors {
+struct MeanSquaredFlightErrors {
     position: f64,
     tilt: f64,
     speed: f64,
@@ -164,7 +164,7 @@ struct FlightErrors {
 }
 
 /// Simulates a flight of some seconds, and prints it if requested.
-fn simulate_flight(seed: u64, seconds: f64, print: bool) -> Result<FlightErrors, Error> {
+fn simulate_flight(seed: u64, seconds: f64, print: bool) -> Result<MeanSquaredFlightErrors, Error> {
     let (m, mut random) = (Quadrotor {}, RandomNumbers(seed));
     let hover = hover_regulator().expect("four rotors can keep it in its place");
     // The true initial state deviates randomly from the estimate.
@@ -179,7 +179,7 @@ fn simulate_flight(seed: u64, seconds: f64, print: bool) -> Result<FlightErrors,
     let (dq, dv) = discrete::split(&off);
     let (mut q, mut v) = (m.integrate(&start, &dq), dv);
 
-    let (steps, mut sum) = ((seconds / PERIOD) as usize, FlightErrors::default());
+    let (steps, mut sum) = ((seconds / PERIOD) as usize, MeanSquaredFlightErrors::default());
     for k in 0..steps {
         let t = PERIOD * k as f64;
         let u = steering_thrusts(&hover, t, &belief);
@@ -218,8 +218,9 @@ fn main() -> Result<(), Error> {
     );
     let flights =
         [simulate_flight(1, 5.0, true)?, simulate_flight(2, 5.0, false)?, simulate_flight(3, 5.0, false)?];
-    let mean_over_flights =
-        |figure: fn(&FlightErrors) -> f64| flights.iter().map(figure).sum::<f64>() / flights.len() as f64;
+    let mean_over_flights = |figure: fn(&MeanSquaredFlightErrors) -> f64| {
+        flights.iter().map(figure).sum::<f64>() / flights.len() as f64
+    };
     let [position, tilt, speed] =
         [mean_over_flights(|f| f.position), mean_over_flights(|f| f.tilt), mean_over_flights(|f| f.speed)]
             .map(f64::sqrt);

@@ -57,7 +57,7 @@ fn step_costs(u: &PushForce) -> Quadratic<f64, 2, 1> {
 }
 
 /// Returns the cost of the final state to second order.
-fn end_costs(q: &State, v: &State) -> Value<f64, 2> {
+fn terminal_cost_to_go(q: &State, v: &State) -> Value<f64, 2> {
     let weight = SMatrix::from_diagonal_element(100.0);
     Value { q: (q - goal_state()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
 }
@@ -93,7 +93,7 @@ impl PlannedTrajectory {
         };
         let (m, mut policies, mut saved) = (HangingCartPole {}, [none; STEPS], 0.0);
         let (q, v) = self.states[STEPS];
-        let mut to_go = end_costs(&q, &v);
+        let mut to_go = terminal_cost_to_go(&q, &v);
         for k in (0..STEPS).rev() {
             let ((q, v), u) = (&self.states[k], &self.inputs[k]);
             let step = discrete::transition(&m, &METHOD, 0.0, q, v, u)?;

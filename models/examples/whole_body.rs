@@ -47,12 +47,13 @@ const RATE: f64 = 6.0;
 /// acceleration.
 fn desired_trunk_motion(t: f64) -> [SVector<f64, 6>; 3] {
     let [side, up, nod] = REACH;
-    let trunk_vector = |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
+    let harmonic_trunk_motion =
+        |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
     let (sin, cos) = (RATE * t).sin_cos();
     let (x, rate, change) = (
-        trunk_vector(sin, cos - 1.0),
-        trunk_vector(cos, -sin) * RATE,
-        trunk_vector(-sin, -cos) * (RATE * RATE),
+        harmonic_trunk_motion(sin, cos - 1.0),
+        harmonic_trunk_motion(cos, -sin) * RATE,
+        harmonic_trunk_motion(-sin, -cos) * (RATE * RATE),
     );
     // The motion starts at rest.
     let late = (-4.0 * t).exp();

@@ -174,7 +174,7 @@
 //! | --- | --- | --- | --- |
 //! | 1 | classes of mechanisms: pendulums, springs and masses, gimbals, shafts, linkages, rolling bodies, tops | the gallery | the tables above, a test each: [`Pendulum`], [`SpringChain`], [`Gyroscope`], [`ShaftWithSlider`], [`FourBar`], [`RollingDisk`], [`HeavyTop`] |
 //! | 1 | joints and their degrees of freedom | `Pin`, `Sleeve`, `Screw`, `Collar`, `Slot`, `Universal`, `Ball`, `Planar`, `Stage`, `Free`, `Weld` | the table by joint above; `invariants`: `joints.rs` |
-//! | 1 | conservative, dissipative, control and disturbance forces | `dissipated_power`, `control_power`, `disturbance_power`, `power(element)` | `power_balance`; `measurements.rs`: `element_powers_equal_energy_rates` |
+//! | 1 | conservative, dissipative, control and disturbance forces | `dissipated_power`, `control_power`, `disturbance_power`, `power(element)` | `power_balance_holds_along_motion`; `measurements.rs`: `element_powers_equal_energy_rates` |
 //! | 2 | points, relative positions, frames with and without an origin | `Point`, `Frame`, `r(y / x)`, `body.at(vector)` | `textbook/orientations.rs`: `vector_functions_have_their_documented_values`; [`Gyroscope`] |
 //! | 2 | physical vectors, `dot`, `cross`, angles, projections | expressions | `textbook/orientations.rs`: `vector_functions_have_their_documented_values` |
 //! | 2 | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_agrees_in_two_coordinate_charts` |
@@ -200,7 +200,7 @@
 //! | 6 | equilibria with fixed coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
 //! | 6 | a chain's catenary, an unstable column, three legs, a platform on six | `linkwork_design::steady` | `chain_hangs_in_catenary`, `column_buckles_at_critical_load`, `table_legs_share_the_load`, `six_legs_support_a_platform` of design |
 //! | 6 | stability by energy and by eigenvalues | `stiffness`, `linear_system` of an equilibrium | `bead_on_hoop_has_four_equilibria` |
-//! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that report them | `errors_name_the_wrong_entry` of design |
+//! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that report them | `steady_state_errors_name_the_variable` of design |
 //! | 7 | Newton's and Euler's equations | `inverse_dynamics`, `forward_dynamics` | [`FreeRigidBody`], every mechanism |
 //! | 7 | inertia of solids, parallel axes, rotated inertias; physically consistent principal moments | `inertia = …`, `validate()` | `validate.rs` |
 //! | 7 | inertia about any point, of one body or several, in any frame | `inertia(body / point)`, `moment_of_inertia(body / point, x, y)`, `about = point` of a `Body` | `moments_of_inertia_agree_with_kinetic_energies`, `inertia_about_another_point_is_moved_to_the_centre_of_mass`, `matrix_expressions_equal_vector_expressions` |
@@ -209,7 +209,7 @@
 //! | 7 | centre of percussion | `center_of_percussion(body / point, axis)` | `impulse_at_the_centre_of_percussion_leaves_the_grip_at_rest` |
 //! | 7 | springs, dashpots, inerters, friction, central gravity | force elements | `textbook/elements.rs`, `textbook/gravity.rs` |
 //! | 7 | steady motions: precession, governor, circles of disk and bicycle, climbing and turning flight | `Trim` of an equilibrium | `tests/steady.rs` here, [`HeavyTop`], [`Aircraft`] |
-//! | 8 | kinetic and potential energy; conservative, dissipative, control and disturbance power | functions of every mechanism, `kinetic_energy(body)` | `textbook/elements.rs`: `power_balance` |
+//! | 8 | kinetic and potential energy; conservative, dissipative, control and disturbance power | functions of every mechanism, `kinetic_energy(body)` | `textbook/elements.rs`: `power_balance_holds_along_motion` |
 //! | 8 | work and power of one force | `power(element)`, `#[state(rate = power(motor))] work: State` | `work_state_integrates_the_power_of_a_force`, `element_powers_equal_energy_rates` |
 //! | 8 | conserved quantities: energy, Jacobi's integral, cyclic coordinates, momenta | the option `conserved` | `conserved.rs` |
 //! | 9 | Lagrange's equations, with multipliers | `EQUATIONS`, `equations = lagrange` | [`DoublePendulum`]; `derivations.rs` |
@@ -233,18 +233,18 @@
 //! | 10–16 | modes from published derivatives and matrices: an airliner, an attack aircraft, a fighter | `linkwork_design::flight::FlightModes` | `dc8_matches_cook_modes`, `printed_matrices_yield_named_modes`, `centre_of_mass_determines_pitch_modes` |
 //! | 10–16 | satellites: nutation, wheels that stabilise a spin about the intermediate axis | a `Pin` for each wheel, `linear_system` | [`WheeledSatellite`]; `wheel_stabilises_intermediate_axis` |
 //! | 10–16 | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `jet_transport_channels_match_published` and `step_responses_match_published` in `anchors` of design |
-//! | 10–16 | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutation_frequency`, `rotor_with_internal_damping`, `gravity_gradient_stabilises_satellite` in `flight` of design |
+//! | 10–16 | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutation_has_textbook_frequency`, `internally_damped_rotor_has_genta_poles`, `gravity_gradient_stabilises_satellite` in `flight` of design |
 //! | 10–16 | mass, damping, gyroscopic, stiffness and circulatory matrices under constraints | `Trim::second_order_form` | [`Bicycle`]: `bicycle_has_published_matrices`; `constrained_forms` of design |
 //! | 10–16 | linearised motions with stabilised constraints | `constraint::stabilized`, `linear_system` | `stabilised_constraints_add_decay_poles` in `flight` of design |
 //! | 10–16 | eigenvalues of a bicycle | `Trim::linear_system` | `bicycle_has_published_eigenvalues` in `tests/steady.rs` here |
 //! | 10–16 | responses over time by the matrix exponential, repeated eigenvalues | `step_response`, `forced_response`, `matrices::exponential` | `linear_inputs_are_exact`, `repeated_poles_have_exact_results` |
 //! | 10–16 | invariant zeros, minimal realisations, controllability, observability | `zeros`, `minimal`, `kalman_ranks` | `system_matrix_loses_rank_at_zeros`, `realisations_are_minimal` |
-//! | 10–16 | Lyapunov's and Riccati's equations, regulators, estimators, placed poles | `matrices::lyapunov`, `lqr`, `kalman`, `place` | `matrix_equations_have_small_residuals`, `regulators_are_optimal`, `riccati_benchmarks`, `placed_poles_are_the_required_ones` |
-//! | 10–16 | digital control: discrete-time systems | `discretize`, `lqr_held` | `discretisation_is_inverted`, `discrete_riccati_benchmarks` |
+//! | 10–16 | Lyapunov's and Riccati's equations, regulators, estimators, placed poles | `matrices::lyapunov`, `lqr`, `kalman`, `place` | `matrix_equations_have_small_residuals`, `regulators_are_optimal`, `riccati_solutions_match_benchmarks`, `placed_poles_are_the_required_ones` |
+//! | 10–16 | digital control: discrete-time systems | `discretize`, `lqr_held` | `discretisation_is_inverted`, `discrete_riccati_benchmarks_match_exact_solutions` |
 //! | 10–16 | block diagrams | `series`, `parallel`, `feedback` | `connections_multiply_and_add_responses` in `properties` of design |
 //! | 10–16 | errors: unstable, uncontrollable and improper systems | `linkwork_design::Error` | `bad_input` of design |
 //! | 10–16 | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh_table_match_published`, `routh_tables_match_ogata` in `anchors` of design; `routh_counts_roots`, `margins_include_every_crossing` |
-//! | 10–16 | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `jet_transport_frequency_response` in `anchors`, `pictures` of design |
+//! | 10–16 | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `jet_transport_response_matches_reference` in `anchors`, `pictures` of design |
 
 mod aircraft;
 mod andrews_squeezer;

@@ -18,7 +18,7 @@ pub fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
 
 /// Checks that a mode has the eigenvalue `re + i im`, within a tolerance relative to its magnitude.
 #[track_caller]
-pub fn assert_eigenvalue(mode: Option<&Mode>, re: f64, im: f64, relative: f64) {
+pub fn assert_mode_eigenvalue(mode: Option<&Mode>, re: f64, im: f64, relative: f64) {
     let pole = mode.expect("the mode is there").exponent;
     let error = (pole.re - re).hypot(pole.im - im);
     assert!(

@@ -12,20 +12,20 @@ struct Solo12;
 /// Stack size of the test thread, bytes.
 const STACK: usize = 128 << 10;
 
-type ConfigurationIn<T> = SVector<T, 19>;
-type VelocityIn<T> = SVector<T, 18>;
+type QuadrupedConfiguration<T> = SVector<T, 19>;
+type QuadrupedVelocity<T> = SVector<T, 18>;
 type EightLanes = Lanes<f64, 8>;
 
 /// Returns eight states of the quadruped in SIMD lanes, with configurations displaced from the neutral one.
-fn eight_states() -> (ConfigurationIn<EightLanes>, VelocityIn<EightLanes>) {
-    let v = VelocityIn::from_fn(|i, _| Lanes::from_fn(|k| ((i * i + 3 * k) as f64).sin()));
+fn eight_quadruped_states_in_lanes() -> (QuadrupedConfiguration<EightLanes>, QuadrupedVelocity<EightLanes>) {
+    let v = QuadrupedVelocity::from_fn(|i, _| Lanes::from_fn(|k| ((i * i + 3 * k) as f64).sin()));
     let q = Solo12.neutral().map(Lanes::splat);
     (Solo12.integrate_lanes(&q, &v), v)
 }
 
 #[test]
 fn eight_states_equal_single_states() {
-    let (q, v) = eight_states();
+    let (q, v) = eight_quadruped_states_in_lanes();
     let a = Solo12.forward_dynamics_lanes(&q, &v, &v);
     let mass = Solo12.mass_matrix_lanes(&q);
     let energy = Solo12.kinetic_energy_lanes(&q, &v);
@@ -43,9 +43,9 @@ fn eight_states_equal_single_states() {
 #[test]
 fn eight_states_fit_in_a_small_stack() {
     let largest_lane_difference = || {
-        let (q, v) = eight_states();
-        let a = Solo12.forward_dynamics(&q.map(|x| x.0[0]), &v.map(|x| x.0[0]), &VelocityIn::zeros());
-        let eight = Solo12.forward_dynamics_lanes(&q, &v, &VelocityIn::zeros());
+        let (q, v) = eight_quadruped_states_in_lanes();
+        let a = Solo12.forward_dynamics(&q.map(|x| x.0[0]), &v.map(|x| x.0[0]), &QuadrupedVelocity::zeros());
+        let eight = Solo12.forward_dynamics_lanes(&q, &v, &QuadrupedVelocity::zeros());
         (eight.map(|x| x.0[0]) - a).amax()
     };
     let thread = thread::Builder::new().stack_size(STACK).spawn(largest_lane_difference).expect("a thread");

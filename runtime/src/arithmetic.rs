@@ -172,7 +172,7 @@ pub trait Arithmetic: Registers {
     /// column. Fails to compile if there are fewer lanes or rows.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn store_two<
+    fn store_two_lanes<
         const I: usize,
         const J: usize,
         const ROW: usize,
@@ -204,7 +204,7 @@ pub trait Arithmetic: Registers {
     ) {
         const { assert!(ROW + N <= R, "there are fewer rows") };
         if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut) {
-            *rows = *a.numbers_of_lanes();
+            *rows = *a.lane_numbers();
         }
     }
 

@@ -51,7 +51,7 @@ fn depth_in_layer<T: Real>(h: T, layer: &AtmosphereLayer, end: Option<f64>) -> T
 
 /// Returns the unit step function of `x`, lane by lane: one for a nonnegative number and zero for a negative
 /// one.
-fn unit_step<T: Real>(x: T) -> T {
+fn heaviside_step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
@@ -73,7 +73,7 @@ pub trait Atmosphere: Real {
             let above = if k == 0 {
                 Self::one() + self * Self::zero()
             } else {
-                unit_step(self - constant(layer.base))
+                heaviside_step(self - constant(layer.base))
             };
             rate += above * constant(layer.lapse - before);
             before = layer.lapse;
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn published_values_are_reproduced() {
+    fn published_atmosphere_values_are_reproduced() {
         for (h, temperature, pressure) in TABLE {
             let h = geopotential_height(h);
             assert!((h.isa_temperature() - temperature).abs() < 2e-3, "{h}: {}", h.isa_temperature());

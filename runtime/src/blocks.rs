@@ -56,7 +56,7 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
             return small::add_product::<A, T, R, K>(&mut sum.data.0, &self.a.data.0, &self.b.data.0);
         }
         let a = hide_length(&self.a.data.0).iter().enumerate().take(K);
-        add_columns::<A, T, R, K, C>(&mut sum.data.0, a, &self.b.data.0);
+        add_column_products::<A, T, R, K, C>(&mut sum.data.0, a, &self.b.data.0);
     }
 }
 
@@ -75,24 +75,24 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<2, &mut S
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, sum: &mut SMatrix<T, R, C>) {
         let a = self.places.iter().filter_map(|k| self.a.data.0.get(*k).map(|column| (*k, column)));
-        add_columns::<A, T, R, K, C>(&mut sum.data.0, a, &self.b.data.0);
+        add_column_products::<A, T, R, K, C>(&mut sum.data.0, a, &self.b.data.0);
     }
 }
 
 /// Adds a matrix product of the given columns, with their indices. It processes four columns at a time, and
 /// the maximum number of rows that fit in registers together with the operands.
 #[inline(always)]
-fn add_columns<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
+fn add_column_products<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
     a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
 ) {
     if A::WIDE && R >= 8 {
-        multiply_rows_wide::<A, T, R, K, C>(columns, a, b);
+        matrix_product_in_wide_registers::<A, T, R, K, C>(columns, a, b);
     } else if R >= 4 {
-        multiply_all_rows::<A, T, 4, R, K, C>(columns, a, b);
+        matrix_product_in_registers::<A, T, 4, R, K, C>(columns, a, b);
     } else {
-        multiply_all_rows::<A, T, 1, R, K, C>(columns, a, b);
+        matrix_product_in_registers::<A, T, 1, R, K, C>(columns, a, b);
     }
 }
 
@@ -104,7 +104,7 @@ fn hide_length<T>(list: &[T]) -> &[T] {
 
 /// Returns the number of rows left after strips of two registers of width `W`. The last strip has more than
 /// one and at most three registers, unless the matrix is smaller.
-const fn remaining_rows(rows: usize, w: usize) -> usize {
+const fn remaining_row_count(rows: usize, w: usize) -> usize {
     if rows > 3 * w { (rows - w - 1) % (2 * w) + w + 1 } else { rows }
 }
 
@@ -112,7 +112,7 @@ const fn remaining_rows(rows: usize, w: usize) -> usize {
 /// remaining up to three. If fewer rows remain, the last register overlaps the previous one; all rows are
 /// read before any is written.
 #[inline(always)]
-fn multiply_all_rows<
+fn matrix_product_in_registers<
     'a,
     A: Arithmetic,
     T: Real,
@@ -125,7 +125,7 @@ fn multiply_all_rows<
     a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
 ) {
-    let left = remaining_rows(R, W);
+    let left = remaining_row_count(R, W);
     let mut from = 0;
     for _ in 0..(R - left) / (2 * W) {
         add_product_strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from);
@@ -139,16 +139,23 @@ fn multiply_all_rows<
     }
 }
 
-/// Computes a matrix product as [`multiply_all_rows`] does, with registers of eight, and a final register of
-/// four if it can hold the remaining rows. Instructions on four are half as long on processors that split
-/// instructions on eight.
+/// Computes a matrix product as [`matrix_product_in_registers`] does, with registers of eight, and a final
+/// register of four if it can hold the remaining rows. Instructions on four are half as long on processors
+/// that split instructions on eight.
 #[inline(always)]
-fn multiply_rows_wide<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
+fn matrix_product_in_wide_registers<
+    'a,
+    A: Arithmetic,
+    T: Real,
+    const R: usize,
+    const K: usize,
+    const C: usize,
+>(
     columns: &mut [[T; R]; C],
     a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
 ) {
-    let left = remaining_rows(R, 8);
+    let left = remaining_row_count(R, 8);
     let mut from = 0;
     for _ in 0..(R - left) / 16 {
         add_product_strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from);
@@ -211,12 +218,12 @@ struct RegisterRows<A, T, const W: usize, const V: usize, const F: usize> {
 
 impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> RegisterRows<A, T, W, V, F> {
     #[inline(always)]
-    fn zero_rows() -> Self {
+    fn zero_accumulator() -> Self {
         Self { whole: [A::splat(T::zero()); V], fours: [A::splat(T::zero()); F] }
     }
 
     #[inline(always)]
-    fn read_rows(&mut self, column: &[T], from: usize) {
+    fn load_rows_into_registers(&mut self, column: &[T], from: usize) {
         for (v, register) in self.whole.iter_mut().enumerate() {
             *register = part::<A, T, W>(column, from + v * W);
         }
@@ -226,7 +233,7 @@ impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Reg
     }
 
     #[inline(always)]
-    fn write_rows(&self, column: &mut [T], from: usize) {
+    fn write_registers_to_column(&self, column: &mut [T], from: usize) {
         for (v, register) in self.whole.iter().enumerate() {
             write_entries(register, column, from + v * W);
         }
@@ -266,13 +273,13 @@ fn add_product_tile<
     b: &[[T; K]; G],
     from: usize,
 ) {
-    let mut all = [RegisterRows::<A, T, W, V, F>::zero_rows(); G];
+    let mut all = [RegisterRows::<A, T, W, V, F>::zero_accumulator(); G];
     for (rows, column) in all.iter_mut().zip(columns.iter()) {
-        rows.read_rows(column, from);
+        rows.load_rows_into_registers(column, from);
     }
     for (k, column) in a {
-        let mut rows = RegisterRows::zero_rows();
-        rows.read_rows(column, from);
+        let mut rows = RegisterRows::zero_accumulator();
+        rows.load_rows_into_registers(column, from);
         for (sums, factors) in all.iter_mut().zip(b) {
             if let Some(factor) = factors.get(k) {
                 sums.add_multiple(&rows, *factor);
@@ -280,7 +287,7 @@ fn add_product_tile<
         }
     }
     for (column, rows) in columns.iter_mut().zip(&all) {
-        rows.write_rows(column, from);
+        rows.write_registers_to_column(column, from);
     }
 }
 
@@ -350,7 +357,7 @@ pub fn transpose_into<T: Real, const R: usize, const C: usize>(
 }
 
 /// Returns the product `A B` with a matrix `B` that is mostly zero.
-pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>(
+pub fn product_with_mostly_zero_matrix<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &SMatrix<T, R, K>,
     b: &SMatrix<T, K, C>,
 ) -> SMatrix<T, R, C> {
@@ -378,7 +385,7 @@ pub fn add_with_transpose<T: Real, const N: usize>(sum: &mut SMatrix<T, N, N>, s
 
 /// Writes `A + s B` to a matrix.
 #[inline]
-pub fn sum_into<T: Real, const R: usize, const C: usize>(
+pub fn write_scaled_sum<T: Real, const R: usize, const C: usize>(
     a: &SMatrix<T, R, C>,
     s: T,
     b: &SMatrix<T, R, C>,
@@ -398,7 +405,7 @@ pub fn scale<T: Real, const R: usize, const C: usize>(matrix: &mut SMatrix<T, R,
 
 /// Writes the multiple `s A` of a matrix to another matrix.
 #[inline]
-pub fn multiple_into<T: Real, const R: usize, const C: usize>(
+pub fn write_multiple<T: Real, const R: usize, const C: usize>(
     s: T,
     a: &SMatrix<T, R, C>,
     into: &mut SMatrix<T, R, C>,
@@ -422,7 +429,7 @@ pub fn add_multiple<T: Real, const R: usize, const C: usize>(
 
 /// Returns `Σ s A` over several factors and matrices.
 #[inline]
-pub fn combined<T: Real, const R: usize, const C: usize, const N: usize>(
+pub fn weighted_matrix_sum<T: Real, const R: usize, const C: usize, const N: usize>(
     factors: &[T; N],
     matrices: [&SMatrix<T, R, C>; N],
 ) -> SMatrix<T, R, C> {

@@ -26,26 +26,27 @@ mod stabilized;
 
 #[doc(hidden)]
 pub use assemble::{Loops, assemble, assembly_mode, least_violation};
-pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
+pub use careful::{Structure, careful_response, nearly_singular, rank_revealing_dynamics};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
 pub(crate) use differentiable::{
-    FrozenTimeVisitor, column_or_zeros, matrix_of_columns, multipliers_of_forces, set_column,
+    FrozenTimeVisitor, column_or_zeros, matrix_from_column_function, multipliers_from_constraint_forces,
+    set_column,
 };
 pub use error::ConstraintError;
-pub(crate) use graded::change_rates;
+pub(crate) use graded::velocity_change_and_impulses;
 #[doc(hidden)]
 pub use layout::{ConstraintCurvature, Elimination, InputDerivatives, MotionDerivatives, Responses};
 pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, constrained_derivatives};
 pub use second::{ConstrainedSecondDerivatives, CurvatureVisitor, EquationSecondDerivatives};
-pub(crate) use second::{FrozenCurvatureVisitor, adjoint_variables, with_transpose};
+pub(crate) use second::{FrozenTimeCurvatureVisitor, adjoint_variables, plus_matrix_and_transpose};
 #[doc(hidden)]
 pub use second::{constrained_second_derivatives, with_curvature};
 #[doc(hidden)]
 pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 #[doc(hidden)]
-pub use solve::{independent_solution, least_solution, regular_solution};
+pub use solve::{least_solution, regular_solution, solution_with_predetermined_pivots};
 #[doc(hidden)]
 pub use stabilized::stabilized_derivatives;
 pub use stabilized::{Stabilized, stabilized};
@@ -306,18 +307,18 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             }
             // Convergence ends at rounding errors.
             if last.is_some_and(|last| size * constant(2.0) > last) {
-                return is_acceptable(size, &q)
+                return is_residual_acceptable(size, &q)
                     .then_some(q)
-                    .ok_or_else(|| configuration_error(Self::CONSTRAINTS, worst, size));
+                    .ok_or_else(|| unsatisfied_configuration_error(Self::CONSTRAINTS, worst, size));
             }
             last = Some(size);
             let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(nalgebra::zero()));
             q = self.integrate(&q, &self.constraint_correction(t, &q, &gap));
         }
         let (worst, size) = index_of_largest_entry(&self.constraint_residuals(t, &q))?;
-        is_acceptable(size, &q)
+        is_residual_acceptable(size, &q)
             .then_some(q)
-            .ok_or_else(|| configuration_error(Self::CONSTRAINTS, worst, size))
+            .ok_or_else(|| unsatisfied_configuration_error(Self::CONSTRAINTS, worst, size))
     }
 
     /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the
@@ -345,14 +346,14 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
         let (worst, size) = index_of_largest_entry(&self.constraint_rates(t, q, &v))?;
-        if is_acceptable(size, &v) {
+        if is_residual_acceptable(size, &v) {
             return Ok(v);
         }
         // Off a branch, near a singular configuration, the constraints have other directions than on the
         // branch.
         let left = self.constraint_residuals(t, q);
         let farthest = largest_jacobian_entry(&self.constraint_jacobian(t, q));
-        if is_acceptable(index_of_largest_entry(&left)?.1, q)
+        if is_residual_acceptable(index_of_largest_entry(&left)?.1, q)
             && size <= careful::minimum_magnitude(&left) * farthest * largest_magnitude_or_one(&v)
         {
             return Ok(v);
@@ -488,7 +489,7 @@ fn rounding_of_coordinates<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
 
 /// Returns whether a residual is acceptable: half of the digits, which is the accuracy where constraints lose
 /// rank.
-fn is_acceptable<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
+fn is_residual_acceptable<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
     size <= epsilon::<T>().sqrt() * largest_magnitude_or_one(x)
 }
 
@@ -505,7 +506,7 @@ fn largest_jacobian_entry<T: Real, const NC: usize, const NV: usize>(jacobian: &
         .fold(T::one(), |most, column| column.iter().fold(most, |most, j| most.max(j.abs())))
 }
 
-fn configuration_error<T: Real, const NC: usize>(
+fn unsatisfied_configuration_error<T: Real, const NC: usize>(
     names: [&'static str; NC],
     worst: usize,
     size: T,

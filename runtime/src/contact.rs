@@ -133,7 +133,7 @@ use layout::ContactLayout;
 pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{
-    ContactPhase, PhaseState, PhasedMechanism, projected_onto_contacts as kept, velocity_after_impact,
+    ContactPhase, PhaseState, PhasedMechanism, state_projected_onto_contacts as kept, velocity_after_impact,
 };
 #[doc(hidden)]
 pub use polytopes::{
@@ -144,7 +144,7 @@ pub use response::responses;
 use selection::ContactSelection;
 #[doc(hidden)]
 pub use sensitivity::differentiate_step;
-use solution::{ActedContacts, compute_impulses};
+use solution::{ContactsWithImpulses, compute_closed_contact_impulses};
 use stepping::closed_contacts;
 #[doc(hidden)]
 pub use stepping::step;
@@ -196,7 +196,7 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     /// Index of the contact whose normal force limits the friction of each entry: the contact itself, except
     /// for friction moments. Spin and rolling moments such as `foot.spin` and `foot.roll` belong to the
     /// contact `foot` and share its gap; their contact velocities are relative angular velocities.
-    const PRESSED_BY: [usize; NK] = layout::contacts_pressed_by_themselves();
+    const PRESSED_BY: [usize; NK] = layout::self_bounding_contact_table();
 
     /// Returns the tables [`CONTACT_ROWS`](Self::CONTACT_ROWS) and [`PRESSED_BY`](Self::PRESSED_BY). A
     /// mechanism that is loaded at run time returns tables of its own, in which a contact without rows is
@@ -330,7 +330,7 @@ pub struct Responses<T, const NV: usize, const NR: usize> {
 
 impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
     /// Returns zero responses: impulses change no velocity.
-    fn zero_effects() -> Self {
+    fn zero_responses() -> Self {
         Self { velocities: zeros::<T, NV, NR>(), rates: zeros::<T, NR, NR>() }
     }
 
@@ -461,12 +461,14 @@ where
 {
     match closed_contacts(mechanism, t, (q, free), None)? {
         Some(closed) => {
-            let selection =
-                ContactSelection::<NK, NR>::select_closed(ContactLayout::of_mechanism(mechanism), &closed);
-            let mut acted = ActedContacts::without_impulses(selection, false);
-            let velocities = ContactVelocities::in_configuration(mechanism, t, q);
-            let velocities_before = || selection.selected_rates(before);
-            compute_impulses(
+            let selection = ContactSelection::<NK, NR>::select_closed_contacts(
+                ContactLayout::of_mechanism(mechanism),
+                &closed,
+            );
+            let mut acted = ContactsWithImpulses::contacts_without_impulses(selection, false);
+            let velocities = ContactVelocities::unevaluated_in_configuration(mechanism, t, q);
+            let velocities_before = || selection.selected_contact_rates(before);
+            compute_closed_contact_impulses(
                 mechanism,
                 (t, &velocities),
                 (q, free),

@@ -1,6 +1,6 @@
 //! First derivatives of the dynamics for generic code: controllers, estimators and optimisers.
 
-use crate::blocks::{add_product, is_zero, product_with_few, zeros};
+use crate::blocks::{add_product, is_zero, product_with_mostly_zero_matrix, zeros};
 use crate::constraint::{FrozenTimeVisitor, Visitor};
 use crate::forward::{constants, each_function};
 use crate::private::constant;
@@ -225,13 +225,14 @@ where
     M: Derivatives<NQ, NV, NU> + ?Sized,
 {
     let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
-    let acceleration = accelerated_into(&m, constant(0.0), (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
+    let acceleration =
+        write_acceleration_derivatives(&m, constant(0.0), (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
     LinearMotion { acceleration, by_q, by_v, by_u, turning: Derivatives::turning(m, q, v) }
 }
 
 /// Converts acceleration derivatives with respect to state and forces to derivatives with respect to state
 /// and inputs, given the derivatives of the forces of the inputs.
-pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
+pub(crate) fn convert_to_input_derivatives<T: Real, const NV: usize, const NU: usize>(
     (mut by_q, mut by_v, by_force): ByMotion<T, NV, NV>,
     (force_by_q, force_by_v, force_by_u): &ByMotion<T, NV, NU>,
 ) -> ByMotion<T, NV, NU> {
@@ -241,12 +242,12 @@ pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
             add_product(by_state, &by_force, of_force);
         }
     }
-    (by_q, by_v, product_with_few(&by_force, force_by_u))
+    (by_q, by_v, product_with_mostly_zero_matrix(&by_force, force_by_u))
 }
 
 /// Returns the acceleration under the inputs `u`, and writes its derivatives with respect to configuration,
 /// velocity and inputs to zero matrices.
-pub(crate) fn accelerated_into<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn write_acceleration_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
@@ -266,7 +267,7 @@ where
         return acceleration;
     }
     let of_force = m.generalized_forces_derivatives(t, q, v, u);
-    (*by_q, *by_v, *by_u) = under_inputs((*by_q, *by_v, by_force), &of_force);
+    (*by_q, *by_v, *by_u) = convert_to_input_derivatives((*by_q, *by_v, by_force), &of_force);
     acceleration
 }
 
@@ -283,7 +284,7 @@ where
     M: Derivatives<NQ, NV, NU>,
 {
     let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
-    accelerated_into(m, t, (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
+    write_acceleration_derivatives(m, t, (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
     Some((by_q, by_v, by_u))
 }
 
@@ -309,19 +310,19 @@ pub struct LinearMotion<T, const NV: usize, const NU: usize> {
 }
 
 /// Returns entry `(i, j)` of the matrix composed of two by two blocks.
-pub(crate) fn entry_of_blocks<T: Real, const NV: usize>(
+pub(crate) fn entry_of_two_by_two_blocks<T: Real, const NV: usize>(
     blocks: [[&SquareMatrix<T, NV>; 2]; 2],
     i: usize,
     j: usize,
 ) -> T {
-    let block_index = |k: usize| if k < NV { (0, k) } else { (1, k - NV) };
-    let ((row, i), (column, j)) = (block_index(i), block_index(j));
+    let block_and_entry_index = |k: usize| if k < NV { (0, k) } else { (1, k - NV) };
+    let ((row, i), (column, j)) = (block_and_entry_index(i), block_and_entry_index(j));
     let block = blocks.get(row).and_then(|blocks| blocks.get(column)).and_then(|block| block.get((i, j)));
     block.copied().unwrap_or(T::zero())
 }
 
 /// Returns the matrix that stacks the block `above` on the block `below`.
-pub(crate) fn stack_blocks<T: Real, const NV: usize, const NU: usize, const NX: usize>(
+pub(crate) fn stack_blocks_vertically<T: Real, const NV: usize, const NU: usize, const NX: usize>(
     above: &SMatrix<T, NV, NU>,
     below: &SMatrix<T, NV, NU>,
 ) -> SMatrix<T, NX, NU> {
@@ -338,13 +339,15 @@ impl<T: Real, const NV: usize, const NU: usize> LinearMotion<T, NV, NU> {
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let identity = SquareMatrix::identity();
-        SMatrix::from_fn(|i, j| entry_of_blocks([[&self.turning, &identity], [&self.by_q, &self.by_v]], i, j))
+        SMatrix::from_fn(|i, j| {
+            entry_of_two_by_two_blocks([[&self.turning, &identity], [&self.by_q, &self.by_v]], i, j)
+        })
     }
 
     /// Returns the matrix `B` of the linearised motion `ẋ = A x + B δu`. `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
-        stack_blocks(&SMatrix::zeros(), &self.by_u)
+        stack_blocks_vertically(&SMatrix::zeros(), &self.by_u)
     }
 }
 

@@ -36,7 +36,7 @@
 
 use crate::blocks::{NearlyIdentity, zeros};
 use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
-use crate::derivatives::{Derivatives, entry_of_blocks, stack_blocks};
+use crate::derivatives::{Derivatives, entry_of_two_by_two_blocks, stack_blocks_vertically};
 use crate::integrate::{
     ContinuousInputs, Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Step, System, TimeStepping,
 };
@@ -55,11 +55,13 @@ mod second;
 mod time_stepping;
 
 pub use explicit::semi_implicit_into;
-pub(crate) use explicit::{DifferentiatedStart, VectorWithDerivatives};
+pub(crate) use explicit::{DifferentiatedStepStart, VectorWithDerivatives};
 pub(crate) use implicit::eliminate_with_pivoting;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
-pub(crate) use time_stepping::{ConfigurationManifold, acceleration_at_start, smooth_motion};
+pub(crate) use time_stepping::{
+    ConfigurationManifold, motion_under_contact_forces, smooth_acceleration_at_start,
+};
 
 /// Returns configuration and velocity after one step of a method under constant inputs `u`.
 ///
@@ -84,13 +86,13 @@ where
     S: FixedStep<T>,
 {
     method.check()?;
-    let step = take_step(mechanism, method, t, q, v, u)?;
+    let step = step_with_constant_inputs(mechanism, method, t, q, v, u)?;
     Ok((step.end.q, step.end.v))
 }
 
 /// Computes one step of an integration method with constant inputs and returns it with its start, end and
 /// displacement.
-fn take_step<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn step_with_constant_inputs<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
     t: T,
@@ -128,7 +130,7 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = T>,
     S: FixedStep<T>,
 {
-    let step = take_step(mechanism, method, t, q, v, u)?;
+    let step = step_with_constant_inputs(mechanism, method, t, q, v, u)?;
     Ok(((step.end.q, step.end.v), step.displacement.at(T::one()) / h))
 }
 
@@ -430,13 +432,13 @@ pub struct Transition<T, const NQ: usize, const NV: usize, const NU: usize> {
     /// ([`SemiImplicitEuler`] without constraints). It halves the work of
     /// [`backward`](crate::optimal::backward), because configuration derivatives follow from velocity
     /// derivatives.
-    pub chained: Option<Chained<T, NV>>,
+    pub chained: Option<ConfigurationVelocityRelation<T, NV>>,
 }
 
 /// Linear relation between the configuration and the velocity after a step: `δq⁺ = by_q δq + h
 /// by_displacement δv⁺`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chained<T, const NV: usize> {
+pub struct ConfigurationVelocityRelation<T, const NV: usize> {
     period: T,
     by_q: SMatrix<T, NV, NV>,
     by_displacement: SMatrix<T, NV, NV>,
@@ -444,7 +446,7 @@ pub struct Chained<T, const NV: usize> {
     others: [(usize, usize); 2],
 }
 
-impl<T: Real, const NV: usize> Chained<T, NV> {
+impl<T: Real, const NV: usize> ConfigurationVelocityRelation<T, NV> {
     /// Returns the relation with the period `h`, s, and the derivatives of `q ⊕ h v⁺` with respect to `q` and
     /// to the displacement `h v⁺`.
     pub fn new(period: T, by_q: SMatrix<T, NV, NV>, by_displacement: SMatrix<T, NV, NV>) -> Self {
@@ -496,7 +498,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
     }
 
     /// Returns the transition to a configuration and a velocity, given their derivatives.
-    pub(crate) fn from_sensitive(
+    pub(crate) fn from_differentiated_state(
         (q, motion): &(SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
         v: &VectorWithDerivatives<T, NV, NU>,
     ) -> Self {
@@ -518,13 +520,13 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let blocks = [[&self.q_by_q, &self.q_by_v], [&self.v_by_q, &self.v_by_v]];
-        SMatrix::from_fn(|i, j| entry_of_blocks(blocks, i, j))
+        SMatrix::from_fn(|i, j| entry_of_two_by_two_blocks(blocks, i, j))
     }
 
     /// Returns the matrix `B` of the linearised step `x⁺ = A x + B δu`. `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
-        stack_blocks(&self.q_by_u, &self.v_by_u)
+        stack_blocks_vertically(&self.q_by_u, &self.v_by_u)
     }
 
     /// Returns the gradient of a function with respect to configuration, velocity and inputs before the step,
@@ -560,7 +562,7 @@ pub fn stacked<T: Real, const NV: usize, const NX: usize>(
     dv: &SVector<T, NV>,
 ) -> SVector<T, NX> {
     const { assert!(NX == 2 * NV, "the vector has twice as many numbers as there are velocities") };
-    stack_blocks(dq, dv)
+    stack_blocks_vertically(dq, dv)
 }
 
 /// Splits a vector made by [`stacked`] into displacements and changes of velocity.

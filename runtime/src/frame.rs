@@ -86,7 +86,12 @@ macro_rules! index {
                     Some(index) => index,
                     None => panic!(
                         "{}",
-                        $crate::__private::Message::unknown_name(stringify!($names), &$names, $name).text()
+                        $crate::__private::Message::message_for_unknown_name(
+                            stringify!($names),
+                            &$names,
+                            $name
+                        )
+                        .text()
                     ),
                 }
             },
@@ -434,7 +439,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_found_and_arrays_joined() {
+    fn frame_names_are_found_and_arrays_joined() {
         assert_eq!(index_of(&["a", "bc"], "bc"), Some(1));
         assert_eq!(index_of(&["a", "bc"], "b"), None);
         assert_eq!(join::<f64, 2, 1, 3>(&[1.0, 2.0], &[3.0]), [1.0, 2.0, 3.0]);

@@ -92,7 +92,7 @@ pub fn put_back<M, const N: usize, const B: usize>(
 where
     M: Identifiable<N, B>,
 {
-    put_parameters(mechanism, base, None)
+    write_base_parameters_back(mechanism, base, None)
 }
 
 /// Approximates base parameters that no bodies have, for example because of noise, as well as physically
@@ -112,10 +112,10 @@ pub fn approach<M, const N: usize, const B: usize>(
 where
     M: Identifiable<N, B>,
 {
-    put_parameters(mechanism, base, Some(softness))
+    write_base_parameters_back(mechanism, base, Some(softness))
 }
 
-fn put_parameters<M, const N: usize, const B: usize>(
+fn write_base_parameters_back<M, const N: usize, const B: usize>(
     mechanism: &mut M,
     base: &SVector<M::Scalar, B>,
     softness: Option<M::Scalar>,
@@ -131,9 +131,9 @@ where
     for (k, (link, prior)) in before.iter().zip(&mut prior).enumerate() {
         *prior = pseudo_inertia(link).ok_or(PutBackError::Prior { link: k })?;
     }
-    let map = linear_map(mechanism);
+    let map = base_parameter_map(mechanism);
     mechanism.set_inertials(&before);
-    let found = least_change(&map, &prior, base, softness)?;
+    let found = least_change_of_inertias(&map, &prior, base, softness)?;
     mechanism.set_inertials(&found.map(|p| inertial_from_pseudo_inertia(&p)));
     Ok(())
 }
@@ -150,7 +150,9 @@ struct AffineParameterMap<T, const N: usize, const B: usize> {
 
 /// Returns the base parameters as an affine function of the pseudo-inertias, computed from their values for
 /// pseudo-inertias with a single nonzero entry.
-fn linear_map<M, const N: usize, const B: usize>(mechanism: &mut M) -> AffineParameterMap<M::Scalar, N, B>
+fn base_parameter_map<M, const N: usize, const B: usize>(
+    mechanism: &mut M,
+) -> AffineParameterMap<M::Scalar, N, B>
 where
     M: Identifiable<N, B>,
 {
@@ -193,7 +195,7 @@ where
 }
 
 impl<T: Real, const N: usize, const B: usize> AffineParameterMap<T, N, B> {
-    fn value_of_map(&self, of: &[Matrix4<T>; N]) -> SVector<T, B> {
+    fn linear_part_value(&self, of: &[Matrix4<T>; N]) -> SVector<T, B> {
         SVector::from_fn(|i, _| inner_product(&self.factors[i], of))
     }
 }
@@ -206,7 +208,7 @@ fn inner_product<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; 
 /// Returns the pseudo-inertias that have the base parameters and change least, by Newton's method. A step
 /// shorter than one in the norm of the Hessian keeps pseudo-inertias positive definite (Boyd and
 /// Vandenberghe, *Convex Optimization*, 2004, ch. 9.6).
-fn least_change<T: Real, const N: usize, const B: usize>(
+fn least_change_of_inertias<T: Real, const N: usize, const B: usize>(
     map: &AffineParameterMap<T, N, B>,
     prior: &[Matrix4<T>; N],
     base: &SVector<T, B>,
@@ -215,7 +217,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
     let prior_inverse = prior.map(|p| inverse_by_cholesky(&p));
     let mut p = *prior;
     let not_physical_error = |p: &[Matrix4<T>; N]| {
-        let residual = (map.value_of_map(p) + map.rest - base).amax();
+        let residual = (map.linear_part_value(p) + map.rest - base).amax();
         Err(PutBackError::NotPhysical { residual: to_f64(residual) })
     };
     let enough = epsilon::<T>().cbrt() * constant(4.0);
@@ -248,7 +250,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         }
         let Some(factor) = Cholesky::new(s) else { return not_physical_error(&p) };
         let ahead: [Matrix4<T>; N] = core::array::from_fn(|k| p[k] + free[k]);
-        let mut nu = map.value_of_map(&ahead) + map.rest - base;
+        let mut nu = map.linear_part_value(&ahead) + map.rest - base;
         if softness.is_none() {
             // Augmented Lagrangian: over the iterations, all base parameters that can be satisfied are
             // satisfied.
@@ -281,7 +283,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
                 share = least.max(share * constant(0.25));
             }
         } else if length < enough {
-            let holds = (map.value_of_map(&p) + map.rest - base).amax() <= base.amax() * enough;
+            let holds = (map.linear_part_value(&p) + map.rest - base).amax() <= base.amax() * enough;
             let exact = soft.iter().all(|x| *x == T::zero());
             return if holds || !exact { Ok(p) } else { not_physical_error(&p) };
         }

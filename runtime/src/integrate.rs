@@ -54,7 +54,7 @@ pub use rosenbrock::Rosenbrock;
 pub use semi_implicit_euler::SemiImplicitEuler;
 pub use system::{ContinuousInputs, Dynamics, Inputs, NoInputs, SampledInputs, System};
 pub use time_stepping::TimeStepping;
-pub(crate) use time_stepping::{enforce_closed_contacts, rk4_step_with_contacts};
+pub(crate) use time_stepping::{acceleration_from_closed_contacts, rk4_step_with_contacts};
 
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
@@ -184,7 +184,7 @@ pub(crate) fn check_positive<T: Real>(name: &'static str, value: T) -> Result<()
 /// # Errors
 ///
 /// [`Error::StepTooSmall`] if the step vanishes in the rounding of `t`.
-fn equal_step<T: Real>(longest: T, t: T, until: Option<T>) -> Result<(T, T), Error> {
+fn equal_step_length_and_end<T: Real>(longest: T, t: T, until: Option<T>) -> Result<(T, T), Error> {
     let (h, end) = match until {
         None => (longest, t + longest),
         Some(until) => {

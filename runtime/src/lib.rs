@@ -202,10 +202,10 @@ pub mod __private {
     pub use crate::arithmetic::{Arithmetic, Compiled, Vector};
     pub use crate::constraint::{
         ConstraintCurvature, Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses,
-        Structure, assemble, assembly_mode, careful_dynamics, careful_response, constrained_derivatives,
-        constrained_second_derivatives, independent_solution, least_solution, least_violation,
-        nearly_singular, pressing_solution, regular_solution, slipping_response, slipping_solution,
-        stabilized_derivatives, with_curvature,
+        Structure, assemble, assembly_mode, careful_response, constrained_derivatives,
+        constrained_second_derivatives, least_solution, least_violation, nearly_singular, pressing_solution,
+        rank_revealing_dynamics, regular_solution, slipping_response, slipping_solution,
+        solution_with_predetermined_pivots, stabilized_derivatives, with_curvature,
     };
     pub use crate::contact::Columns as ContactDerivatives;
     pub use crate::contact::{
@@ -229,7 +229,7 @@ pub mod __private {
     };
     pub use crate::limits::{at_least, at_most};
     pub use crate::multiplication::{
-        Tile, complete, invert, minus_products, registers_of_eight, registers_of_four, rows,
+        Tile, complete, invert, registers_of_eight, registers_of_four, replace_by_negative_products, rows,
     };
     pub use crate::parameters::{Figure, Rule, validate};
     pub use crate::private::{constant, put_block, put_rows};

@@ -180,7 +180,7 @@ fn second_bracket_factor<T: Real>(square: T) -> T {
 ///
 /// `ad` has the minimal polynomial `ad (ad² + θ²)²`, so `(ad/2) coth(ad/2)` is the even polynomial of degree
 /// four that agrees with it at `iθ` in value and slope (Selig, *Geometric Fundamentals of Robotics*, §4.6).
-fn even_bracket_factors<T: Real>(square: T) -> [T; 2] {
+fn se3_inverse_jacobian_factors<T: Real>(square: T) -> [T; 2] {
     choose_by_limit(
         square,
         constant(SERIES_ANGLE),
@@ -298,7 +298,7 @@ pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
 pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
-    let [second, fourth] = even_bracket_factors(dot(turn, turn));
+    let [second, fourth] = se3_inverse_jacobian_factors(dot(turn, turn));
     let first = lie_bracket(dv, v);
     let twice = lie_bracket(dv, first);
     let four_times = lie_bracket(dv, lie_bracket(dv, twice));

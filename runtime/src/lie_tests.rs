@@ -45,12 +45,12 @@ fn ball_difference_is_shortest_near_half_turn() {
         assert!(dot(found, found).sqrt() <= core::f64::consts::PI + 1e-15);
         let reached = ball_integrate(QUATERNION, found);
         assert!(
-            largest_difference(reached, q1).min(largest_difference(reached, scaled_quaternion(q1))) < 1e-15
+            largest_difference(reached, q1).min(largest_difference(reached, negated_quaternion(q1))) < 1e-15
         );
     }
 }
 
-fn scaled_quaternion([x, y, z, w]: [f64; 4]) -> [f64; 4] {
+fn negated_quaternion([x, y, z, w]: [f64; 4]) -> [f64; 4] {
     [-x, -y, -z, -w]
 }
 
@@ -108,7 +108,7 @@ fn tangent_rates_produce_the_velocity() {
 fn closed_forms_continue_the_series() {
     let (below, above) = (SERIES_ANGLE - 1e-15, SERIES_ANGLE);
     assert!((second_bracket_factor(below) - second_bracket_factor(above)).abs() < 1e-14);
-    let (a, b) = (even_bracket_factors(below), even_bracket_factors(above));
+    let (a, b) = (se3_inverse_jacobian_factors(below), se3_inverse_jacobian_factors(above));
     assert!((a[0] - b[0]).abs() < 1e-14 && (a[1] - b[1]).abs() < 1e-13);
     let (a, b) = (left_jacobian_factors(0.05_f64 - 1e-16), left_jacobian_factors(0.05_f64));
     assert!((a[0] - b[0]).abs() < 1e-15 && (a[1] - b[1]).abs() < 3e-14);

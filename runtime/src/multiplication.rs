@@ -22,7 +22,7 @@ use nalgebra::SMatrix;
 pub use tile::{Tile, Tiling};
 
 /// Whether a column of this length occupies several SIMD registers of eight numbers.
-const fn is_long(numbers: usize) -> bool {
+const fn occupies_several_registers(numbers: usize) -> bool {
     registers_of_eight(numbers, true) > 1
 }
 
@@ -52,7 +52,7 @@ pub type Factor<'a, T, const N: usize, const M: usize> =
 
 /// Replaces each matrix by its negative product with `matrix`.
 #[inline]
-pub fn minus_products<
+pub fn replace_by_negative_products<
     A: Arithmetic,
     T: Real,
     P: Tiling<T, N>,
@@ -63,19 +63,19 @@ pub fn minus_products<
     matrix: &SMatrix<T, N, N>,
     factors: [Factor<'_, T, N, M>; COUNT],
 ) {
-    A::run_loop(NegativeProducts::<T, P, N, M, COUNT> { matrix, factors, parts: PhantomData });
+    A::run_loop(NegatedMatrixProducts::<T, P, N, M, COUNT> { matrix, factors, parts: PhantomData });
 }
 
-struct NegativeProducts<'a, T, P, const N: usize, const M: usize, const COUNT: usize> {
+struct NegatedMatrixProducts<'a, T, P, const N: usize, const M: usize, const COUNT: usize> {
     matrix: &'a SMatrix<T, N, N>,
     factors: [Factor<'a, T, N, M>; COUNT],
     parts: PhantomData<P>,
 }
 
 impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usize> VectorLoop
-    for NegativeProducts<'_, T, P, N, M, COUNT>
+    for NegatedMatrixProducts<'_, T, P, N, M, COUNT>
 {
-    const IS_LONG: bool = is_long(N);
+    const IS_LONG: bool = occupies_several_registers(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {

@@ -61,10 +61,10 @@
 
 use crate::blocks::{
     add_multiple, add_product, add_product_of_some, add_with_transpose, factors, product, scale, solve,
-    solve_rows_into, sum_into, symmetric_into, transpose_into, transposed, zeros,
+    solve_rows_into, symmetric_into, transpose_into, transposed, write_scaled_sum, zeros,
 };
-use crate::derivatives::entry_of_blocks;
-use crate::discrete::{Chained, Transition};
+use crate::derivatives::entry_of_two_by_two_blocks;
+use crate::discrete::{ConfigurationVelocityRelation, Transition};
 use crate::private::constant;
 use crate::{InputSecondOrder, Real};
 use nalgebra::{SMatrix, SVector};
@@ -267,7 +267,7 @@ impl<T: Real, const NV: usize> Value<T, NV> {
     pub fn hessian<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let vq = transposed(&self.qv);
-        SMatrix::from_fn(|i, j| entry_of_blocks([[&self.qq, &self.qv], [&vq, &self.vv]], i, j))
+        SMatrix::from_fn(|i, j| entry_of_two_by_two_blocks([[&self.qq, &self.qv], [&vq, &self.vv]], i, j))
     }
 
     /// Returns the change of the cost-to-go for a state displaced by `dq` and `dv`, by its second-order
@@ -325,7 +325,7 @@ pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>
     policy: &mut Policy<T, NV, NU>,
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {
-    minimise_over_inputs(&mut accumulate_costs(step, cost, to_go), regularisation, policy, to_go)
+    minimise_over_inputs(&mut step_cost_plus_cost_to_go(step, cost, to_go), regularisation, policy, to_go)
 }
 
 /// Computes [`backward_into`] for inputs with limits: the change of the inputs minimises the costs to second
@@ -347,7 +347,7 @@ pub fn backward_within<T: Real, const NQ: usize, const NV: usize, const NU: usiz
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {
     limits::minimise_over_limited_inputs(
-        &mut accumulate_costs(step, cost, to_go),
+        &mut step_cost_plus_cost_to_go(step, cost, to_go),
         regularisation,
         limits,
         policy,
@@ -357,7 +357,7 @@ pub fn backward_within<T: Real, const NQ: usize, const NV: usize, const NU: usiz
 
 /// Returns the sum of the costs of a step and the cost-to-go after it, as a function of the state before the
 /// step and the inputs.
-fn accumulate_costs<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+fn step_cost_plus_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     step: &Transition<T, NQ, NV, NU>,
     cost: &Quadratic<T, NV, NU>,
     after: &Value<T, NV>,
@@ -381,11 +381,16 @@ fn add_general_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: u
     let (q_by_q, v_by_q) = (transposed(&step.q_by_q), transposed(&step.v_by_q));
     let (q_by_v, v_by_v) = (transposed(&step.q_by_v), transposed(&step.v_by_v));
     let (q_by_u, v_by_u) = (transposed(&step.q_by_u), transposed(&step.v_by_u));
-    add_two_products(&mut before.qq, &q_by_q, &v_by_q, &hessian_rows(after, &vq, &step.q_by_q, &step.v_by_q));
-    let by_v = hessian_rows(after, &vq, &step.q_by_v, &step.v_by_v);
+    add_two_products(
+        &mut before.qq,
+        &q_by_q,
+        &v_by_q,
+        &cost_to_go_hessian_product(after, &vq, &step.q_by_q, &step.v_by_q),
+    );
+    let by_v = cost_to_go_hessian_product(after, &vq, &step.q_by_v, &step.v_by_v);
     add_two_products(&mut before.qv, &q_by_q, &v_by_q, &by_v);
     add_two_products(&mut before.vv, &q_by_v, &v_by_v, &by_v);
-    let by_u = hessian_rows(after, &vq, &step.q_by_u, &step.v_by_u);
+    let by_u = cost_to_go_hessian_product(after, &vq, &step.q_by_u, &step.v_by_u);
     add_two_products(&mut before.qu, &q_by_q, &v_by_q, &by_u);
     add_two_products(&mut before.vu, &q_by_v, &v_by_v, &by_u);
     add_two_products(&mut before.uu, &q_by_u, &v_by_u, &by_u);
@@ -397,7 +402,7 @@ fn add_general_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: u
 
 /// Returns the product `S X` with the Hessian `S` of the cost-to-go: first its configuration rows, then its
 /// velocity rows.
-fn hessian_rows<T: Real, const NV: usize, const C: usize>(
+fn cost_to_go_hessian_product<T: Real, const NV: usize, const C: usize>(
     after: &Value<T, NV>,
     vq: &SMatrix<T, NV, NV>,
     q: &SMatrix<T, NV, C>,
@@ -427,7 +432,7 @@ fn add_chained_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: u
     before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
     after: &Value<T, NV>,
-    chain: &Chained<T, NV>,
+    chain: &ConfigurationVelocityRelation<T, NV>,
 ) {
     let (by_q, by_v, by_u) = (&step.v_by_q, &step.v_by_v, &step.v_by_u);
     let (mut q_rows, mut v_rows, mut u_rows) = (zeros(), zeros(), zeros());
@@ -436,7 +441,7 @@ fn add_chained_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: u
     transpose_into(by_u, &mut u_rows);
     let (mut z, mut w) = (zeros(), after.vv);
     let [of_q, gradient] =
-        change_variables_of_value::<T, NQ, NV>(&mut before.qq, &mut z, &mut w, after, chain);
+        rewrite_cost_to_go_variables::<T, NQ, NV>(&mut before.qq, &mut z, &mut w, after, chain);
     // With P = G_qᵀ W + Z the rows of q are P [G_v G_u], and the block qq is Eᵀ S_qq E + ½ (P + Z) G_q plus
     // its transpose.
     let mut rows = z;
@@ -463,28 +468,28 @@ fn add_chained_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: u
 /// Rewrites the cost-to-go as a function of the configuration before the step and the velocity after it,
 /// which together determine the configuration after the step. Sets `z` (zero on entry) to `Eᵀ (h S_qq D +
 /// S_qv)` and `w` (`S_vv` on entry) to `Hᵀ S H`, adds `Eᵀ S_qq E` to `qq`, and returns `Eᵀ s_q` and `Hᵀ s`.
-fn change_variables_of_value<T: Real, const NQ: usize, const NV: usize>(
+fn rewrite_cost_to_go_variables<T: Real, const NQ: usize, const NV: usize>(
     qq: &mut SMatrix<T, NV, NV>,
     z: &mut SMatrix<T, NV, NV>,
     w: &mut SMatrix<T, NV, NV>,
     after: &Value<T, NV>,
-    chain: &Chained<T, NV>,
+    chain: &ConfigurationVelocityRelation<T, NV>,
 ) -> [SVector<T, NV>; 2] {
     let h = chain.period();
     // With X = Dᵀ (S_qv + ½ h S_qq D), W is S_vv + h (X + Xᵀ).
     let mut half = zeros();
     if NQ == NV {
         add_multiple(qq, T::one(), &after.qq);
-        sum_into(&after.qv, h, &after.qq, z);
-        sum_into(&after.qv, h * constant(0.5), &after.qq, &mut half);
+        write_scaled_sum(&after.qv, h, &after.qq, z);
+        write_scaled_sum(&after.qv, h * constant(0.5), &after.qq, &mut half);
         add_with_transpose(w, h, &half);
         return [after.q, after.v + after.q * h];
     }
     let [e, d] = chain.nearly_identity_matrices();
     let mut moved = after.qq;
     d.follow(&mut moved);
-    sum_into(&after.qv, h, &moved, z);
-    sum_into(&after.qv, h * constant(0.5), &moved, &mut half);
+    write_scaled_sum(&after.qv, h, &moved, z);
+    write_scaled_sum(&after.qv, h * constant(0.5), &moved, &mut half);
     let (mut of_d, mut of_e) = (zeros(), zeros());
     let (back_by_d, back_by_e) = (d.transposed(&mut of_d), e.transposed(&mut of_e));
     back_by_d.lead(&mut half);

@@ -138,7 +138,7 @@ pub enum Rule {
 
 impl Rule {
     /// Returns the number of values that the condition takes.
-    fn count_values(self) -> usize {
+    fn number_of_rule_arguments(self) -> usize {
         match self {
             Rule::Order => 2,
             Rule::Inertia => 7,
@@ -156,9 +156,9 @@ impl Rule {
 pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), ParameterError> {
     let mut rest = values;
     for figure in figures {
-        let Some((own, after)) = rest.split_at_checked(figure.rule.count_values()) else { break };
+        let Some((own, after)) = rest.split_at_checked(figure.rule.number_of_rule_arguments()) else { break };
         rest = after;
-        if let Some((fault, value)) = violated_condition(figure.rule, own) {
+        if let Some((fault, value)) = fault_of_violated_condition(figure.rule, own) {
             let Figure { name, parameters, .. } = *figure;
             return Err(ParameterError { fault, figure: name, parameters, value });
         }
@@ -168,7 +168,7 @@ pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), Paramet
 
 /// Limits of the magnitudes of parameters for a scalar type. The compiler checks constants against the same
 /// limits.
-struct MagnitudeLimits {
+struct ParameterMagnitudeLimits {
     /// Maximum mass and moment of inertia that the check accepts, kg and kg·m².
     most: f64,
     /// Maximum length that the check accepts, m.
@@ -179,12 +179,12 @@ struct MagnitudeLimits {
     tolerance: f64,
 }
 
-impl MagnitudeLimits {
-    fn limits_of_scalar<T: Real>() -> MagnitudeLimits {
+impl ParameterMagnitudeLimits {
+    fn magnitude_limits_of_scalar<T: Real>() -> ParameterMagnitudeLimits {
         if epsilon::<T>() > constant(1e-10) {
-            return MagnitudeLimits { most: 1e18, length: 1e9, least: 1e-36, tolerance: 1e-5 };
+            return ParameterMagnitudeLimits { most: 1e18, length: 1e9, least: 1e-36, tolerance: 1e-5 };
         }
-        MagnitudeLimits { most: 1e150, length: 1e75, least: 1e-300, tolerance: 1e-6 }
+        ParameterMagnitudeLimits { most: 1e150, length: 1e75, least: 1e-300, tolerance: 1e-6 }
     }
 }
 
@@ -197,11 +197,12 @@ const NOTHING: f64 = 1e-18;
 const SMALLEST: f64 = 1e-16;
 
 /// Returns the fault and the value to report, if the values violate the condition.
-fn violated_condition<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
+fn fault_of_violated_condition<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
     if let Some(x) = values.iter().find(|x| !is_finite(**x)) {
         return Some((Fault::NotFinite, to_f64(*x)));
     }
-    let MagnitudeLimits { most, length, least, tolerance } = MagnitudeLimits::limits_of_scalar::<T>();
+    let ParameterMagnitudeLimits { most, length, least, tolerance } =
+        ParameterMagnitudeLimits::magnitude_limits_of_scalar::<T>();
     let zero = T::zero();
     let fault_unless = |holds: bool, fault: Fault, value: T| (!holds).then(|| (fault, to_f64(value)));
     match (rule, values) {
@@ -359,7 +360,7 @@ mod tests {
 
     #[test]
     fn fault_in_one_lane_is_reported() {
-        let figure_with_rule = |rule| [Figure { rule, name: "x", parameters: &[] }];
+        let condition_with_rule = |rule| [Figure { rule, name: "x", parameters: &[] }];
         for (rule, values, fault) in TABLE {
             // The other lanes contain values that every rule except `Order` admits.
             let valid_value = |k: usize| {
@@ -368,11 +369,11 @@ mod tests {
             let lanes_with_one_fault =
                 |k: usize| f64x4::from_fn(|lane| if lane == 2 { values[k] } else { valid_value(k) });
             let values: std::vec::Vec<f64x4> = (0..values.len()).map(lanes_with_one_fault).collect();
-            let found = validate(&figure_with_rule(rule), &values).err().map(|error| error.fault);
+            let found = validate(&condition_with_rule(rule), &values).err().map(|error| error.fault);
             assert_eq!(found, fault, "{rule:?} {values:?}");
         }
-        assert_eq!(validate(&figure_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 2.0])]), Ok(()));
-        let small = validate(&figure_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 1e-310])]);
+        assert_eq!(validate(&condition_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 2.0])]), Ok(()));
+        let small = validate(&condition_with_rule(Rule::Mass), &[Lanes([0.0, 1.0, 1e-310])]);
         assert_eq!(small.unwrap_err().fault, Fault::TooSmall);
     }
 
@@ -385,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn message_contains_missing_amount() {
+    fn inertia_message_states_missing_moment() {
         // Rotated by 45° about z, then about x: principal moments 0.1, 0.2, 0.5.
         let (a, b) = (core::f64::consts::FRAC_1_SQRT_2, 0.5);
         let axes = [[a, a, 0.0], [-b, b, a], [b, -b, a]];

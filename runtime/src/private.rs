@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_converted() {
+    fn constants_convert_to_and_from_f64() {
         assert_eq!(constant::<f32>(0.1), 0.1_f32);
         assert_eq!(to_f64(0.5_f32), 0.5);
     }

@@ -2,7 +2,7 @@
 //! trajectories.
 
 use crate::blocks::{add_multiple, add_product, is_zero, product, transposed};
-use crate::constraint::{CurvatureVisitor, FrozenCurvatureVisitor};
+use crate::constraint::{CurvatureVisitor, FrozenTimeCurvatureVisitor};
 use crate::forward::each_function;
 use crate::private::constant;
 use crate::{At, Derivatives, Real, Scleronomic};
@@ -194,6 +194,6 @@ where
     where
         V: CurvatureVisitor<T, NQ, NV, NU>,
     {
-        self.mechanism.visit_constraint_curvature(FrozenCurvatureVisitor { visitor, t: self.t })
+        self.mechanism.visit_constraint_curvature(FrozenTimeCurvatureVisitor { visitor, t: self.t })
     }
 }

@@ -68,9 +68,9 @@ where
 }
 
 /// List of the events `E`, extended by one event.
-type EventsWith<E, T, G, A> = (E, Event<T, G, A>);
+type EventsWithOneMore<E, T, G, A> = (E, Event<T, G, A>);
 /// List of the events `E` extended by one more event whose effect is an impact.
-type WithImpact<E, T, G, F> = EventsWith<E, T, G, Impact<F>>;
+type EventsWithImpact<E, T, G, F> = EventsWithOneMore<E, T, G, Impact<F>>;
 
 /// Sample of a simulation: state and inputs at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,7 +133,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
         if !q.iter().chain(&v).chain(&u).chain([&t]).all(|x| x.is_finite()) {
             return Err(Error::NotFinite { t: to_f64(t) });
         }
-        run::check_quaternions::<M, T, NQ, NV, NU>(&q, &mechanism.integrate(&q, &SVector::zeros()))?;
+        run::check_unit_quaternions::<M, T, NQ, NV, NU>(&q, &mechanism.integrate(&q, &SVector::zeros()))?;
         Ok(Self { t, q, v, u, event: None, violation: T::zero() })
     }
 }
@@ -319,7 +319,10 @@ where
 
     /// Ends the run when `function(t, q, v)` crosses zero in either direction; the last sample is at the
     /// crossing.
-    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Stop>, NQ, NV, NU>
+    pub fn until<G>(
+        self,
+        function: G,
+    ) -> Simulation<'m, M, T, I, S, EventsWithOneMore<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -332,7 +335,7 @@ where
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Stop>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, EventsWithOneMore<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -350,7 +353,7 @@ where
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Report>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, EventsWithOneMore<E, T, G, Report>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -371,7 +374,7 @@ where
         crossing: Crossing,
         function: G,
         after: F,
-    ) -> Simulation<'m, M, T, I, S, WithImpact<E, T, G, F>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, EventsWithImpact<E, T, G, F>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,
@@ -393,7 +396,7 @@ where
         if self.duration.is_none() && !E::STOPS && !matches!(self.samples, SampleTimes::At(_)) {
             return Err(Error::Endless);
         }
-        let mut run = self.begin_run()?;
+        let mut run = self.initial_or_resumed_progress()?;
         run.quiet = true;
         let mut last = Err(Error::Endless);
         while let Some(sample) = self.next_sample(&mut run)? {
@@ -418,7 +421,7 @@ where
     fn with_event<G, A>(
         self,
         event: Event<T, G, A>,
-    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, A>, NQ, NV, NU> {
+    ) -> Simulation<'m, M, T, I, S, EventsWithOneMore<E, T, G, A>, NQ, NV, NU> {
         let Self { system, method, events, start, overlaps, duration, samples, .. } = self;
         let events = (events, event);
         Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }
@@ -479,7 +482,7 @@ where
         if self.over {
             return None;
         }
-        let mut run = match self.begin_run() {
+        let mut run = match self.initial_or_resumed_progress() {
             Ok(run) => run,
             Err(error) => {
                 self.over = true;

@@ -21,7 +21,7 @@ const MOST_ITERATIONS: usize = 50;
 ///
 /// If the iteration does not converge, the last iterate is returned: integration methods check their own
 /// equations.
-pub(crate) fn displacement_from_end_speeds<T: Real, const N: usize>(
+pub(crate) fn displacement_given_final_velocity<T: Real, const N: usize>(
     rate: impl Fn(&SVector<T, N>) -> SVector<T, N>,
     v: &SVector<T, N>,
     s: T,
@@ -42,7 +42,7 @@ pub(crate) fn displacement_from_end_speeds<T: Real, const N: usize>(
 }
 
 /// Returns the displacement of a mechanism after `s` seconds, given the velocity at its end (see
-/// [`displacement_from_end_speeds`]).
+/// [`displacement_given_final_velocity`]).
 pub(crate) fn displacement_of_mechanism<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
@@ -54,7 +54,7 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = T> + ?Sized,
 {
     if m.features().speeds {
-        displacement_from_end_speeds(|way| m.displacement_rate(q, way, v), v, s)
+        displacement_given_final_velocity(|way| m.displacement_rate(q, way, v), v, s)
     } else {
         v * s
     }
@@ -83,7 +83,7 @@ where
 /// Returns the derivatives of the configurations reached from `q` with the midpoint velocity `v` after `s`
 /// and after `2 s` seconds, with respect to `q` and to the displacement `s v`, or `2 s v`, in joint
 /// velocities.
-pub(crate) fn reached_configurations<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn reached_configuration_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
@@ -102,11 +102,11 @@ where
     let (by_q, by_way, by_v) = m.displacement_rate_derivatives(q, &way, v);
     let own = SquareMatrix::<T, NV>::identity() - by_way * s;
     let (by_q, by_v) = (eliminate_with_pivoting(own, by_q * s), eliminate_with_pivoting(own, by_v));
-    let derivatives_after = |times: T| {
+    let derivatives_after_scaled_move = |times: T| {
         let (turned, moves) = m.integrate_derivatives_at(q, &(way * times));
         (turned + moves * by_q * times, moves * by_v)
     };
-    [derivatives_after(T::one()), derivatives_after(two)]
+    [derivatives_after_scaled_move(T::one()), derivatives_after_scaled_move(two)]
 }
 
 /// Returns the derivatives `(∂/∂q, ∂/∂dv)` of the displaced configuration `q₁ = q ⊕ Z(q) dv` in generalized

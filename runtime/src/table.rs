@@ -6,7 +6,7 @@ use crate::Real;
 use crate::private::constant;
 use core::fmt;
 use core::ops::Deref;
-use interpolation::{AxisPosition, Shape, Weights};
+use interpolation::{AxisPosition, Shape, WeightArguments};
 
 /// Function of `N` variables, one to three, interpolated between values on a grid. A table is a parameter of
 /// a mechanism.
@@ -265,13 +265,13 @@ impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
     /// table; higher than third ones are zero for every table.
     #[must_use]
     pub fn derivative<T: Real>(&self, x: [T; N], orders: [u8; N]) -> T {
-        let mut all = [Weights::one(); 3];
+        let mut all = [WeightArguments::one(); 3];
         let mut cells = [[0, 1]; 3];
         let axes = self.axes.iter().zip(x).zip(orders);
         for (((points, x), order), (weights, range)) in axes.zip(all.iter_mut().zip(&mut cells)) {
             let place = AxisPosition::locate_on_axis(points, x);
             *range = place.possible_cells(points);
-            *weights = Weights { place: Some(place), order };
+            *weights = WeightArguments { place: Some(place), order };
         }
         let [first, second, third] = cells;
         let mut sum = T::zero();
@@ -281,7 +281,7 @@ impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
                 let middle = self.weights_around_cell(1, j, second, &all);
                 for k in third[0]..third[1] {
                     let inner = self.weights_around_cell(2, k, third, &all);
-                    sum += self.weighted_block_sum([i, j, k], [&outer, &middle, &inner]);
+                    sum += self.weighted_sum_around_cell([i, j, k], [&outer, &middle, &inner]);
                 }
             }
         }
@@ -295,10 +295,10 @@ impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
         axis: usize,
         cell: usize,
         range: [usize; 2],
-        all: &[Weights<T>; 3],
+        all: &[WeightArguments<T>; 3],
     ) -> [T; 4] {
         let only = [T::zero(), T::one(), T::zero(), T::zero()];
-        let (Some(points), Some(Weights { place: Some(place), order })) =
+        let (Some(points), Some(WeightArguments { place: Some(place), order })) =
             (self.axes.get(axis), all.get(axis))
         else {
             return only;
@@ -308,7 +308,7 @@ impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
         if range[1] - range[0] <= 1 {
             return weights;
         }
-        let share = place.share_of_cell(points, cell);
+        let share = place.cell_indicator(points, cell);
         weights.map(|w| w * share)
     }
 
@@ -322,7 +322,7 @@ impl<const N: usize, V: Deref<Target = [f64]>> Table<N, V> {
     }
 
     /// Returns the weighted sum of the values around a cell.
-    fn weighted_block_sum<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
+    fn weighted_sum_around_cell<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
         let axis_length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
         // Slot 0 of the weights is the point before the cell.
         let point_index = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);

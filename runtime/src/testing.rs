@@ -282,7 +282,11 @@ impl Mechanism<7, 6, 0> for FreeBody {
 /// Returns attitude and angular velocity in the body frame of the symmetric free top `inertia = (a, a, c)` at
 /// time `t`, which starts at the ground's attitude with the velocity `w`: `R = exp(t L/a) exp(t (w₃ − L₃/a)
 /// e₃)`.
-pub(crate) fn symmetric_top(inertia: Vector3<f64>, w: Vector3<f64>, t: f64) -> ([f64; 4], Vector3<f64>) {
+pub(crate) fn symmetric_top_motion(
+    inertia: Vector3<f64>,
+    w: Vector3<f64>,
+    t: f64,
+) -> ([f64; 4], Vector3<f64>) {
     let momentum = inertia.component_mul(&w) / inertia.x;
     let rate = w.z - momentum.z;
     let nutation = (momentum * t).into();

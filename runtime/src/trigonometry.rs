@@ -21,16 +21,16 @@ pub const LARGEST: f64 = 1e5;
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
-    if let Some(x) = same_type_reference::<_, [f64; N]>(&x)
+    if let Some(x) = reference_if_same_type::<_, [f64; N]>(&x)
         && let (s, c) = sin_cos_of_doubles::<A, N>(x)
-        && let (Some(s), Some(c)) = (same_type_reference(&s), same_type_reference(&c))
+        && let (Some(s), Some(c)) = (reference_if_same_type(&s), reference_if_same_type(&c))
     {
         return (*s, *c);
     }
-    if let Some(x) = same_type_reference::<_, [f32; N]>(&x)
+    if let Some(x) = reference_if_same_type::<_, [f32; N]>(&x)
         && let (s, c) = sin_cos_of_doubles::<A, N>(&x.map(f64::from))
         && let (Some(s), Some(c)) =
-            (same_type_reference(&s.map(|s| s as f32)), same_type_reference(&c.map(|c| c as f32)))
+            (reference_if_same_type(&s.map(|s| s as f32)), reference_if_same_type(&c.map(|c| c as f32)))
     {
         return (*s, *c);
     }
@@ -50,7 +50,7 @@ pub(crate) struct CacheAligned<T>(pub(crate) T);
 /// compile time.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn same_type_reference<A: 'static, B: 'static>(a: &A) -> Option<&B> {
+pub(crate) fn reference_if_same_type<A: 'static, B: 'static>(a: &A) -> Option<&B> {
     (a as &dyn Any).downcast_ref()
 }
 
@@ -82,7 +82,9 @@ fn sin_cos_of_doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], 
 /// Returns sines and cosines of angles, rad, with the library's values for large angles, so that each result
 /// depends on its own angle alone.
 #[inline(always)]
-pub(crate) fn sin_cos_with_large_angles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+pub(crate) fn sin_cos_with_library_fallback<A: Registers, const N: usize>(
+    x: &[f64; N],
+) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         (*s, *c) =

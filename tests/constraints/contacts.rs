@@ -78,7 +78,7 @@ struct FreeCone {
 
 /// Cone in a funnel with its apex on a ball joint, which makes a part of the contact's conditions redundant.
 #[mechanism(gravity = -9.81 * z)]
-struct HeldCone {
+struct ConeOnBallJoint {
     #[body(mass = 0.2, com = 0.15 * z, inertia = cone(0.2, 0.1, 0.2, z))]
     cone: Body,
     #[joint(ground -> cone)]
@@ -90,7 +90,7 @@ struct HeldCone {
 #[test]
 fn cone_rotates_about_its_line_of_contact() {
     assert_eq!((FreeCone::NC, FreeCone::NH, FreeCone::NS), (5, 4, 1));
-    assert_eq!((HeldCone::NC, HeldCone::NH, HeldCone::NS), (2, 1, 1));
+    assert_eq!((ConeOnBallJoint::NC, ConeOnBallJoint::NH, ConeOnBallJoint::NS), (2, 1, 1));
     // The cone leans towards x by the difference of the angles, and is rotated about its axis.
     let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.8 - 0.46)
         * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 1.1);
@@ -102,7 +102,7 @@ fn cone_rotates_about_its_line_of_contact() {
     assert!(w.norm() > 0.1 && w.cross(&line).norm() < 1e-14, "{w} is not along {line}");
     assert!(v.fixed_rows::<3>(0).norm() < 1e-14);
     let a = FreeCone {}.forward_dynamics(&q, &v, &SVector::zeros());
-    let held = HeldCone {}.forward_dynamics(&[q[3], q[4], q[5], q[6]].into(), &w, &SVector::zeros());
+    let held = ConeOnBallJoint {}.forward_dynamics(&[q[3], q[4], q[5], q[6]].into(), &w, &SVector::zeros());
     assert!((held - a.fixed_rows::<3>(3)).amax() < 1e-11 * held.amax());
 }
 
@@ -136,7 +136,7 @@ fn ball_rolls_down_a_cone_as_on_an_incline() {
 
 /// Disk on a plane, and on the same plane in parametric form.
 #[mechanism(gravity = -9.81 * z)]
-struct OnPlane {
+struct TorusOnPlane {
     #[body(mass = 0.4, inertia = disk(0.4, 0.2, y))]
     disk: Body,
     #[joint(ground -> disk)]
@@ -146,7 +146,7 @@ struct OnPlane {
 }
 
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct OnPoints {
+struct TorusOnParametricPlane {
     u: Coordinate,
     w: Coordinate,
     #[body(mass = 0.4, inertia = disk(0.4, 0.2, y))]
@@ -158,7 +158,7 @@ struct OnPoints {
 }
 
 #[mechanism(gravity = -9.81 * z, formulation = speeds)]
-struct BySpeeds {
+struct DiskOnParametricPlaneInSpeeds {
     u: Coordinate,
     w: Coordinate,
     #[body(mass = 0.4, inertia = disk(0.4, 0.2, y))]
@@ -174,23 +174,23 @@ struct BySpeeds {
 fn parametric_plane_equals_a_plane_contact() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
     let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
-    let on = OnPoints {}.assemble(&near, &[]).expect("it is near");
+    let on = TorusOnParametricPlane {}.assemble(&near, &[]).expect("it is near");
     let q = on.fixed_rows::<7>(2).into_owned();
-    assert!(OnPlane {}.constraint_residuals(&q).amax() < 1e-14);
-    let v = OnPlane {}.project_velocity(&q, &[0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into()).expect("regular");
+    assert!(TorusOnPlane {}.constraint_residuals(&q).amax() < 1e-14);
+    let v = TorusOnPlane {}.project_velocity(&q, &[0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into()).expect("regular");
     let all = SVector::from_fn(|k, _| if k < 2 { 0.0 } else { v[k - 2] });
-    let then = OnPoints {}.project_velocity(&on, &all).expect("regular");
+    let then = TorusOnParametricPlane {}.project_velocity(&on, &all).expect("regular");
     assert!((then - all).rows(2, 6).amax() < 1e-12);
-    let (a, lambda) = OnPlane {}.constrained_dynamics(&q, &v, &SVector::zeros());
-    let (b, forces) = OnPoints {}.constrained_dynamics(&on, &then, &SVector::zeros());
+    let (a, lambda) = TorusOnPlane {}.constrained_dynamics(&q, &v, &SVector::zeros());
+    let (b, forces) = TorusOnParametricPlane {}.constrained_dynamics(&on, &then, &SVector::zeros());
     assert!((a - b.rows(2, 6)).amax() < 1e-10, "{a} {b}");
-    assert_eq!(OnPoints::CONSTRAINTS[0], "contact.normal");
+    assert_eq!(TorusOnParametricPlane::CONSTRAINTS[0], "contact.normal");
     assert!((lambda[0] - forces[0]).abs() < 1e-10 && forces.rows(1, 2).amax() < 1e-11, "{lambda} {forces}");
-    let (c, others) = BySpeeds {}.constrained_dynamics(&on, &then, &SVector::zeros());
+    let (c, others) = DiskOnParametricPlaneInSpeeds {}.constrained_dynamics(&on, &then, &SVector::zeros());
     assert!((b - c).amax() < 1e-9 * b.amax() && (forces - others).amax() < 1e-9, "{b} {c} {forces} {others}");
     // The auxiliary inertia of the contact's coordinates does not appear in inverse dynamics.
-    let held = OnPoints {}.constraint_jacobian(&on).transpose() * forces;
-    assert!((OnPoints {}.inverse_dynamics(&on, &then, &b) - held).amax() < 1e-11);
+    let held = TorusOnParametricPlane {}.constraint_jacobian(&on).transpose() * forces;
+    assert!((TorusOnParametricPlane {}.inverse_dynamics(&on, &then, &b) - held).amax() < 1e-11);
 }
 
 /// Derivatives of a contact on a parametric surface agree with differences.
@@ -198,19 +198,20 @@ fn parametric_plane_equals_a_plane_contact() {
 fn parametric_surface_contact_has_exact_derivatives() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
     let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
-    let q = OnPoints {}.assemble(&near, &[]).expect("it is near");
+    let q = TorusOnParametricPlane {}.assemble(&near, &[]).expect("it is near");
     let any = [0.0, 0.0, 0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into();
-    let v = OnPoints {}.project_velocity(&q, &any).expect("regular");
-    let (by_q, by_v, _) = OnPoints {}.forward_dynamics_derivatives(&q, &v, &SVector::zeros());
-    let accelerations_on_points =
-        |q: &SVector<f64, 9>, v: &SVector<f64, 8>| OnPoints {}.forward_dynamics(q, v, &SVector::zeros());
+    let v = TorusOnParametricPlane {}.project_velocity(&q, &any).expect("regular");
+    let (by_q, by_v, _) = TorusOnParametricPlane {}.forward_dynamics_derivatives(&q, &v, &SVector::zeros());
+    let accelerations_on_points = |q: &SVector<f64, 9>, v: &SVector<f64, 8>| {
+        TorusOnParametricPlane {}.forward_dynamics(q, v, &SVector::zeros())
+    };
     for k in 0..8 {
         let unit_step = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
         let five_point_derivative = |f: &dyn Fn(f64) -> SVector<f64, 8>, h: f64| {
             ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
         };
         let found = five_point_derivative(
-            &|h| accelerations_on_points(&OnPoints {}.integrate(&q, &unit_step(h)), &v),
+            &|h| accelerations_on_points(&TorusOnParametricPlane {}.integrate(&q, &unit_step(h)), &v),
             1e-3,
         );
         assert!((found - by_q.column(k)).amax() < 1e-6 * by_q.amax(), "{found} {}", by_q.column(k));
@@ -221,7 +222,7 @@ fn parametric_surface_contact_has_exact_derivatives() {
 
 /// Ball in a rotating bowl that is described by two angles, with dry friction. The normal points inwards.
 #[mechanism(gravity = -9.81 * z)]
-struct InAngles {
+struct BallInBowlByAngles {
     polar: Coordinate,
     around: Coordinate,
     #[frame(ground, y(0.5 * t))]
@@ -247,7 +248,7 @@ struct InAngles {
 }
 
 #[mechanism(gravity = -9.81 * z)]
-struct InBowl {
+struct BallInRotatingBowl {
     #[frame(ground, y(0.5 * t))]
     turned: Frame,
     #[body(massive, frame = turned)]
@@ -264,17 +265,19 @@ struct InBowl {
 fn parametric_bowl_equals_its_closed_form() {
     let t = 0.7;
     let near = [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5].into();
-    let q = InBowl {}.project_configuration(t, &near).expect("the bowl is near");
-    let v = InBowl {}.project_velocity(t, &q, &[0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into()).expect("regular");
+    let q = BallInRotatingBowl {}.project_configuration(t, &near).expect("the bowl is near");
+    let v = BallInRotatingBowl {}
+        .project_velocity(t, &q, &[0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into())
+        .expect("regular");
     let center =
         UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -0.5 * t) * Vector3::new(q[0], q[1], q[2]);
     let angles = [(center.z / center.norm()).acos(), center.y.atan2(center.x)];
     let on = SVector::from_fn(|k, _| if k < 2 { angles[k] } else { q[k - 2] });
-    assert!(InAngles {}.constraint_residuals(t, &on).amax() < 1e-14);
+    assert!(BallInBowlByAngles {}.constraint_residuals(t, &on).amax() < 1e-14);
     let all = SVector::from_fn(|k, _| if k < 2 { 0.0 } else { v[k - 2] });
-    let then = InAngles {}.project_velocity(t, &on, &all).expect("regular");
-    let (a, lambda) = InBowl {}.constrained_dynamics(t, &q, &v, &SVector::zeros());
-    let (b, forces) = InAngles {}.constrained_dynamics(t, &on, &then, &SVector::zeros());
+    let then = BallInBowlByAngles {}.project_velocity(t, &on, &all).expect("regular");
+    let (a, lambda) = BallInRotatingBowl {}.constrained_dynamics(t, &q, &v, &SVector::zeros());
+    let (b, forces) = BallInBowlByAngles {}.constrained_dynamics(t, &on, &then, &SVector::zeros());
     assert!((a - b.rows(2, 6)).amax() < 1e-10 * a.amax(), "{a} {b}");
     assert!((lambda[0] - forces[0]).abs() < 1e-11 && forces.rows(1, 2).amax() < 1e-11, "{lambda} {forces}");
 }

@@ -2,7 +2,7 @@
 //! random closed chains with planar and spatial joints, loops closed by every joint, and states on and off
 //! the constraints. Both solutions are inserted into the equations.
 
-use linkwork::__private::{Elimination, independent_solution};
+use linkwork::__private::{Elimination, solution_with_predetermined_pivots};
 use linkwork_compiler::expr::Expr;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::sample::sample_of_symbol;
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::fmt::Write;
-use support::model::{random_symbol_values, try_model};
+use support::model::{check_model_or_errors, random_symbol_values};
 use support::random::property_test_config;
 
 /// Chain of bodies from the ground back to the ground, with the joint that closes it.
@@ -89,7 +89,7 @@ fn random_chains() -> impl Strategy<Value = Chain> {
 /// Calls `check` with the model, unless the chain cannot move or its speeds depend on each other.
 fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
     let source = chain.chain_source(arguments);
-    if let Err(messages) = try_model(&source, |_, model| check(model)) {
+    if let Err(messages) = check_model_or_errors(&source, |_, model| check(model)) {
         let known = ["cannot move", "no configuration", "do not follow", "can never hold"];
         let is_expected = |m: &String| known.iter().any(|k| m.contains(k));
         assert!(messages.iter().all(is_expected), "{}\n{}", messages.join("\n"), source.1);
@@ -100,20 +100,20 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
 /// compares the pivots of the elimination, which follow the accelerations and multipliers in `found`, with
 /// their values before the elimination.
 fn accepts_eliminated_accelerations(nv: usize, nc: usize, found: &[f64]) -> bool {
-    fn has_solution<const NC: usize>(found: &[f64]) -> bool {
-        let part_of_solution = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
-        let (pivots, before) = (part_of_solution(1), part_of_solution(2));
-        let all = Elimination { accelerations: [], multipliers: part_of_solution(0), pivots, before };
-        independent_solution::<f64, 0, NC>(&all).is_some()
+    fn has_independent_solution<const NC: usize>(found: &[f64]) -> bool {
+        let solution_block = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
+        let (pivots, before) = (solution_block(1), solution_block(2));
+        let all = Elimination { accelerations: [], multipliers: solution_block(0), pivots, before };
+        solution_with_predetermined_pivots::<f64, 0, NC>(&all).is_some()
     }
     let found = &found[nv..];
     match nc {
-        1 => has_solution::<1>(found),
-        2 => has_solution::<2>(found),
-        3 => has_solution::<3>(found),
-        4 => has_solution::<4>(found),
-        5 => has_solution::<5>(found),
-        6 => has_solution::<6>(found),
+        1 => has_independent_solution::<1>(found),
+        2 => has_independent_solution::<2>(found),
+        3 => has_independent_solution::<3>(found),
+        4 => has_independent_solution::<4>(found),
+        5 => has_independent_solution::<5>(found),
+        6 => has_independent_solution::<6>(found),
         _ => panic!("a joint has at most six constraints, found {nc}"),
     }
 }
@@ -138,9 +138,10 @@ fn both_formulations_satisfy_the_equations_of_motion() {
                 let force: Vec<Expr<'_>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
                 let (rows, bias) = (constraints::jacobian(model), constraints::constraint_biases(model));
                 let by_multipliers =
-                    constraints::solve_constrained(&mass, &rows, force.clone(), bias.clone());
+                    constraints::solve_constrained_dynamics(&mass, &rows, force.clone(), bias.clone());
                 let pivots = model.dependent.as_ref().expect("speeds were asked for");
-                let by_speeds = constraints::solve_by_speeds(model, &mass, &force, bias.clone(), pivots);
+                let by_speeds =
+                    constraints::solve_by_independent_velocities(model, &mass, &force, bias.clone(), pivots);
                 let (nv, nc) = (model.nv(), rows.len());
                 let at = random_symbol_values(model, seed);
                 let first = eval(&by_multipliers, &at);

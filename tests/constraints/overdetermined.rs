@@ -27,7 +27,7 @@ struct Bennett {
 
 /// Returns a configuration with the given angle of the first pin, and a velocity. A closed form gives the
 /// guess for the second pin.
-fn state_with_angle(angle: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+fn state_with_first_pin_angle(angle: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let linkage = Bennett {};
     let guess = 2.0 * (-4.0 / (angle / 2.0).tan()).atan();
     let q = linkage.assemble(&SVector::from([angle, guess, -angle]), &[0]).expect("it closes");
@@ -47,7 +47,7 @@ fn bennett_ratio(q: &SVector<f64, 3>) -> f64 {
 fn bennetts_linkage_follows_its_closed_form() {
     assert_eq!((Bennett::NV, Bennett::NC, Bennett::NP), (3, 3, 1));
     let linkage = Bennett {};
-    let (q, v) = state_with_angle(0.7, 1.0);
+    let (q, v) = state_with_first_pin_angle(0.7, 1.0);
     assert!((bennett_ratio(&q) + 1.0).abs() < 1e-12, "{}", bennett_ratio(&q));
     let total_energy =
         |q: &SVector<f64, 3>, v: &SVector<f64, 3>| linkage.kinetic_energy(q, v) + linkage.potential_energy(q);
@@ -67,7 +67,7 @@ fn bennetts_linkage_follows_its_closed_form() {
 fn redundant_multipliers_have_minimum_norm() {
     let linkage = Bennett {};
     for (angle, rate) in [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4)] {
-        let (q, v) = state_with_angle(angle, rate);
+        let (q, v) = state_with_first_pin_angle(angle, rate);
         let tau = SVector::from([0.3, -0.2, 0.7]);
         let (a, lambda) = linkage.constrained_dynamics(&q, &v, &tau);
         let jacobian = linkage.constraint_jacobian(&q);
@@ -86,8 +86,8 @@ fn redundant_multipliers_have_minimum_norm() {
 #[test]
 fn overconstrained_lanes_equal_single_states() {
     let linkage = Bennett {};
-    let each =
-        [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4), (2.5, 0.0)].map(|(angle, rate)| state_with_angle(angle, rate));
+    let each = [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4), (2.5, 0.0)]
+        .map(|(angle, rate)| state_with_first_pin_angle(angle, rate));
     let q: SVector<Lanes<f64, 4>, 3> = SVector::from_fn(|i, _| Lanes(each.map(|(q, _)| q[i])));
     let v: SVector<Lanes<f64, 4>, 3> = SVector::from_fn(|i, _| Lanes(each.map(|(_, v)| v[i])));
     let a = linkage.forward_dynamics_lanes(&q, &v, &SVector::zeros());

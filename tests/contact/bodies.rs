@@ -73,7 +73,7 @@ fn plastic_impact_stops_the_ball() {
 }
 
 #[mechanism(gravity = -9.81 * cos(tilt) * z + 9.81 * sin(tilt) * x)]
-struct OnASlope {
+struct BallRollingOnSlope {
     tilt: f64,
     mass: f64,
     radius: f64,
@@ -91,7 +91,7 @@ struct OnASlope {
 #[test]
 fn sphere_rolls_down_a_slope_by_closed_form() {
     let tilt = 15.0_f64.to_radians();
-    let m = OnASlope { tilt, mass: 0.1, radius: 0.05, friction: 0.5 };
+    let m = BallRollingOnSlope { tilt, mass: 0.1, radius: 0.05, friction: 0.5 };
     let mut q = m.neutral();
     q[2] = 0.05;
     let (h, t) = (1e-3, 2.0);
@@ -118,7 +118,7 @@ fn sphere_rolls_down_a_slope_by_closed_form() {
 #[test]
 fn sphere_slips_down_a_steep_slope() {
     let (tilt, friction) = (1.0_f64, 0.2);
-    let m = OnASlope { tilt, mass: 0.1, radius: 0.05, friction };
+    let m = BallRollingOnSlope { tilt, mass: 0.1, radius: 0.05, friction };
     assert!(friction < 2.0 / 7.0 * tilt.tan());
     let mut q = m.neutral();
     q[2] = 0.05;
@@ -230,7 +230,7 @@ fn computed_distances_are_minima_over_points() {
             }
         });
         let q = m.integrate(&m.neutral(), &moved);
-        let place_on_body = |body: usize, p: [f64; 3]| {
+        let ground_position_of_body_point = |body: usize, p: [f64; 3]| {
             let s = &q.as_slice()[7 * body..];
             let rotation = linkwork::nalgebra::UnitQuaternion::from_quaternion(
                 linkwork::nalgebra::Quaternion::new(s[6], s[3], s[4], s[5]),
@@ -249,7 +249,9 @@ fn computed_distances_are_minima_over_points() {
         };
         let lines = minimum_on_interval(&|s| {
             minimum_on_interval(&|t| {
-                (place_on_body(0, [0.5 * s, 0.0, 0.0]) - place_on_body(1, [0.0, 0.0, 0.3 * t])).norm()
+                (ground_position_of_body_point(0, [0.5 * s, 0.0, 0.0])
+                    - ground_position_of_body_point(1, [0.0, 0.0, 0.3 * t]))
+                .norm()
             })
         });
         let gaps = m.contact_gaps(&q);
@@ -257,18 +259,19 @@ fn computed_distances_are_minima_over_points() {
         let cross = gaps.fixed_rows::<5>(0);
         assert!((gaps[0] - (lines - 0.15)).abs() < 1e-6, "{case}: {} {}", gaps[0], lines - 0.15);
         assert!(cross.min() > gaps[0] - 1e-6, "{case}: {cross}");
-        let center = place_on_body(1, [0.0, 0.0, 0.3]);
+        let center = ground_position_of_body_point(1, [0.0, 0.0, 0.3]);
         // The distance to the box is convex along each of its axes.
-        let axis_distance = |axis: usize, half: f64| {
+        let distance_along_box_axis = |axis: usize, half: f64| {
             let mut unit = [0.0; 3];
             unit[axis] = 1.0;
-            let x = (center - place_on_body(2, [0.0; 3]))
-                .dot(&(place_on_body(2, unit) - place_on_body(2, [0.0; 3])));
+            let x = (center - ground_position_of_body_point(2, [0.0; 3]))
+                .dot(&(ground_position_of_body_point(2, unit) - ground_position_of_body_point(2, [0.0; 3])));
             (x.abs() - half).max(0.0)
         };
-        let cuboid =
-            (axis_distance(0, 0.2).powi(2) + axis_distance(1, 0.15).powi(2) + axis_distance(2, 0.1).powi(2))
-                .sqrt();
+        let cuboid = (distance_along_box_axis(0, 0.2).powi(2)
+            + distance_along_box_axis(1, 0.15).powi(2)
+            + distance_along_box_axis(2, 0.1).powi(2))
+        .sqrt();
         assert!((gaps[5] - (cuboid - 0.05)).abs() < 1e-6, "{case}: {} {}", gaps[5], cuboid - 0.05);
         // Contact velocities are the rates of the gap functions.
         let v = SVector::<f64, 18>::from_fn(|_, _| random());

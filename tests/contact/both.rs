@@ -9,7 +9,14 @@ use crate::laws::{Chain, Pile, Random};
 
 /// Follows a motion and checks that its energy does not grow and that surfaces do not penetrate. Returns the
 /// number of samples and the last configuration.
-fn follow_motion<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn check_energy_and_gaps_of_motion<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -66,7 +73,7 @@ fn tiles_falling_into_a_corner_agree_with_located_events() {
             restitution: random.random_choice([0.0, 0.3]),
         };
         let q = SVector::from([0.3, 0.3, random.next() * 3.0]);
-        let (_, end) = follow_motion(&m, &q, &random.random_vector(1.0), 2.0);
+        let (_, end) = check_energy_and_gaps_of_motion(&m, &q, &random.random_vector(1.0), 2.0);
         assert!(end.iter().all(|x| x.is_finite()));
     }
 }
@@ -82,7 +89,7 @@ fn colliding_balls_agree_with_located_events() {
         };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.11, 0.12, 0.11, 0.15, 0.4);
-        follow_motion(&m, &q, &random.random_vector(0.3), 0.4);
+        check_energy_and_gaps_of_motion(&m, &q, &random.random_vector(0.3), 0.4);
     }
 }
 
@@ -97,7 +104,7 @@ fn double_pendulum_on_the_floor_agrees_with_located_events() {
             restitution: random.random_choice([0.0, 0.5]),
             height: 0.1 - (0.5 * q[0].sin() + 0.5 * (q[0] + q[1]).sin()).min(0.0),
         };
-        follow_motion(&m, &q, &random.random_vector(2.0), 2.0);
+        check_energy_and_gaps_of_motion(&m, &q, &random.random_vector(2.0), 2.0);
     }
 }
 
@@ -107,7 +114,7 @@ fn double_pendulum_on_the_floor_agrees_with_located_events() {
 fn time_stepping_converges_to_located_events() {
     let m = Tile { friction: 0.4, restitution: 0.0 };
     let (q, v) = ([0.5, 0.15, 0.1].into(), [0.5, 0.0, 0.0].into());
-    let (_, end) = follow_motion(&m, &q, &v, 0.3);
+    let (_, end) = check_energy_and_gaps_of_motion(&m, &q, &v, 0.3);
     let distance_from_exact_end = |h: f64| {
         let run = simulate(&m).from(q, v).method(TimeStepping::step(h)).duration(0.3);
         (run.finish().unwrap().q - end).norm()

@@ -13,7 +13,7 @@ const HIGH: [f64; 3] = [0.15, 0.1, 0.025];
 
 /// Two boxes, one resting on the other on the floor.
 #[mechanism(gravity = -gravity * z)]
-pub struct Two {
+pub struct TwoBoxes {
     pub gravity: f64,
     pub friction: f64,
     pub restitution: f64,
@@ -35,7 +35,7 @@ pub struct Two {
 
 /// Two boxes, one on the other, with the lower box as the first surface of their contact.
 #[mechanism(gravity = -gravity * z)]
-pub struct Swapped {
+pub struct BoxesInSwappedOrder {
     pub gravity: f64,
     pub friction: f64,
     pub restitution: f64,
@@ -69,7 +69,7 @@ struct Log {
 
 /// Returns the configuration of both boxes, in which the upper one has its centre at `place` and the
 /// orientation `turn`.
-pub fn configuration_of_boxes(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14> {
+pub fn configuration_of_boxes(m: &TwoBoxes, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14> {
     let mut q = m.neutral();
     q[2] = LOW[2];
     (q[7], q[8], q[9]) = (place[0], place[1], place[2]);
@@ -99,11 +99,11 @@ fn distance_of_boxes(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64
     }
     // Half of each edge as a vector, and its midpoint.
     let edges_of_block = |block: &Matrix3<f64>| {
-        let edge_of_block = |axis: usize, k: usize| {
+        let block_half_edge_and_midpoint = |axis: usize, k: usize| {
             let half: Vector3<f64> = block.column(axis).into();
             (half, corner_of_block(block, k) - half * signs_of_corner(k)[axis])
         };
-        (0..24).map(|k| edge_of_block(k % 3, k / 3)).collect::<Vec<_>>()
+        (0..24).map(|k| block_half_edge_and_midpoint(k % 3, k / 3)).collect::<Vec<_>>()
     };
     for (own, middle) in edges_of_block(a) {
         for (other, foot) in edges_of_block(b) {
@@ -148,7 +148,7 @@ pub fn position_with_gap(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, w
 /// larger distances it is positive.
 #[test]
 fn box_gaps_are_distances_near_contact() {
-    let (m, mut random) = (Two { gravity: G, friction: 0.0, restitution: 0.0 }, Random(3));
+    let (m, mut random) = (TwoBoxes { gravity: G, friction: 0.0, restitution: 0.0 }, Random(3));
     let (log, mut beside) = (Log { friction: 0.0 }, 0);
     let (low, bar) = (Matrix3::from_diagonal(&LOW.into()), Matrix3::from_diagonal(&[0.1, 1.0, 0.1].into()));
     for _ in 0..60 {
@@ -189,9 +189,9 @@ fn box_gaps_are_distances_near_contact() {
 #[test]
 fn contact_jacobians_have_only_columns_of_their_bodies() {
     use linkwork::contact::Contacts;
-    let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
+    let m = TwoBoxes { gravity: G, friction: 0.4, restitution: 0.0 };
     let columns = m.contact_columns();
-    for (name, columns) in Two::CONTACTS.iter().zip(columns) {
+    for (name, columns) in TwoBoxes::CONTACTS.iter().zip(columns) {
         assert_eq!(columns, if name.starts_with("seat") { (0, 12) } else { (0, 6) }, "{name}");
     }
     assert!(!m.contacts_drift());
@@ -201,13 +201,13 @@ fn contact_jacobians_have_only_columns_of_their_bodies() {
 /// other. They stay at rest, and their contact points carry the whole weight.
 #[test]
 fn stacked_boxes_stay_at_rest() {
-    let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
+    let m = TwoBoxes { gravity: G, friction: 0.4, restitution: 0.0 };
     for (yaw, x, y) in
         [(0.0, 0.0, 0.0), (0.0, 0.05, 0.0), (0.4, 0.03, -0.06), (core::f64::consts::FRAC_PI_2, 0.0, 0.0)]
     {
         let q = configuration_of_boxes(&m, [x, y, 0.125], UnitQuaternion::from_euler_angles(0.0, 0.0, yaw));
         let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-        let rows = Two::CONTACT_ROWS;
+        let rows = TwoBoxes::CONTACT_ROWS;
         let carried: f64 = rows.iter().take(13).map(|row| forces[row.first]).sum();
         assert!((carried - 2.0 * G).abs() < 1e-5, "{yaw}: {carried}");
         let run = simulate(&m).from(q, [0.0; 12]).method(TimeStepping::step(5e-3)).duration(0.2);
@@ -220,7 +220,7 @@ fn stacked_boxes_stay_at_rest() {
 /// `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` summed over both boxes.
 #[test]
 fn edge_collision_has_the_closed_form_impulse() {
-    let m = Two { gravity: 0.0, friction: 0.0, restitution: 0.5 };
+    let m = TwoBoxes { gravity: 0.0, friction: 0.0, restitution: 0.5 };
     let box_inertia = |mass: f64, [a, b, c]: [f64; 3]| {
         Matrix3::from_diagonal(&[b * b + c * c, a * a + c * c, a * a + b * b].into()) * (mass / 3.0)
     };
@@ -251,7 +251,7 @@ fn edge_collision_has_the_closed_form_impulse() {
             + inverse_mass_at_contact(met, &UnitQuaternion::identity(), 1.0, LOW);
         let wanted = 1.5 * 2.0 * n[2] / all;
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
-        let impulse = found.impulses[Two::CONTACT_ROWS[12].first];
+        let impulse = found.impulses[TwoBoxes::CONTACT_ROWS[12].first];
         assert!((impulse - wanted).abs() < 1e-12, "{impulse} {wanted}");
     }
 }
@@ -262,7 +262,7 @@ fn edge_collision_has_the_closed_form_impulse() {
 fn random_box_impacts_satisfy_contact_conditions() {
     let mut random = Random(11);
     for k in 0..60 {
-        let m = Two {
+        let m = TwoBoxes {
             gravity: 0.0,
             friction: random.random_choice([0.0, 0.3, 2.0]),
             restitution: random.random_choice([0.0, 0.6, 1.0]),
@@ -304,8 +304,8 @@ fn random_box_impacts_satisfy_contact_conditions() {
 /// grows, overlaps are at most those of one step, and the order of the two surfaces has no effect.
 #[test]
 fn box_falling_on_an_edge_gains_no_energy() {
-    let m = Two { gravity: G, friction: 0.5, restitution: 0.0 };
-    let other = Swapped { gravity: G, friction: 0.5, restitution: 0.0 };
+    let m = TwoBoxes { gravity: G, friction: 0.5, restitution: 0.0 };
+    let other = BoxesInSwappedOrder { gravity: G, friction: 0.5, restitution: 0.0 };
     let q = configuration_of_boxes(&m, [0.08, 0.02, 0.3], UnitQuaternion::from_euler_angles(0.3, 0.5, 0.2));
     let h = 1e-3;
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);

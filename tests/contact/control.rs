@@ -7,7 +7,7 @@ use linkwork::prelude::*;
 
 /// Pusher on a rail, and a box on the ground, which it can push but not pull.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct Push {
+struct PusherAndBox {
     #[particle(mass = 1)]
     pusher: Particle,
     #[joint(ground -> pusher, along = x)]
@@ -56,13 +56,13 @@ struct Task<const N: usize> {
 
 impl<const N: usize> Task<N> {
     fn trajectory_cost(&self, (states, inputs): &(Vec<State<N>>, Vec<Input>)) -> f64 {
-        let to_go = self.cost_of_end(&states[self.steps]);
+        let to_go = self.cost_to_go_at_end(&states[self.steps]);
         let off = states[self.steps].0 - self.goal;
         let effort: f64 = inputs.iter().map(|u| 0.5 * self.effort * u[0] * u[0]).sum();
         effort + 0.5 * (to_go.q.dot(&off) + to_go.v.dot(&states[self.steps].1))
     }
 
-    fn cost_of_end(&self, (q, v): &State<N>) -> Value<f64, N> {
+    fn cost_to_go_at_end(&self, (q, v): &State<N>) -> Value<f64, N> {
         let [by_q, by_v] = self.weights.map(|weights| SMatrix::from_diagonal(&weights));
         Value { q: by_q * (q - self.goal), v: by_v * v, qq: by_q, vv: by_v, ..Value::zeros() }
     }
@@ -94,7 +94,7 @@ impl<const N: usize> Task<N> {
     where
         M: Derivatives<N, N, 1, Scalar = f64>,
     {
-        let (mut to_go, mut predicted) = (self.cost_of_end(&states[self.steps]), 0.0);
+        let (mut to_go, mut predicted) = (self.cost_to_go_at_end(&states[self.steps]), 0.0);
         let mut policies: Vec<Policy<f64, N, 1>> = Vec::new();
         for ((q, v), u) in states.iter().zip(inputs).rev() {
             let step = discrete::transition(m, &METHOD, 0.0, q, v, u).expect("it moves");
@@ -106,11 +106,11 @@ impl<const N: usize> Task<N> {
             policies.push(policy);
         }
         policies.reverse();
-        let changed_inputs = |k: usize, (q, v): &State<N>| {
+        let feedback_inputs = |k: usize, (q, v): &State<N>| {
             let (from, before) = &states[k];
             inputs[k] + policies[k].inputs(1.0, &(q - from), &(v - before))
         };
-        (self.simulate_inputs(m, states[0], changed_inputs), predicted)
+        (self.simulate_inputs(m, states[0], feedback_inputs), predicted)
     }
 
     /// Returns the trajectory after iterations that end with the exact optimum within its contact modes.
@@ -139,7 +139,8 @@ const METHOD: TimeStepping<f64> = TimeStepping::step(0.01).midpoint();
 fn box_is_pushed_to_its_goal() {
     let weights = [[0.0, 1e3, 0.0].into(), [0.0, 10.0, 0.0].into()];
     let task = Task { steps: 100, goal: [0.0, 0.5, 0.0].into(), weights, effort: 1e-3 };
-    let (states, inputs) = task.optimise_trajectory(&Push {}, (SVector::zeros(), SVector::zeros()), 7.0);
+    let (states, inputs) =
+        task.optimise_trajectory(&PusherAndBox {}, (SVector::zeros(), SVector::zeros()), 7.0);
     let (q, v) = states[100];
     assert!((q[1] - 0.5).abs() < 6e-3 && v[1].abs() < 0.1, "{q} {v}");
     assert!((q[1] - q[0]).abs() < 1e-9 && q[2].abs() < 1e-9, "{q}");

@@ -10,7 +10,7 @@ const G: f64 = 9.81;
 
 /// Box and capsule, each on an unbounded cylinder and on one with two ends, all horizontal.
 #[mechanism(gravity = -9.81 * z)]
-struct Rails {
+struct BodiesOnCylinders {
     #[body(mass = 2, inertia = cuboid(2, 0.6, 0.2, 0.1))]
     plank: Body,
     #[joint(ground -> plank)]
@@ -33,18 +33,18 @@ struct Rails {
 /// arms.
 #[test]
 fn bodies_rest_across_two_cylinders() {
-    let m = Rails {};
+    let m = BodiesOnCylinders {};
     let q = SVector::from([0.05, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0, -0.1, 1.0, 0.09, 0.0, 0.0, 0.0, 1.0]);
     let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-    let carried_normal_force = |name: &str| -> f64 {
-        let rows = Rails::CONTACTS.iter().zip(Rails::CONTACT_ROWS);
+    let total_normal_force_of_contact = |name: &str| -> f64 {
+        let rows = BodiesOnCylinders::CONTACTS.iter().zip(BodiesOnCylinders::CONTACT_ROWS);
         rows.filter(|(known, _)| known.split('.').next() == Some(name)).map(|(_, row)| found[row.first]).sum()
     };
     let shares = [
-        carried_normal_force("left"),
-        carried_normal_force("right"),
-        carried_normal_force("front"),
-        carried_normal_force("back"),
+        total_normal_force_of_contact("left"),
+        total_normal_force_of_contact("right"),
+        total_normal_force_of_contact("front"),
+        total_normal_force_of_contact("back"),
     ];
     let expected = [2.0 * G * 0.375, 2.0 * G * 0.625, 3.0 * G * 0.75, 3.0 * G * 0.25];
     assert!(shares.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{shares:?} {expected:?}");
@@ -55,7 +55,7 @@ fn bodies_rest_across_two_cylinders() {
 
 /// Bodies on a table and on a barrel. Gravity is along the slope `(sin, 0, −cos)`.
 #[mechanism(gravity = 9.81 * (sin(slope) * x - cos(slope) * z))]
-struct Barrels {
+struct BodiesOnBarrel {
     slope: f64,
     #[body(mass = 2, inertia = cylinder(2, 0.1, 0.3, z))]
     drum: Body,
@@ -82,7 +82,7 @@ const LYING: f64 = core::f64::consts::FRAC_1_SQRT_2;
 /// Drums stand and lie on a box, and a box and a capsule lie on the end of a drum, also beyond its edge.
 #[test]
 fn cylinder_ends_and_sides_carry_bodies() {
-    let m = Barrels { slope: 0.0 };
+    let m = BodiesOnBarrel { slope: 0.0 };
     for (drum, turn, block, bar) in [
         ([0.0, 0.0, 0.25], [0.0, 0.0, 0.0, 1.0], [0.0, 3.0, 0.25], [0.02, 6.0, 0.25]),
         ([0.95, 0.1, 0.25], [0.0, 0.0, 0.6, 0.8], [0.1, 3.05, 0.25], [0.1, 6.1, 0.25]),
@@ -94,15 +94,15 @@ fn cylinder_ends_and_sides_carry_bodies() {
         q.fixed_rows_mut::<3>(7).copy_from_slice(&block);
         q.fixed_rows_mut::<3>(14).copy_from_slice(&bar);
         let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-        let carried_normal_force = |name: &str| -> f64 {
-            let rows = Barrels::CONTACTS.iter().zip(Barrels::CONTACT_ROWS);
+        let total_normal_force_of_contact = |name: &str| -> f64 {
+            let rows = BodiesOnBarrel::CONTACTS.iter().zip(BodiesOnBarrel::CONTACT_ROWS);
             let of_name = rows.filter(|(known, _)| known.split('.').next() == Some(name));
             of_name.map(|(_, row)| found[row.first]).sum()
         };
         let loads = [
-            carried_normal_force("table") / 2.0,
-            carried_normal_force("barrel"),
-            carried_normal_force("end"),
+            total_normal_force_of_contact("table") / 2.0,
+            total_normal_force_of_contact("barrel"),
+            total_normal_force_of_contact("end"),
         ];
         assert!(loads.iter().all(|load| (load - G).abs() < 1e-5), "{drum:?} {loads:?}");
         let run = simulate(&m).from(q, [0.0; 18]).method(TimeStepping::step(5e-3)).duration(0.2);
@@ -114,7 +114,7 @@ fn cylinder_ends_and_sides_carry_bodies() {
 /// A drum rolls on a table with two thirds of the acceleration of frictionless sliding, and falls off.
 #[test]
 fn drum_rolls_on_a_table_by_closed_form() {
-    let m = Barrels { slope: 0.2 };
+    let m = BodiesOnBarrel { slope: 0.2 };
     let mut q = m.neutral();
     q.fixed_rows_mut::<7>(0).copy_from_slice(&[0.0, 0.0, 0.2, LYING, 0.0, 0.0, LYING]);
     q.fixed_rows_mut::<3>(7).copy_from_slice(&[0.0, 3.0, 0.25]);
@@ -161,7 +161,7 @@ fn distance_box_to_drum(
 /// The smallest gap of a capsule or a box on a cylinder is the distance of the surfaces when they touch.
 #[test]
 fn cylinder_gaps_are_distances_at_contact() {
-    let (m, mut random) = (Barrels { slope: 0.0 }, Random(11));
+    let (m, mut random) = (BodiesOnBarrel { slope: 0.0 }, Random(11));
     let mut missed = 0;
     for _ in 0..60 {
         let (turn, far) =
@@ -179,12 +179,16 @@ fn cylinder_gaps_are_distances_at_contact() {
         let bar = position_with_gap(|p| smallest_gap(14, p + Vector3::y() * 6.0), far, 0.0);
         let along = turn * Vector3::x() * 0.15;
         let (mut low, mut high) = (-1.0, 1.0);
-        let distance_at = |t: f64| distance_from_drum(bar + along * t, 0.2, 0.2);
+        let distance_from_drum_along_bar = |t: f64| distance_from_drum(bar + along * t, 0.2, 0.2);
         for _ in 0..120 {
             let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-            if distance_at(a) < distance_at(b) { high = b } else { low = a }
+            if distance_from_drum_along_bar(a) < distance_from_drum_along_bar(b) { high = b } else { low = a }
         }
-        assert!((distance_at(low) - 0.05).abs() < 1e-8, "{} {turn} {bar}", distance_at(low));
+        assert!(
+            (distance_from_drum_along_bar(low) - 0.05).abs() < 1e-8,
+            "{} {turn} {bar}",
+            distance_from_drum_along_bar(low)
+        );
 
         let block = position_with_gap(|p| smallest_gap(7, p + Vector3::y() * 3.0), far, 0.0);
         // Slightly farther outside they do not overlap, and are close to each other.

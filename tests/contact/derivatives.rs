@@ -21,7 +21,7 @@ pub struct Solo {
 
 /// Ball in a hollow, in wind that changes with time.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-pub struct Hollow {
+pub struct BallInHollow {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
     ball: Body,
     #[joint(ground -> ball)]
@@ -80,16 +80,17 @@ pub fn check_contact_derivatives<
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = f64>,
 {
     let found = contact::forward_dynamics_derivatives(m, t, q, v, tau, touches).unwrap();
-    let motion_with_contacts = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, tau: &SVector<f64, NV>| {
+    let contact_forward_dynamics = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, tau: &SVector<f64, NV>| {
         contact::forward_dynamics(m, t, q, v, tau, touches).unwrap()
     };
-    let held = motion_with_contacts(q, v, tau);
+    let held = contact_forward_dynamics(q, v, tau);
     assert!(found.a == held.a && found.forces == held.forces);
     for k in 0..NV {
         let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
-        let motion_at_displacement = |s: f64| motion_with_contacts(&m.integrate(q, &unit_step(s)), v, tau);
-        let motion_at_velocity_step = |s: f64| motion_with_contacts(q, &(v + unit_step(s)), tau);
-        let motion_at_force_step = |s: f64| motion_with_contacts(q, v, &(tau + unit_step(s)));
+        let motion_at_displacement =
+            |s: f64| contact_forward_dynamics(&m.integrate(q, &unit_step(s)), v, tau);
+        let motion_at_velocity_step = |s: f64| contact_forward_dynamics(q, &(v + unit_step(s)), tau);
+        let motion_at_force_step = |s: f64| contact_forward_dynamics(q, v, &(tau + unit_step(s)));
         for (what, expected, column) in [
             ("∂v̇/∂q", derivative_at_zero(|s| motion_at_displacement(s).a), found.by_q.column(k)),
             ("∂v̇/∂v", derivative_at_zero(|s| motion_at_velocity_step(s).a), found.by_v.column(k)),
@@ -110,7 +111,7 @@ pub fn check_contact_derivatives<
 }
 
 /// Returns a configuration and velocity of the quadruped, and joint torques.
-pub fn quadruped_stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 18>) {
+pub fn quadruped_state_and_torques() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 18>) {
     let mut q = Solo {}.neutral();
     q[2] = 0.26;
     q = Solo {}.integrate(&q, &SVector::from_fn(|k, _| if k < 3 { 0.0 } else { 0.1 * k as f64 - 0.35 }));
@@ -124,9 +125,9 @@ pub fn quadruped_stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 1
 }
 
 #[test]
-fn contact_derivatives_of_a_standing_quadruped() {
+fn standing_quadruped_contact_derivatives_match_differences() {
     use Touch::{Open, Slips, Sticks};
-    let (q, v, tau) = quadruped_stance();
+    let (q, v, tau) = quadruped_state_and_torques();
     for touches in [
         [Sticks, Open, Open, Sticks],
         [Sticks, Sticks, Sticks, Open],
@@ -140,8 +141,8 @@ fn contact_derivatives_of_a_standing_quadruped() {
 
 /// Derivatives on curved ground, with forces that depend on time.
 #[test]
-fn contact_derivatives_of_a_ball_in_a_windy_hollow() {
-    let m = Hollow {};
+fn contact_derivatives_in_windy_hollow_match_differences() {
+    let m = BallInHollow {};
     let mut q = m.neutral();
     (q[0], q[1], q[2]) = (0.3, 0.2, 0.13);
     let v = SVector::from_fn(|k, _| 0.5 + 0.3 * k as f64);
@@ -153,7 +154,7 @@ fn contact_derivatives_of_a_ball_in_a_windy_hollow() {
 
 /// Derivatives of the contact force on a piston act through a closed loop.
 #[test]
-fn contact_derivatives_of_a_piston_on_its_stop() {
+fn contact_derivatives_act_through_closed_loop() {
     let m = Engine {};
     let q = m.assemble(&[0.6, -0.8, 0.2].into(), &[0]).unwrap();
     let v = m.complete_velocity(&q, &[3.0, 0.0, 5.0].into(), &[0, 2]).unwrap();
@@ -260,7 +261,7 @@ pub struct OnPoints {
 /// correctors, in the state of `stance`.
 #[test]
 fn quadruped_contact_derivatives_agree_with_pinocchio() {
-    let (q, v, tau) = quadruped_stance();
+    let (q, v, tau) = quadruped_state_and_torques();
     let m = OnPoints {};
     let touches = [Touch::Sticks; 2];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
@@ -371,7 +372,7 @@ fn quadruped_contact_derivatives_agree_with_pinocchio() {
 #[test]
 fn steps_with_fixed_contact_modes_have_exact_jacobians() {
     use discrete::DifferentiableStep;
-    let (q, v, _) = quadruped_stance();
+    let (q, v, _) = quadruped_state_and_torques();
     let m = OnPoints {};
     let touches = [Touch::Sticks, Touch::Slips];
     // The state is that after a touchdown: sticking points have no velocity.
@@ -478,7 +479,7 @@ fn touchdown_has_exact_derivatives() {
             }
         }
     }
-    let (q, v, _) = quadruped_stance();
+    let (q, v, _) = quadruped_state_and_torques();
     use Touch::{Open, Slips, Sticks};
     check_touchdown_derivatives(&Solo {}, (&q, &v), &[Sticks, Open, Slips, Sticks]);
     let m = Engine {};

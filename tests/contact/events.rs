@@ -3,7 +3,7 @@
 use linkwork::integrate::EventDriven;
 use linkwork::prelude::*;
 
-fn exact_method() -> EventDriven<f64> {
+fn precise_event_driven_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-13, 1e-13)
 }
 
@@ -25,7 +25,7 @@ fn bouncing_ball_rests_at_the_zeno_time() {
     let (g, e) = (9.81_f64, 0.8_f64);
     let fall = (2.0 / g).sqrt();
     let m = Ball { restitution: e };
-    let simulate_ball = || simulate(&m).from([1.0], [0.0]).method(exact_method());
+    let simulate_ball = || simulate(&m).from([1.0], [0.0]).method(precise_event_driven_method());
     let mut apex = 0.0;
     for n in 1..12 {
         apex += fall * (e.powi(n - 1) + e.powi(n));
@@ -46,7 +46,12 @@ fn bouncing_ball_rests_at_the_zeno_time() {
     assert!((last - rest).abs() < 1e-12, "{last} {rest}");
     assert!(samples < 600, "{samples}");
     let stays = Ball { restitution: 0.0 };
-    let end = simulate(&stays).from([1.0], [0.0]).method(exact_method()).duration(1e4).finish().unwrap();
+    let end = simulate(&stays)
+        .from([1.0], [0.0])
+        .method(precise_event_driven_method())
+        .duration(1e4)
+        .finish()
+        .unwrap();
     assert!(end.q[0].abs() < 1e-15 && end.v[0].abs() < 1e-15, "{end:?}");
 }
 
@@ -59,7 +64,7 @@ fn elastic_ball_conserves_energy() {
         let period = fall * start.sqrt() * 2.0;
         let end = simulate(&m)
             .from([start], [0.0])
-            .method(exact_method())
+            .method(precise_event_driven_method())
             .duration(50.0 * period)
             .finish()
             .unwrap();
@@ -88,7 +93,8 @@ fn sphere_rolls_down_a_slope_with_located_events() {
     let m = Sphere { tilt: 15.0_f64.to_radians(), friction: 0.3 };
     let mut q = m.neutral();
     q[2] = 0.05;
-    let end = simulate(&m).from(q, [0.0; 6]).method(exact_method()).duration(2.0).finish().unwrap();
+    let end =
+        simulate(&m).from(q, [0.0; 6]).method(precise_event_driven_method()).duration(2.0).finish().unwrap();
     let a = 5.0 / 7.0 * 9.81 * m.tilt.sin();
     assert!((a - 1.813_582_023_182_663_4).abs() < 1e-15);
     let speed = end.v[0].hypot(end.v[2]);
@@ -104,7 +110,10 @@ fn sliding_bowling_ball_begins_to_roll() {
     let mut q = m.neutral();
     q[2] = 0.05;
     let rolls = 2.0 * 5.0 / (7.0 * 0.2 * 9.81);
-    let run = simulate(&m).from(q, [3.0, 4.0, 0.0, 0.0, 0.0, 0.0]).method(exact_method()).duration(2.0);
+    let run = simulate(&m)
+        .from(q, [3.0, 4.0, 0.0, 0.0, 0.0, 0.0])
+        .method(precise_event_driven_method())
+        .duration(2.0);
     let mut found = None;
     for sample in run {
         let sample = sample.unwrap();
@@ -150,14 +159,18 @@ fn block_breaks_loose_and_stops_at_located_instants() {
     let applied_force = |t: f64| if t < 4.0 { 1.5 * t } else { 0.0 };
     let loose = hold / 1.5;
     // The force ends at a control instant.
-    let run = simulate(&m).inputs(|t, _, _| [applied_force(t)].into()).method(exact_method()).duration(4.0);
+    let run = simulate(&m)
+        .inputs(|t, _, _| [applied_force(t)].into())
+        .method(precise_event_driven_method())
+        .duration(4.0);
     let end = run.finish().unwrap();
     let s = 4.0 - loose;
     assert!((end.v[0] - 0.5 * 1.5 * s * s / 3.0).abs() < 1e-11, "{end:?}");
     assert!((end.q[0] - 1.5 * s * s * s / 18.0).abs() < 1e-11, "{end:?}");
     let brake = hold / 3.0;
     let stop = end.v[0] / brake;
-    let run = simulate(&m).from(end.q, end.v).start_at(4.0).method(exact_method()).duration(3600.0);
+    let run =
+        simulate(&m).from(end.q, end.v).start_at(4.0).method(precise_event_driven_method()).duration(3600.0);
     let mut rests = None;
     for sample in run {
         let sample = sample.unwrap();
@@ -197,7 +210,10 @@ fn pushed_crate_tips_before_it_slides() {
     // F · 0.4 = m g · 0.1 at F = m g / 4.
     let rate = 10.0;
     let tips = 2.0 * 9.81 / 4.0 / rate;
-    let run = simulate(&m).from(q, [0.0; 6]).inputs(|t, _, _| [rate * t].into()).method(exact_method());
+    let run = simulate(&m)
+        .from(q, [0.0; 6])
+        .inputs(|t, _, _| [rate * t].into())
+        .method(precise_event_driven_method());
     let rests = run.clone().duration(tips - 1e-3).finish().unwrap();
     assert!((rests.q - q).amax() < 1e-13, "{rests:?}");
     // Rotation about the edge: initially I θ̈ = 0.4 rate (t − tips).
@@ -236,7 +252,7 @@ fn rocking_block_follows_housners_model() {
     let q = [half - (half * cosine - height * sine), half * sine + height * cosine, -tilt];
     let inertia = 4.0 / 3.0 * 3.0 * radius * radius;
     let potential_energy_at_tilt = |tilt: f64| 3.0 * 9.81 * radius * (alpha - tilt).cos();
-    let run = simulate(&m).from(q, [0.0; 3]).method(exact_method()).duration(2.0);
+    let run = simulate(&m).from(q, [0.0; 3]).method(precise_event_driven_method()).duration(2.0);
     let (mut before, mut impacts) = (None::<f64>, 0);
     let mut rate = (2.0 * (potential_energy_at_tilt(tilt) - potential_energy_at_tilt(0.0)) / inertia).sqrt();
     for sample in run {
@@ -282,13 +298,13 @@ fn impacts_have_samples_before_and_after() {
     }
     // Impacts that are declared as events have two samples, too.
     #[mechanism(gravity = -9.81 * z)]
-    struct Dropped {
+    struct DroppedBall {
         #[particle(mass = 0.1)]
         ball: Particle,
         #[joint(ground -> ball, along = z)]
         height: Sleeve,
     }
-    let run = simulate(&Dropped {}).from([1.0], [0.0]).sample_every(10.0).duration(1.5 * fall);
+    let run = simulate(&DroppedBall {}).from([1.0], [0.0]).sample_every(10.0).duration(1.5 * fall);
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
     let samples: Vec<_> = run.map(|sample| sample.unwrap()).collect();
     let events: Vec<_> = samples.iter().map(|sample| sample.event).collect();

@@ -3,7 +3,7 @@
 use linkwork::prelude::*;
 
 #[mechanism(urdf = "data/urdf/shapes.urdf", base = free, inputs = none)]
-struct FromTheFile {
+struct RobotWithFileContacts {
     #[contact(hull.collision(), ground.plane(z), friction = 0.5)]
     below: Contact,
     #[contact(ground.plane(-x), wheel.collision())]
@@ -13,7 +13,7 @@ struct FromTheFile {
 }
 
 #[mechanism(urdf = "data/urdf/shapes.urdf", base = free, inputs = none)]
-struct ByHand {
+struct HandWrittenContacts {
     #[body]
     tilted: Body,
     #[joint(hull.at([0.1, 0, 0.02]).rotated(y(0.3)) -> tilted)]
@@ -32,8 +32,8 @@ struct ByHand {
 /// the robot.
 #[test]
 fn collision_geometry_of_files_equals_declared_contacts() {
-    assert_eq!((FromTheFile::CONTACTS.len(), FromTheFile::CONTACTS[8]), (19, "below.8"));
-    let (file, hand) = (FromTheFile {}, ByHand {});
+    assert_eq!((RobotWithFileContacts::CONTACTS.len(), RobotWithFileContacts::CONTACTS[8]), (19, "below.8"));
+    let (file, hand) = (RobotWithFileContacts {}, HandWrittenContacts {});
     let mut q = file.neutral();
     for (k, shift) in [0.3, -0.2, 0.5, 0.4, -0.3, 0.6, 0.2, 1.1, -0.7].into_iter().enumerate() {
         let mut v = SVector::<f64, 8>::zeros();

@@ -183,7 +183,7 @@ fn prescribed_closed_contacts_remain_closed() {
 
 /// Heavy particle on a light one, which lies on the floor: contacts with a large mass ratio.
 #[mechanism(gravity = -9.81 * z)]
-struct Anvil {
+struct HeavyOnLightParticle {
     mass: f64,
     #[particle(mass = 1e-4)]
     sheet: Particle,
@@ -203,7 +203,7 @@ struct Anvil {
 #[test]
 fn heavy_bodies_rest_on_light_ones() {
     for mass in [1.0, 1e2, 1e3, 1e4, 1e5] {
-        let m = Anvil { mass };
+        let m = HeavyOnLightParticle { mass };
         let (q, none) = (SVector::zeros(), SVector::zeros());
         for touches in [[Touch::Sticks; 2], [Touch::Slips; 2]] {
             let held = contact::forward_dynamics(&m, 0.0, &q, &none, &none, &touches).unwrap();
@@ -221,7 +221,7 @@ fn heavy_bodies_rest_on_light_ones() {
 #[test]
 fn contradictory_contact_modes_are_errors() {
     #[mechanism]
-    struct Spun {
+    struct HingedArmAndCart {
         #[body(mass = 1, inertia = rod(1, 1, x))]
         arm: Body,
         #[joint(ground -> arm, about = z)]
@@ -236,7 +236,7 @@ fn contradictory_contact_modes_are_errors() {
         stop: Limit,
     }
     let held = contact::forward_dynamics(
-        &Spun {},
+        &HingedArmAndCart {},
         0.0,
         &SVector::zeros(),
         &SVector::zeros(),
@@ -264,7 +264,7 @@ struct Rod {
 /// direction `s` is `a + p N` with `p m = 1 + 3 cos θ (cos θ + s μ sin θ)`. For `p < 0 < −a` no finite force
 /// prevents penetration of the floor (Painlevé); for `p > 0` the force is `−a / p`.
 #[test]
-fn contact_without_finite_force_is_an_error() {
+fn painleve_paradox_is_reported_as_error() {
     let mut random = Random(3);
     let mut jammed = 0;
     for _ in 0..1000 {

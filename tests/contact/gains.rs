@@ -1,7 +1,7 @@
 //! Bilaterally enforced contacts with stabilization gains: decay of gaps and contact velocities, and steps
 //! with given accelerations.
 
-use super::derivatives::{OnPoints, quadruped_stance};
+use super::derivatives::{OnPoints, quadruped_state_and_torques};
 use linkwork::contact::{self, Touch};
 use linkwork::discrete;
 use linkwork::nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -11,7 +11,7 @@ use linkwork::prelude::*;
 /// millimetre.
 #[test]
 fn gaps_of_fixed_contacts_decay_with_gains() {
-    let (mut q, _, _) = quadruped_stance();
+    let (mut q, _, _) = quadruped_state_and_torques();
     let m = OnPoints {};
     q[2] -= m.contact_gaps(&q)[0] - 1e-3;
     let simulate_held_contact = |rate: f64| {
@@ -28,7 +28,7 @@ fn gaps_of_fixed_contacts_decay_with_gains() {
 /// the velocity has a gain.
 #[test]
 fn contact_velocities_decay_with_a_separate_gain() {
-    let (q, _, _) = quadruped_stance();
+    let (q, _, _) = quadruped_state_and_torques();
     let m = OnPoints {};
     // The foot moves down together with the whole robot.
     let turned = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
@@ -46,7 +46,7 @@ fn contact_velocities_decay_with_a_separate_gain() {
 /// computes them, and its contact forces enforce the contacts.
 #[test]
 fn steps_accept_precomputed_accelerations() {
-    let (q, v, _) = quadruped_stance();
+    let (q, v, _) = quadruped_state_and_torques();
     let (m, touches, h) = (OnPoints {}, [Touch::Sticks, Touch::Slips], 2e-3);
     let held = contact::hold(&m, touches).with_gains(0.0, 50.0);
     let u = SVector::<f64, 12>::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());

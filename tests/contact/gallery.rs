@@ -6,7 +6,7 @@ use linkwork::prelude::*;
 
 const G: f64 = 9.81;
 
-fn exact_method() -> EventDriven<f64> {
+fn precise_event_driven_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
@@ -56,7 +56,7 @@ fn friction_throws_the_object_ball_off_its_line() {
 
 /// Spinning ball that bounces on a floor with friction.
 #[mechanism(gravity = -9.81 * z)]
-struct Bouncing {
+struct BouncingBallWithFriction {
     friction: f64,
     #[body(mass = 0.06, inertia = sphere(0.06, 0.03))]
     ball: Body,
@@ -73,7 +73,7 @@ struct Bouncing {
 #[test]
 fn spin_changes_the_rebound_of_a_ball() {
     for (friction, spin) in [(1.0, 0.0), (1.0, -150.0), (1.0, 200.0), (0.1, -150.0), (0.1, 250.0)] {
-        let m = Bouncing { friction };
+        let m = BouncingBallWithFriction { friction };
         let mut q = m.neutral();
         q[2] = 0.03;
         let before = SVector::from([2.0, 0.0, -4.0, 0.0, spin, 0.0]);
@@ -147,7 +147,7 @@ fn rod_in_painleves_paradox_stops_by_an_impact() {
     }
     let run = simulate(&m).from(q, v);
     let steps = run.clone().method(TimeStepping::step(1e-5)).duration(0.1).finish().unwrap();
-    let events = run.method(exact_method()).duration(0.1).finish().unwrap();
+    let events = run.method(precise_event_driven_method()).duration(0.1).finish().unwrap();
     assert!((steps.q - events.q).amax() < 1e-4, "{} {}", steps.q, events.q);
     assert!(m.contact_rates(&events.q, &events.v).amax() < 1e-9);
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
@@ -177,7 +177,7 @@ fn sliding_ladder_separates_from_the_wall() {
     let rate = (1.5 * G / half * start.sin() / 3.0).sqrt();
     let speed = half * rate * leaves;
     let (mut nearest, mut after) = (f64::INFINITY, 0);
-    for sample in simulate(&m).from(q, [0.0; 3]).method(exact_method()).duration(1.1) {
+    for sample in simulate(&m).from(q, [0.0; 3]).method(precise_event_driven_method()).duration(1.1) {
         let sample = sample.unwrap();
         let height = sample.q[1] / half;
         nearest = nearest.min((height - leaves).abs());
@@ -214,8 +214,9 @@ struct Valve {
 fn valve_chatters_with_closed_form_flights() {
     let (omega, preload, restitution) = ((800.0_f64 / 0.02).sqrt(), 0.004, 0.6);
     let m = Valve { restitution };
-    let simulate_valve =
-        |t: f64| simulate(&m).from([0.0], [1.5]).method(exact_method()).duration(t).finish().unwrap();
+    let simulate_valve = |t: f64| {
+        simulate(&m).from([0.0], [1.5]).method(precise_event_driven_method()).duration(t).finish().unwrap()
+    };
     let (mut t, mut speed) = (0.0, 1.5_f64);
     for k in 0..60 {
         let flight = 2.0 / omega * (speed / (omega * preload)).atan();
@@ -348,16 +349,17 @@ fn belt_holds_up_to_the_capstan_limit() {
             let end = simulate_loaded_belt(part).method(TimeStepping::step(h)).duration(t).finish().unwrap();
             (end.q - q).amax()
         };
-        let slip_with_events = |part: f64| {
+        let event_driven_slip_distance = |part: f64| {
             let end = simulate_loaded_belt(part).method(EventDriven::new()).duration(0.02).finish().unwrap();
             (end.q - q).amax()
         };
         for part in [0.5, 0.9, 0.999, 1.0 - 1e-6] {
-            let (steps, events) = (slip_with_time_stepping(part, 1e-3, 0.1), slip_with_events(part));
+            let (steps, events) =
+                (slip_with_time_stepping(part, 1e-3, 0.1), event_driven_slip_distance(part));
             assert!(steps < 1e-12 && events < 1e-11, "{turn} {part}: {steps} {events}");
         }
         // Above the limit the belt slips, at first in proportion to the excess load.
-        let (little, more) = (slip_with_events(1.0 + 1e-6), slip_with_events(1.0 + 1e-5));
+        let (little, more) = (event_driven_slip_distance(1.0 + 1e-6), event_driven_slip_distance(1.0 + 1e-5));
         assert!(little > 1e-8 && (more / little - 10.0).abs() < 0.01, "{little} {more}");
         let slips = slip_with_time_stepping(1.0 + 1e-5, 1e-4, 0.02);
         assert!((slips / more - 1.0).abs() < 0.01, "{slips} {more}");

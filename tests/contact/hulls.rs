@@ -42,7 +42,7 @@ struct BlockHull {
 }
 
 /// Returns the configuration of a block with a face on the slope.
-fn block_on_slope(tilt: f64) -> [f64; 7] {
+fn configuration_of_block_on_slope(tilt: f64) -> [f64; 7] {
     let (sine, cosine) = (tilt / 2.0).sin_cos();
     [0.05 * tilt.sin(), 0.0, 0.05 * tilt.cos(), 0.0, sine, 0.0, cosine]
 }
@@ -66,7 +66,7 @@ fn hull_of_a_box_tumbles_like_the_box() {
 fn hull_slides_down_a_slope() {
     let (tilt, friction, t) = (0.5_f64, 0.3, 0.4);
     let m = BlockHull { tilt, friction };
-    let run = simulate(&m).from(block_on_slope(tilt), [0.0; 6]);
+    let run = simulate(&m).from(configuration_of_block_on_slope(tilt), [0.0; 6]);
     let end = run.method(TimeStepping::step(1e-3)).duration(t).finish().unwrap();
     let path = 0.5 * G * (tilt.sin() - friction * tilt.cos()) * t * t;
     assert!((end.q[0] - 0.05 * tilt.sin() - path * tilt.cos()).abs() < 1e-6, "{}", end.q[0]);
@@ -313,13 +313,14 @@ fn mesh_vertices_are_scaled_and_placed_by_the_urdf() {
     let gaps = Stone {}.contact_gaps(&[0.0, 0.0, 0.5, c[0], c[1], c[2], c[3]].into());
     let placed = UnitQuaternion::from_euler_angles(0.0, 0.0, core::f64::consts::FRAC_PI_6);
     let height_of_vertex = |p: Vector3<f64>| 0.5 + (turn * (Vector3::new(0.01, 0.0, 0.0) + p))[2];
-    let check_vertices = |range: core::ops::Range<usize>, vertex: &dyn Fn([f64; 3]) -> Vector3<f64>| {
-        let mut expected = VERTICES.map(|p| height_of_vertex(vertex(p)));
-        let mut found = gaps.as_slice()[range].to_vec();
-        expected.sort_by(f64::total_cmp);
-        found.sort_by(f64::total_cmp);
-        assert!(expected.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-9), "{expected:?} {found:?}");
-    };
-    check_vertices(0..8, &|p| placed * (Vector3::from(p) * 0.01));
-    check_vertices(8..16, &|p| Vector3::from(p));
+    let check_gaps_of_vertices =
+        |range: core::ops::Range<usize>, vertex: &dyn Fn([f64; 3]) -> Vector3<f64>| {
+            let mut expected = VERTICES.map(|p| height_of_vertex(vertex(p)));
+            let mut found = gaps.as_slice()[range].to_vec();
+            expected.sort_by(f64::total_cmp);
+            found.sort_by(f64::total_cmp);
+            assert!(expected.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-9), "{expected:?} {found:?}");
+        };
+    check_gaps_of_vertices(0..8, &|p| placed * (Vector3::from(p) * 0.01));
+    check_gaps_of_vertices(8..16, &|p| Vector3::from(p));
 }

@@ -5,7 +5,7 @@ use super::laws::Random;
 use linkwork::integrate::EventDriven;
 use linkwork::prelude::*;
 
-type Stepping = TimeStepping<f64>;
+type TimeSteppingMethod = TimeStepping<f64>;
 
 /// Bob in a smooth bowl of radius 1 m: a spherical pendulum.
 #[mechanism(gravity = -9.81 * z)]
@@ -20,7 +20,7 @@ pub struct Bowl {
 
 /// Bead between two walls of a smooth tube that rotates freely about the vertical.
 #[mechanism]
-pub struct Tube {
+pub struct BeadBetweenTubeWalls {
     #[body(mass = 1, inertia = diagonal(0.3, 0.3, 0.3))]
     tube: Body,
     #[joint(ground -> tube, about = z)]
@@ -116,7 +116,7 @@ pub struct SlidingBox {
 
 /// Ball that bounces on the floor.
 #[mechanism(gravity = -9.81 * z)]
-pub struct Bouncing {
+pub struct VerticallyBouncingBall {
     #[particle(mass = 0.1)]
     ball: Particle,
     #[joint(ground -> ball, along = z)]
@@ -138,7 +138,7 @@ macro_rules! energy {
 }
 
 /// Returns the sum of the errors of energy, angular momentum and radius of a bob in a bowl.
-fn error_in_bowl(method: Stepping) -> f64 {
+fn conservation_error_in_bowl(method: TimeSteppingMethod) -> f64 {
     let (m, a) = (Bowl {}, 0.8_f64);
     let (q, v) = ([a.sin(), 0.0, -a.cos()].into(), [0.0, 0.5, 0.0].into());
     let s = end!(&m, q, v, method, 2.0);
@@ -150,8 +150,8 @@ fn error_in_bowl(method: Stepping) -> f64 {
 
 /// Returns the sum of the errors of energy, angular momentum and lateral position of a bead that slides out
 /// of a tube.
-fn error_in_tube(method: Stepping) -> f64 {
-    let m = Tube {};
+fn tube_bead_total_error(method: TimeSteppingMethod) -> f64 {
+    let m = BeadBetweenTubeWalls {};
     let (q, v) = ([0.0, 0.1, 0.0].into(), [3.0, 0.2, 0.3].into());
     let s = end!(&m, q, v, method, 1.0);
     let angular_momentum =
@@ -164,7 +164,7 @@ fn error_in_tube(method: Stepping) -> f64 {
 
 /// Returns the error of the distance that a hoop rolls down a slope, which is half of that of a block without
 /// friction.
-fn error_of_hoop(method: Stepping) -> f64 {
+fn hoop_rolling_distance_error(method: TimeSteppingMethod) -> f64 {
     let m = Hoop { slope: 0.3, offset: 0.0, friction: 0.5 };
     let s = end!(&m, [0.0, 0.1, 0.0], [0.0; 3], method, 1.0);
     (s.q[0] - 0.25 * 9.81 * 0.3_f64.sin()).abs() + (s.q[2] * 0.1 + s.q[0]).abs()
@@ -172,7 +172,7 @@ fn error_of_hoop(method: Stepping) -> f64 {
 
 /// Returns the energy error of an unbalanced wheel that rolls without slip, and the distance that it has
 /// slipped.
-fn error_of_wheel(method: Stepping) -> f64 {
+fn wheel_energy_and_slip_errors(method: TimeSteppingMethod) -> f64 {
     let m = Hoop { slope: 0.0, offset: 0.05, friction: 5.0 };
     let (q, v) = ([0.0, 0.1, 0.0].into(), [-0.3, 0.0, 3.0].into());
     let s = end!(&m, q, v, method, 2.0);
@@ -180,7 +180,7 @@ fn error_of_wheel(method: Stepping) -> f64 {
 }
 
 /// Returns the energy error of an unbalanced rolling ball.
-fn error_of_rolling_ball(method: Stepping) -> f64 {
+fn energy_error_of_rolling_ball(method: TimeSteppingMethod) -> f64 {
     let m = Ball { offset: 0.03, friction: 5.0 };
     let (q, v) = ([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0].into(), [0.5, 0.0, 0.0, 0.0, 5.0, 1.0].into());
     let s = end!(&m, q, v, method, 1.0);
@@ -189,7 +189,7 @@ fn error_of_rolling_ball(method: Stepping) -> f64 {
 
 /// Returns the energy error of Euler's disk, and the displacement of its centre, which is at rest in the
 /// steady motion with `Ω² = 4 g / (r sin α)`.
-fn error_of_euler_disk(method: Stepping) -> f64 {
+fn euler_disk_energy_and_drift_errors(method: TimeSteppingMethod) -> f64 {
     let (m, r) = (Disk {}, 0.0375_f64);
     // The disk's axis leans by `alpha` from the vertical; the circle rotates about a horizontal diameter of
     // the disk.
@@ -208,7 +208,7 @@ fn error_of_euler_disk(method: Stepping) -> f64 {
 
 /// Returns the error of the angular velocity of a pole that falls on its foot, and the displacement of the
 /// foot.
-fn error_of_pole(method: Stepping) -> f64 {
+fn errors_of_falling_pole(method: TimeSteppingMethod) -> f64 {
     let m = Pole {};
     let start = 1.2_f64;
     let s = end!(&m, [0.0, 0.0, start], [0.0; 3], method, 0.35);
@@ -217,7 +217,7 @@ fn error_of_pole(method: Stepping) -> f64 {
 }
 
 /// Returns the errors of speed and position of a ball that spins on a smooth floor, after a second.
-fn error_of_spinning_ball(method: Stepping, [x, y, z]: [f64; 3]) -> f64 {
+fn error_of_spinning_ball(method: TimeSteppingMethod, [x, y, z]: [f64; 3]) -> f64 {
     let m = Ball { offset: 0.0, friction: 0.0 };
     let q = [0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0];
     let s = end!(&m, q, [1.0, 0.0, 0.0, x, y, z], method, 1.0);
@@ -225,7 +225,7 @@ fn error_of_spinning_ball(method: Stepping, [x, y, z]: [f64; 3]) -> f64 {
 }
 
 /// Returns the creep of a block that sticks on a slope under a growing load.
-fn creep_on_ramp(method: Stepping) -> f64 {
+fn creep_on_ramp(method: TimeSteppingMethod) -> f64 {
     let m = Slope { slope: 0.1, friction: 0.6 };
     let run = simulate(&m).from([0.0; 3], [0.0; 3]).inputs(|t, _, _| [-2.0 * t, 1.5 * t].into());
     let s = run.method(method).duration(1.5).finish().unwrap();
@@ -233,7 +233,7 @@ fn creep_on_ramp(method: Stepping) -> f64 {
 }
 
 /// Returns the errors of velocity and position of a block that slides down a slope along a straight line.
-fn error_of_sliding_block(method: Stepping) -> f64 {
+fn error_of_sliding_block(method: TimeSteppingMethod) -> f64 {
     let m = Slope { slope: 0.5, friction: 0.3 };
     let s = end!(&m, [0.0; 3], [0.4, 0.0, 0.0], method, 1.0);
     let a = 9.81 * (0.5_f64.sin() - 0.3 * 0.5_f64.cos());
@@ -242,7 +242,7 @@ fn error_of_sliding_block(method: Stepping) -> f64 {
 
 /// Returns the change of a constant of motion: the sum of the speed and of the downhill velocity of a block
 /// that crosses a slope with friction `μ = tan α`.
-fn error_of_crossing_block(method: Stepping) -> f64 {
+fn invariant_error_of_crossing_block(method: TimeSteppingMethod) -> f64 {
     let m = Slope { slope: 0.3, friction: 0.3_f64.tan() };
     let s = end!(&m, [0.0; 3], [0.1, 1.0, 0.0], method, 0.6);
     let conserved_sum = |v: &SVector<f64, 3>| v.norm() + v[0];
@@ -251,7 +251,7 @@ fn error_of_crossing_block(method: Stepping) -> f64 {
 
 /// Returns the change of the same constant for a box, whose edges are not parallel to its path, and its
 /// rotation: friction has no moment about the normal if all corners slide in the same direction.
-fn error_of_crossing_box(method: Stepping) -> f64 {
+fn invariant_error_of_crossing_box(method: TimeSteppingMethod) -> f64 {
     let m = SlidingBox { slope: 0.3, friction: 0.3_f64.tan() };
     let (s, c) = 0.4_f64.sin_cos();
     let q: SVector<f64, 7> = [0.0, 0.0, 0.05, 0.0, 0.0, s, c].into();
@@ -265,7 +265,7 @@ fn error_of_crossing_box(method: Stepping) -> f64 {
 }
 
 /// Checks that halving the step twice divides the error by 3.4 to 5 each time, for both kinds of steps.
-fn check_order(name: &str, h: f64, largest: f64, error: fn(Stepping) -> f64) {
+fn check_order(name: &str, h: f64, largest: f64, error: fn(TimeSteppingMethod) -> f64) {
     for midpoint in [false, true] {
         let errors = [h, h / 2.0, h / 4.0].map(|h| {
             let method = TimeStepping::step(h);
@@ -281,13 +281,13 @@ fn check_order(name: &str, h: f64, largest: f64, error: fn(Stepping) -> f64) {
 
 #[test]
 fn lasting_contacts_are_integrated_with_order_two() {
-    check_order("bob in a bowl", 4e-3, 2e-4, error_in_bowl);
-    check_order("bead in a tube", 4e-3, 4e-5, error_in_tube);
-    check_order("wheel", 4e-3, 2e-4, error_of_wheel);
-    check_order("pole", 4e-3, 1e-4, error_of_pole);
-    check_order("Euler's disk", 4e-4, 5e-4, error_of_euler_disk);
-    check_order("block across a slope", 4e-3, 1e-4, error_of_crossing_block);
-    check_order("box across a slope", 4e-3, 2e-4, error_of_crossing_box);
+    check_order("bob in a bowl", 4e-3, 2e-4, conservation_error_in_bowl);
+    check_order("bead in a tube", 4e-3, 4e-5, tube_bead_total_error);
+    check_order("wheel", 4e-3, 2e-4, wheel_energy_and_slip_errors);
+    check_order("pole", 4e-3, 1e-4, errors_of_falling_pole);
+    check_order("Euler's disk", 4e-4, 5e-4, euler_disk_energy_and_drift_errors);
+    check_order("block across a slope", 4e-3, 1e-4, invariant_error_of_crossing_block);
+    check_order("box across a slope", 4e-3, 2e-4, invariant_error_of_crossing_box);
 }
 
 /// The energy of an unbalanced rolling ball changes by the fraction `8e-6` in a second with steps of 2 ms,
@@ -295,8 +295,8 @@ fn lasting_contacts_are_integrated_with_order_two() {
 #[test]
 fn unbalanced_rolling_ball_conserves_energy() {
     for (h, largest) in [(2e-3, 8e-6), (1e-3, 1e-6), (5e-4, 2.5e-7)] {
-        assert!(error_of_rolling_ball(TimeStepping::step(h)) < largest);
-        assert!(error_of_rolling_ball(TimeStepping::step(h).midpoint()) < largest);
+        assert!(energy_error_of_rolling_ball(TimeStepping::step(h)) < largest);
+        assert!(energy_error_of_rolling_ball(TimeStepping::step(h).midpoint()) < largest);
     }
 }
 
@@ -306,10 +306,10 @@ fn unbalanced_rolling_ball_conserves_energy() {
 fn constant_accelerations_in_contact_are_integrated_exactly() {
     for method in [TimeStepping::step(1e-2), TimeStepping::step(1e-2).midpoint()] {
         assert!(
-            error_of_sliding_block(method) < 1e-12 && error_of_hoop(method) < 1e-12,
+            error_of_sliding_block(method) < 1e-12 && hoop_rolling_distance_error(method) < 1e-12,
             "{} {}",
             error_of_sliding_block(method),
-            error_of_hoop(method)
+            hoop_rolling_distance_error(method)
         );
     }
 }
@@ -352,7 +352,7 @@ fn bounces_are_integrated_with_order_one() {
     let fall = (2.0 / 9.81_f64).sqrt();
     for h in [4e-3, 2e-3, 1e-3, 5e-4] {
         for method in [TimeStepping::step(h), TimeStepping::step(h).midpoint()] {
-            let s = end!(&Bouncing {}, [1.0], [0.0], method, 1.7 * fall);
+            let s = end!(&VerticallyBouncingBall {}, [1.0], [0.0], method, 1.7 * fall);
             assert!((s.q[0] - 0.49).abs() < 2.0 * h, "{h}: {}", s.q[0]);
         }
     }

@@ -56,7 +56,7 @@ fn impact_at_a_stop_has_the_closed_form_velocity() {
 }
 
 #[mechanism]
-struct Striking {
+struct SliderCrankHittingStop {
     restitution: f64,
     #[body(mass = 0.5, com = 0.02 * x, inertia = rod(0.5, 0.04, x))]
     crank: Body,
@@ -82,7 +82,7 @@ struct Striking {
 #[test]
 fn piston_of_a_loop_rebounds_from_a_stop() {
     for e in [0.0, 0.3, 1.0] {
-        let m = Striking { restitution: e };
+        let m = SliderCrankHittingStop { restitution: e };
         let place = 0.165;
         let crank = ((0.04_f64.powi(2) + place * place - 0.13 * 0.13) / (2.0 * 0.04 * place)).acos();
         let q = m.assemble(&[crank, -0.5, place].into(), &[2]).unwrap();
@@ -99,7 +99,7 @@ fn piston_of_a_loop_rebounds_from_a_stop() {
 
 /// Bob on a rope, which may be slack.
 #[mechanism(gravity = -9.81 * y)]
-struct Tethered {
+struct BobOnRope {
     length: f64,
     #[particle(mass = 0.3)]
     bob: Particle,
@@ -112,8 +112,8 @@ struct Tethered {
 /// The bob falls until the rope is taut. The impact removes the velocity along the rope; then the bob swings.
 #[test]
 fn rope_becomes_taut_and_removes_radial_velocity() {
-    let m = Tethered { length: 1.0 };
-    assert_eq!(Tethered::CONTACTS, ["rope.to"]);
+    let m = BobOnRope { length: 1.0 };
+    assert_eq!(BobOnRope::CONTACTS, ["rope.to"]);
     let run = simulate(&m)
         .from([0.6, 0.0], [0.0; 2])
         .method(EventDriven::new().tolerance(1e-11, 1e-11))

@@ -1,7 +1,7 @@
 //! Dropped boxes and balls: the order in which contacts and their surfaces are declared has no effect, and
 //! contacts add no energy.
 
-use super::boxes::{Swapped, Two, configuration_of_boxes, random_rotation};
+use super::boxes::{BoxesInSwappedOrder, TwoBoxes, configuration_of_boxes, random_rotation};
 use super::laws::Random;
 use linkwork::contact::Contacts;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
@@ -44,7 +44,7 @@ heap!(Backwards:
 
 /// Returns the maximum difference between the motions of two mechanisms in one step of `h` seconds, m/s and
 /// rad/s, over `steps` states along the motion of the first one.
-fn motion_difference<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
+fn maximum_difference_of_one_step<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
     (one, other): (&A, &B),
     (mut q, mut v): (SVector<f64, N>, SVector<f64, NV>),
     (h, steps): (f64, usize),
@@ -76,14 +76,14 @@ fn declaration_order_of_contacts_has_no_effect() {
     let mut most = [0.0_f64; 2];
     for k in 0..8 {
         let (friction, restitution) = ([0.0, 0.3, 0.8][k % 3], [0.0, 0.5][k % 2]);
-        let m = Two { gravity: 9.81, friction, restitution };
+        let m = TwoBoxes { gravity: 9.81, friction, restitution };
         let turn = if k == 0 { UnitQuaternion::identity() } else { random_rotation(&mut random) };
         let at: [f64; 3] = random.random_vector::<3>(0.1).into();
         let q = configuration_of_boxes(&m, [at[0], at[1], 0.26], turn);
         let mut v = SVector::<f64, 12>::zeros();
         v.fixed_rows_mut::<3>(6).copy_from(&(turn.inverse() * Vector3::new(0.0, 0.0, -1.0)));
-        let other = Swapped { gravity: 9.81, friction, restitution };
-        most[0] = most[0].max(motion_difference((&m, &other), (q, v), run));
+        let other = BoxesInSwappedOrder { gravity: 9.81, friction, restitution };
+        most[0] = most[0].max(maximum_difference_of_one_step((&m, &other), (q, v), run));
 
         let m = Heap { friction, restitution };
         let mut q = m.neutral();
@@ -91,7 +91,11 @@ fn declaration_order_of_contacts_has_no_effect() {
         (0..4).for_each(|i| q[3 + i] = turn.coords[i]);
         let mut v = SVector::<f64, 12>::zeros();
         (v[0], v[3], v[8]) = (-1.0, random.next(), -1.0);
-        most[1] = most[1].max(motion_difference((&m, &Backwards { friction, restitution }), (q, v), run));
+        most[1] = most[1].max(maximum_difference_of_one_step(
+            (&m, &Backwards { friction, restitution }),
+            (q, v),
+            run,
+        ));
     }
     assert!(most[0] < 1e-4 && most[1] < 1e-8, "{most:?}");
 }
@@ -103,13 +107,13 @@ fn flat_landing_boxes_stay_level() {
     let mut random = Random(5);
     for k in 0..30 {
         let friction = [0.0, 0.3][k % 2];
-        let m = Two { gravity: 9.81, friction, restitution: 0.0 };
-        let other = Swapped { gravity: 9.81, friction, restitution: 0.0 };
+        let m = TwoBoxes { gravity: 9.81, friction, restitution: 0.0 };
+        let other = BoxesInSwappedOrder { gravity: 9.81, friction, restitution: 0.0 };
         let at: [f64; 2] = random.random_vector::<2>(0.1).into();
         let q = configuration_of_boxes(&m, [at[0], at[1], 0.1261], UnitQuaternion::identity());
         let mut v = SVector::<f64, 12>::zeros();
         v[8] = -1.9;
-        let most = motion_difference((&m, &other), (q, v), (2e-3, 2));
+        let most = maximum_difference_of_one_step((&m, &other), (q, v), (2e-3, 2));
         assert!(most < 1e-8, "{most} at {at:?}");
         let step = TimeStepping::step(2e-3);
         let end = simulate(&m).from(q, v).method(step).duration(2e-3).finish().unwrap();
@@ -118,8 +122,8 @@ fn flat_landing_boxes_stay_level() {
 }
 
 /// Checks that the order of contacts with strong friction has no effect. (The order of the two surfaces of a
-/// contact may have one if slipping contacts share impulses: `Two` and `Swapped` differ by more than `1e-8`
-/// in about 1 of 3000 steps.)
+/// contact may have one if slipping contacts share impulses: `TwoBoxes` and `BoxesInSwappedOrder` differ by
+/// more than `1e-8` in about 1 of 3000 steps.)
 #[test]
 fn contact_order_has_no_effect_with_strong_friction() {
     let mut random = Random(2);
@@ -134,7 +138,11 @@ fn contact_order_has_no_effect_with_strong_friction() {
         (0..4).for_each(|i| q[3 + i] = turn.coords[i]);
         let mut v = SVector::<f64, 12>::zeros();
         (v[0], v[3], v[8]) = (-1.0, random.next(), -1.0);
-        most = most.max(motion_difference((&m, &Backwards { friction, restitution }), (q, v), (2e-3, 60)));
+        most = most.max(maximum_difference_of_one_step(
+            (&m, &Backwards { friction, restitution }),
+            (q, v),
+            (2e-3, 60),
+        ));
     }
     assert!(most < 1e-8, "{most}");
 }
@@ -143,7 +151,7 @@ fn contact_order_has_no_effect_with_strong_friction() {
 /// deepest overlap, m.
 fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     let mut random = Random(seed);
-    let m = Two { gravity: 9.81, friction: 0.5, restitution };
+    let m = TwoBoxes { gravity: 9.81, friction: 0.5, restitution };
     let turn = random_rotation(&mut random);
     let at: [f64; 3] = random.random_vector::<3>(0.1).into();
     let q = configuration_of_boxes(&m, [at[0], at[1], 0.3], turn);

@@ -205,7 +205,7 @@ fn declaration_order_of_stacked_bodies_has_no_effect() {
 
 /// Box on a slope with friction, in single precision.
 #[mechanism(gravity = -9.81 * z, scalar = f32)]
-struct Small {
+struct BoxInSinglePrecision {
     tilt: f32,
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
     block: Body,
@@ -217,14 +217,14 @@ struct Small {
 
 #[test]
 fn stacked_bodies_stick_in_single_precision() {
-    let m = Small { tilt: 0.35 };
+    let m = BoxInSinglePrecision { tilt: 0.35 };
     let (sine, cosine) = (m.tilt / 2.0).sin_cos();
     let q = [0.05 * m.tilt.sin(), 0.0, 0.05 * m.tilt.cos(), 0.0, sine, 0.0, cosine];
     let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(0.01_f32)).duration(60.0);
     let moved = (run.finish().unwrap().q - SVector::from(q)).norm();
     assert!(moved < 1e-5, "{moved:e}");
     // At a slope of 0.5 rad the box slides with g (sin 0.5 − 0.5 cos 0.5).
-    let m = Small { tilt: 0.5 };
+    let m = BoxInSinglePrecision { tilt: 0.5 };
     let (sine, cosine) = (m.tilt / 2.0).sin_cos();
     let q = [0.05 * m.tilt.sin(), 0.0, 0.05 * m.tilt.cos(), 0.0, sine, 0.0, cosine];
     let end =

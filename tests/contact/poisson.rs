@@ -27,7 +27,7 @@ rod!(Velocities, e);
 
 /// Returns the normal and slip velocities of the end after an impact of a rod that does not rotate, and the
 /// loss of kinetic energy. The argument `rates` holds the velocities of the end before the impact.
-fn impact_of_rod<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
+fn velocities_and_loss_after_rod_impact<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
 where
     M: Contacts<3, 3, 0, 1, 2, Scalar = f64>,
 {
@@ -66,11 +66,11 @@ fn poisson_rebound_of_an_oblique_rod_exceeds_newtons() {
             let pressed = (tt + nt * w[(0, 1)].signum() * slip) / (nn * tt - nt * nt);
             let along = (-nt * w[(0, 1)].signum() - nn * slip) / (nn * tt - nt * nt);
             assert!(along.abs() < friction * pressed && share.abs() < friction);
-            let (found, taken) = impact_of_rod(&poisson, angle, [-1.0, slip]);
+            let (found, taken) = velocities_and_loss_after_rod_impact(&poisson, angle, [-1.0, slip]);
             let wanted = e * (1.0 + share * slip);
             assert!((found[0] - wanted).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?} {wanted}");
             assert!(taken > 0.0);
-            let (found, _) = impact_of_rod(&newton, angle, [-1.0, slip]);
+            let (found, _) = velocities_and_loss_after_rod_impact(&newton, angle, [-1.0, slip]);
             assert!((found[0] - e).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?}");
         }
     }
@@ -83,8 +83,13 @@ fn poisson_and_newton_restitution_agree_during_slip() {
     let (friction, e, gravity) = (0.1, 0.6, 0.0);
     for angle in [0.6, 0.8, 1.0] {
         for slip in [-3.0, 3.0] {
-            let (poisson, _) = impact_of_rod(&Impulses { gravity, friction, e }, angle, [-1.0, slip]);
-            let (newton, _) = impact_of_rod(&Velocities { gravity, friction, e }, angle, [-1.0, slip]);
+            let (poisson, _) =
+                velocities_and_loss_after_rod_impact(&Impulses { gravity, friction, e }, angle, [-1.0, slip]);
+            let (newton, _) = velocities_and_loss_after_rod_impact(
+                &Velocities { gravity, friction, e },
+                angle,
+                [-1.0, slip],
+            );
             assert!((poisson[0] - e).abs() < 1e-12, "{poisson:?}");
             assert!(
                 (poisson[1] - newton[1]).abs() < 1e-12 && poisson[1] * slip > 0.0,
@@ -254,7 +259,7 @@ fn poisson_impacts_satisfy_contact_conditions() {
 
 /// Slider-crank whose slide collides with a stop, with Poisson's restitution.
 #[mechanism]
-struct Crank {
+struct SliderCrankWithStop {
     e: f64,
     #[body(mass = 1, com = 0.05 * x, inertia = rod(1, 0.1, x))]
     crank: Body,
@@ -278,7 +283,7 @@ struct Crank {
 /// its speed, the energy decreases by the fraction `1 − e²`, and velocities satisfy the constraints.
 #[test]
 fn poisson_impacts_keep_loops_closed() {
-    let m = Crank { e: 0.7 };
+    let m = SliderCrankWithStop { e: 0.7 };
     let cosine: f64 = (0.37 * 0.37 + 0.01 - 0.09) / (2.0 * 0.37 * 0.1);
     let angle = cosine.acos();
     let lean = -(angle.sin() / 3.0).asin();

@@ -19,7 +19,7 @@ struct Ball {
 }
 
 #[mechanism(gravity = -g * z, derivatives)]
-struct Round {
+struct HertzContactBall {
     g: f64,
     mass: f64,
     stiffness: f64,
@@ -42,7 +42,7 @@ fn compliant_penetration_is_proportional_to_weight() {
     assert_eq!(m.load(&[1e-9].into(), &[-1.0].into()).norm(), 0.0);
     // A body that is pulled out fast has no tensile contact force.
     assert_eq!(m.load(&[-depth].into(), &[10.0].into())[2], 0.0);
-    let m = Round { g: 9.81, mass: 2.0, stiffness: 5e6, dissipation: 0.3 };
+    let m = HertzContactBall { g: 9.81, mass: 2.0, stiffness: 5e6, dissipation: 0.3 };
     let depth = (m.mass * m.g / m.stiffness).powf(2.0 / 3.0);
     assert!(m.forward_dynamics(&[-depth].into(), &[0.0].into(), &[0.0].into())[0].abs() < 1e-11);
 }
@@ -69,7 +69,7 @@ fn compliant_impacts_have_closed_form_durations() {
     let half = core::f64::consts::PI * (m.mass / m.stiffness).sqrt();
     let (time, speed) = rebound_time_and_velocity(state_after, half * 1.5);
     assert!((time / half - 1.0).abs() < 1e-9 && (speed - 1.0).abs() < 1e-9, "{time} {half} {speed}");
-    let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
+    let m = HertzContactBall { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
     let state_after =
         |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let depth = (5.0 * m.mass / (4.0 * m.stiffness)).powf(0.4);
@@ -90,7 +90,7 @@ fn compliant_restitution_decreases_with_speed() {
         let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation };
         let state_after = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
         let (_, linear) = rebound_time_and_velocity(state_after, 0.05);
-        let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation };
+        let m = HertzContactBall { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation };
         let state_after = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
         let (_, round) = rebound_time_and_velocity(state_after, 0.05);
         for found in [linear, round] {
@@ -103,7 +103,7 @@ fn compliant_restitution_decreases_with_speed() {
 }
 
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Bowling {
+struct BowlingBallOnLane {
     friction: f64,
     #[body(mass = 6, inertia = sphere(6, 0.11))]
     ball: Body,
@@ -119,7 +119,7 @@ struct Bowling {
 /// Checks that a ball which slides on a compliant contact begins to roll, with 5/7 of its speed.
 #[test]
 fn sliding_ball_begins_to_roll_on_compliant_contact() {
-    let m = Bowling { friction: 0.2 };
+    let m = BowlingBallOnLane { friction: 0.2 };
     let depth = 6.0 * 9.81 / 1e6;
     let start = [0.0, 0.0, 0.11 - depth, 0.0, 0.0, 0.0, 1.0];
     let run = simulate(&m)
@@ -134,7 +134,7 @@ fn sliding_ball_begins_to_roll_on_compliant_contact() {
 /// Derivatives of the accelerations agree with differences, in contact with the ground and above it.
 #[test]
 fn compliant_contact_derivatives_agree_with_differences() {
-    let m = Bowling { friction: 0.2 };
+    let m = BowlingBallOnLane { friction: 0.2 };
     let tau = SVector::<f64, 6>::zeros();
     for height in [0.1099, 0.2] {
         let q = m.integrate(

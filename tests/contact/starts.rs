@@ -6,7 +6,7 @@ use linkwork::simulate::Overlaps;
 
 /// Two balls of different masses in a channel of width `gap`.
 #[mechanism(batch)]
-struct Channel {
+struct BallsInChannel {
     gap: f64,
     #[body(mass = 1, inertia = sphere(1, 0.1))]
     light: Body,
@@ -28,7 +28,7 @@ struct Channel {
 /// centres: their common centre of mass does not move.
 #[test]
 fn overlapping_balls_separate_in_proportion_to_mass() {
-    let m = Channel { gap: 1.0 };
+    let m = BallsInChannel { gap: 1.0 };
     let mut q = m.neutral();
     (q[7], q[8]) = (0.12, 0.09);
     let refused = contact::check(&m, 0.0, &q).unwrap_err();
@@ -50,7 +50,7 @@ fn overlapping_balls_separate_in_proportion_to_mass() {
 /// the error names a wall.
 #[test]
 fn overlaps_without_free_space_are_rejected() {
-    let m = Channel { gap: 0.18 };
+    let m = BallsInChannel { gap: 0.18 };
     let mut q = m.neutral();
     (q[2], q[7]) = (0.003, 1.0);
     let refused = contact::project(&m, 0.0, &q).unwrap_err();
@@ -64,7 +64,7 @@ fn overlaps_without_free_space_are_rejected() {
 /// keep overlaps they start unchanged.
 #[test]
 fn simulations_reject_overlapping_starts() {
-    let m = Channel { gap: 1.0 };
+    let m = BallsInChannel { gap: 1.0 };
     let mut q = m.neutral();
     (q[7], q[8]) = (0.12, 0.09);
     let v = SVector::from([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0]);
@@ -129,7 +129,7 @@ fn overlap_removal_keeps_loops_closed() {
 /// Rotated box that penetrates a corner of three planes. It comes to rest on them without overlaps, and a
 /// motion from there begins without a jump.
 #[mechanism(gravity = -9.81 * z)]
-struct Corner {
+struct BoxInCorner {
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
     block: Body,
     #[joint(ground -> block)]
@@ -144,7 +144,7 @@ struct Corner {
 
 #[test]
 fn overlapping_box_is_moved_out_of_a_corner() {
-    let m = Corner {};
+    let m = BoxInCorner {};
     let mut q = m.neutral();
     (q[0], q[1], q[2]) = (0.13, 0.08, 0.03);
     let turn = SVector::from([0.0, 0.0, 0.0, 0.1, -0.2, 0.3]);

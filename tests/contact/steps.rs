@@ -1,7 +1,7 @@
 //! Derivatives of steps of time stepping through contacts that open, close, stick and slide, against closed
 //! forms and differences of the steps.
 
-use super::derivatives::{Hollow, Solo, quadruped_stance};
+use super::derivatives::{BallInHollow, Solo, quadruped_state_and_torques};
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;
@@ -104,7 +104,7 @@ fn stepping_methods(h: f64) -> [TimeStepping<f64>; 2] {
 
 /// Checks the columns of a step's Jacobians against central differences of sixth order over `3 h`, except for
 /// columns along which contacts open or close (`skipped`, displacements first).
-fn check_columns<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_derivative_columns<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     method: &S,
     (q, v, u): (&SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>),
@@ -149,7 +149,7 @@ fn check_columns<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 
 /// A ball bounces with −e times its velocity, falls freely before, and stays at rest without restitution.
 #[test]
-fn contact_step_jacobian_of_a_bouncing_ball() {
+fn contact_step_jacobian_covers_a_bouncing_ball() {
     let h = 0.01;
     for method in stepping_methods(h).into_iter().chain([TimeStepping::step(h).leapfrog()]) {
         let ball_transition = |restitution: f64, q: f64, v: f64| {
@@ -172,7 +172,7 @@ fn contact_step_jacobian_of_a_bouncing_ball() {
         ] {
             assert!(rests.q[0].abs() < 1e-10 && rests.a::<2>().amax() + rests.b::<2>().amax() < 1e-14);
         }
-        check_columns(
+        check_derivative_columns(
             &Ball { restitution: 0.6 },
             &method,
             (&[0.01].into(), &[-2.0].into(), &[0.2].into()),
@@ -184,7 +184,7 @@ fn contact_step_jacobian_of_a_bouncing_ball() {
 /// Along its slip a block has the derivative 1, across it the ratio of the speeds after and before the step,
 /// since friction turns with the slip. A block that sticks does not answer to forces.
 #[test]
-fn contact_step_jacobian_of_a_sliding_or_sticking_block() {
+fn step_jacobian_of_block_depends_on_slip_direction() {
     let (m, h) = (Block { friction: 0.5 }, 0.01);
     for method in stepping_methods(h) {
         let block_transition = |speed: f64| {
@@ -198,7 +198,7 @@ fn contact_step_jacobian_of_a_sliding_or_sticking_block() {
             (slides.v_by_v[(0, 0)] - 1.0).abs() < 1e-14 && (slides.v_by_u[(0, 0)] - h / 3.0).abs() < 1e-14
         );
         assert!((slides.q_by_v[(0, 0)] - h).abs() < 1e-14);
-        check_columns(
+        check_derivative_columns(
             &m,
             &method,
             (&SVector::zeros(), &[1.0, 0.5, 0.0].into(), &[0.2].into()),
@@ -214,7 +214,7 @@ fn contact_step_jacobian_of_a_sliding_or_sticking_block() {
 const FLAT: [usize; 6] = [2, 3, 4, 8, 9, 10];
 
 #[test]
-fn contact_step_jacobian_of_a_crate_in_every_mode() {
+fn crate_step_jacobians_match_differences_in_every_mode() {
     for (friction, method) in stepping_methods(0.01)
         .map(|method| (0.5, method))
         .into_iter()
@@ -224,7 +224,7 @@ fn contact_step_jacobian_of_a_crate_in_every_mode() {
         let (rest, u) =
             (m.integrate(&m.neutral(), &[0.0, 0.0, 0.05, 0.0, 0.0, 0.0].into()), [3.0, 1.0].into());
         let check_crate_columns = |q: &SVector<f64, 7>, v: [f64; 6], h: f64, skipped: &[usize]| {
-            check_columns(&m, &method, (q, &v.into(), &u), (h, skipped));
+            check_derivative_columns(&m, &method, (q, &v.into(), &u), (h, skipped));
         };
         check_crate_columns(&rest, [0.0; 6], 1e-6, &FLAT);
         let turned = m.integrate(&rest, &[0.0, 0.0, 0.2, 0.3, 0.4, 0.2].into());
@@ -239,34 +239,34 @@ fn contact_step_jacobian_of_a_crate_in_every_mode() {
 }
 
 #[test]
-fn contact_step_jacobian_with_friction_moments_and_terrain() {
+fn contact_step_jacobian_covers_friction_moments_and_terrain() {
     for method in stepping_methods(0.01) {
         let mut q = Bowl { restitution: 0.0 }.neutral();
         q[2] = 0.05;
         let check_bowl_columns = |restitution: f64, q: &SVector<f64, 7>, v: [f64; 6], skipped: &[usize]| {
             let m = Bowl { restitution };
-            check_columns(&m, &method, (q, &v.into(), &SVector::zeros()), (1e-5, skipped));
+            check_derivative_columns(&m, &method, (q, &v.into(), &SVector::zeros()), (1e-5, skipped));
         };
         check_bowl_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 20.0, 0.3], &[2, 8]);
         check_bowl_columns(0.0, &q, [1.0, 0.0, 0.0, 0.0, 2.0, 0.3], &[2, 8]);
         q[2] = 0.055;
         check_bowl_columns(0.0, &q, [0.1, 0.3, -1.0, -20.0, 2.0, 0.3], &[]);
         check_bowl_columns(0.4, &q, [1.0, 0.3, -2.0, -2.0, 2.0, 0.3], &[]);
-        let m = Hollow {};
+        let m = BallInHollow {};
         (q[0], q[1], q[2]) = (0.3, 0.2, 0.2);
         q[2] -= m.contact_gaps(0.0, &q)[0] - 1e-3;
         let v = [0.5, 0.2, -1.0, -0.4, -0.7, -1.0].into();
-        check_columns(&m, &method, (&q, &v, &SVector::zeros()), (1e-6, &[]));
+        check_derivative_columns(&m, &method, (&q, &v, &SVector::zeros()), (1e-6, &[]));
     }
 }
 
 #[test]
-fn contact_step_jacobian_of_a_landing_quadruped() {
-    let (m, (mut q, mut v, _)) = (Solo {}, quadruped_stance());
+fn contact_step_jacobian_covers_a_landing_quadruped() {
+    let (m, (mut q, mut v, _)) = (Solo {}, quadruped_state_and_torques());
     let u = SVector::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());
     q[2] -= m.contact_gaps(&q).min() - 0.01;
     v[2] = -2.0;
-    check_columns(&m, &stepping_methods(0.01)[0], (&q, &v, &u), (1e-5, &[]));
+    check_derivative_columns(&m, &stepping_methods(0.01)[0], (&q, &v, &u), (1e-5, &[]));
     // On four feet, of which one slides.
     let mut q = m.neutral();
     for leg in 0..4 {
@@ -275,12 +275,12 @@ fn contact_step_jacobian_of_a_landing_quadruped() {
     q[2] -= m.contact_gaps(&q).min() - 1e-3;
     v = SVector::zeros();
     (v[0], v[2]) = (0.2, -1.0);
-    check_columns(&m, &stepping_methods(0.01)[1], (&q, &v, &u), (1e-5, &[]));
+    check_derivative_columns(&m, &stepping_methods(0.01)[1], (&q, &v, &u), (1e-5, &[]));
 }
 
 /// A ball rolls on a crate, which sticks to the ground or slides.
 #[test]
-fn contact_step_jacobian_of_stacked_bodies() {
+fn contact_step_jacobian_covers_stacked_bodies() {
     let m = Stack {};
     let (mut q, v) = (m.neutral(), SVector::<f64, 12>::zeros());
     (q[2], q[7], q[9]) = (0.05, 0.03, 0.2);
@@ -289,7 +289,7 @@ fn contact_step_jacobian_of_stacked_bodies() {
     for (method, push) in
         stepping_methods(0.01).into_iter().flat_map(|method| [(method, 2.0), (method, 20.0)])
     {
-        check_columns(&m, &method, (&q, &v, &[push].into()), (1e-6, &closed));
+        check_derivative_columns(&m, &method, (&q, &v, &[push].into()), (1e-6, &closed));
     }
 }
 
@@ -331,7 +331,7 @@ fn gradients_through_contact_rollouts_agree_with_differences() {
         let v = SVector::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let along = SVector::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let found = rollout_gradient(&m, &method, (start, v, u), 100, (along, SVector::zeros()));
-        let final_position = |height: f64, speed: f64, push: f64| {
+        let rest_position_after_perturbation = |height: f64, speed: f64, push: f64| {
             let (mut q, mut v, u) = (start, v, [2.0 + push, 0.0].into());
             (q[2], v[0]) = (q[2] + height, v[0] + speed);
             for _ in 0..100 {
@@ -343,9 +343,21 @@ fn gradients_through_contact_rollouts_agree_with_differences() {
         // Smaller displacements show the tolerance of the search for impulses.
         let h = 3e-5;
         for (found, expected) in [
-            (found.0[2], final_position(h, 0.0, 0.0) - final_position(-h, 0.0, 0.0)),
-            (found.1[0], final_position(0.0, h, 0.0) - final_position(0.0, -h, 0.0)),
-            (found.2[0], final_position(0.0, 0.0, h) - final_position(0.0, 0.0, -h)),
+            (
+                found.0[2],
+                rest_position_after_perturbation(h, 0.0, 0.0)
+                    - rest_position_after_perturbation(-h, 0.0, 0.0),
+            ),
+            (
+                found.1[0],
+                rest_position_after_perturbation(0.0, h, 0.0)
+                    - rest_position_after_perturbation(0.0, -h, 0.0),
+            ),
+            (
+                found.2[0],
+                rest_position_after_perturbation(0.0, 0.0, h)
+                    - rest_position_after_perturbation(0.0, 0.0, -h),
+            ),
         ] {
             let expected = expected / (2.0 * h);
             assert!((found - expected).abs() < 1e-7 * (1.0 + expected.abs()), "{found} {expected}");
@@ -357,7 +369,7 @@ fn gradients_through_contact_rollouts_agree_with_differences() {
 #[test]
 fn poisson_restitution_has_no_derivatives() {
     #[mechanism(gravity = -9.81 * z, derivatives)]
-    struct Poisson {
+    struct PoissonBouncingBall {
         #[particle(mass = 0.5)]
         ball: Particle,
         #[joint(ground -> ball, along = z)]
@@ -366,9 +378,23 @@ fn poisson_restitution_has_no_derivatives() {
         bounce: Contact,
     }
     let method = TimeStepping::step(0.01);
-    let step = discrete::transition(&Poisson {}, &method, 0.0, &[0.0].into(), &[-1.0].into(), &[].into());
+    let step = discrete::transition(
+        &PoissonBouncingBall {},
+        &method,
+        0.0,
+        &[0.0].into(),
+        &[-1.0].into(),
+        &[].into(),
+    );
     let reason = ConstraintError::NoDerivatives { constraint: "bounce" };
     assert_eq!(step.unwrap_err(), Error::Constraint { t: 0.0, reason });
-    let free = discrete::transition(&Poisson {}, &method, 0.0, &[1.0].into(), &[-1.0].into(), &[].into());
-    assert!(free.is_ok() && contact::check(&Poisson {}, 0.0, &[1.0].into()).is_ok());
+    let free = discrete::transition(
+        &PoissonBouncingBall {},
+        &method,
+        0.0,
+        &[1.0].into(),
+        &[-1.0].into(),
+        &[].into(),
+    );
+    assert!(free.is_ok() && contact::check(&PoissonBouncingBall {}, 0.0, &[1.0].into()).is_ok());
 }

@@ -24,7 +24,7 @@ struct Block {
 const G: f64 = 9.81;
 const LEVEL: Block = Block { friction: 0.4, stiction: 0.6, tilt: 0.0 };
 
-fn exact_method() -> EventDriven<f64> {
+fn precise_event_driven_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
@@ -48,9 +48,9 @@ fn pulled_block_breaks_away_at_the_static_force() {
                 .inputs(move |t, _, _| SVector::<f64, 2>::from(direction) * (ramp * t))
                 .duration(duration)
         };
-        let before = simulate_pulled_block(0.58).method(exact_method()).finish().unwrap();
+        let before = simulate_pulled_block(0.58).method(precise_event_driven_method()).finish().unwrap();
         assert!(before.v.amax() < 1e-14 && before.q.amax() < 1e-14, "{before:?}");
-        let end = simulate_pulled_block(1.5).method(exact_method()).finish().unwrap();
+        let end = simulate_pulled_block(1.5).method(precise_event_driven_method()).finish().unwrap();
         let steps = simulate_pulled_block(1.5).method(TimeStepping::step(1e-3)).finish().unwrap();
         let [distance, speed] = pulled_block_motion(ramp, 1.5);
         for (i, along) in direction.into_iter().enumerate() {
@@ -74,7 +74,7 @@ fn block_on_a_slope_depends_on_static_and_kinetic_friction() {
     for (v, distance, speed) in
         [(0.0, 0.0, 0.0), (0.1, 0.1 + down / 2.0, 0.1 + down), (-1.0, -1.0 / (2.0 * up), 0.0)]
     {
-        let end = simulate_on_slope(v).method(exact_method()).finish().unwrap();
+        let end = simulate_on_slope(v).method(precise_event_driven_method()).finish().unwrap();
         assert!((end.q[0] - distance).abs() < 1e-11 && (end.v[0] - speed).abs() < 1e-11, "{v} {end:?}");
         let steps = simulate_on_slope(v).method(TimeStepping::step(1e-3)).finish().unwrap();
         assert!((steps.q[0] - distance).abs() < 1e-3 && (steps.v[0] - speed).abs() < 1e-9, "{v} {steps:?}");
@@ -98,7 +98,7 @@ fn spring_driven_block_has_the_stick_slip_period() {
         let t = first + n * period - excess / speed;
         let simulate_on_spring =
             || simulate(&LEVEL).from([0.0; 3], [0.0; 3]).inputs(move |t, q: &_, _: &_| spring_pull(t, q));
-        let end = simulate_on_spring().method(exact_method()).duration(t).finish().unwrap();
+        let end = simulate_on_spring().method(precise_event_driven_method()).duration(t).finish().unwrap();
         assert!((end.q[0] - n * speed * period).abs() < 1e-9, "{end:?} {}", n * speed * period);
         assert!(end.v.amax() < 1e-14, "{end:?}");
     }

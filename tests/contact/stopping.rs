@@ -15,7 +15,7 @@ const STOP: f64 = 0.125 + 1e-6;
 
 /// Uniform ball of 1 kg on a level floor.
 #[mechanism(gravity = -9.81 * z)]
-struct Bowling {
+struct BowlingBallOnLane {
     friction: f64,
     #[body(mass = 1, inertia = sphere(1, 0.1))]
     ball: Body,
@@ -143,7 +143,7 @@ fn bowling_ball_begins_to_roll() {
         let instant = slip.norm() / (3.5 * a);
         let velocity = SVector::from([vx, vy]) - slip / 3.5;
         let position = SVector::from([vx, vy]) * instant - direction * (a * instant * instant / 2.0);
-        let m = Bowling { friction };
+        let m = BowlingBallOnLane { friction };
         let start = [0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0];
         let run = simulate(&m).from(start, [vx, vy, 0.0, wx, wy, wz]).method(method);
         let end = run.duration(instant + 0.1).finish().unwrap();

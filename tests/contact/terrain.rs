@@ -26,10 +26,10 @@ fn searched_distance_to_hills(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
     };
     let (mut best, mut size) = ([x, y], 0.2);
     while size > 1e-10 {
-        let grid_point = |k: i32| {
+        let search_grid_point = |k: i32| {
             [best[0] + size * f64::from(k % 9 - 4) / 4.0, best[1] + size * f64::from(k / 9 - 4) / 4.0]
         };
-        let least = (0..81).map(grid_point).min_by(|a, b| {
+        let least = (0..81).map(search_grid_point).min_by(|a, b| {
             squared_distance_to_hill(a[0], a[1]).total_cmp(&squared_distance_to_hill(b[0], b[1]))
         });
         best = least.unwrap();

@@ -29,14 +29,14 @@ struct Ball {
 const LEVEL: Ball = Ball { tilt: 0.0, friction: 0.5, torsional: 0.002, rolling: 0.001 };
 
 impl Ball {
-    fn ball_on_ground(&self) -> SVector<f64, 7> {
+    fn configuration_on_ground(&self) -> SVector<f64, 7> {
         let mut q = self.neutral();
         q[2] = RADIUS;
         q
     }
 }
 
-fn exact_method() -> EventDriven<f64> {
+fn precise_event_driven_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
@@ -52,13 +52,13 @@ fn friction_moments_have_rows_after_their_contact() {
 /// at rest.
 #[test]
 fn spinning_ball_stops_by_the_friction_moment() {
-    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
+    let (m, q) = (LEVEL, LEVEL.configuration_on_ground());
     let v = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 20.0]);
     let inertia = 0.4 * MASS * RADIUS * RADIUS;
     let stops = 20.0 * inertia / (0.002 * MASS * G);
     let rotation_angle = |q: &SVector<f64, 7>| 2.0 * q[5].atan2(q[6]).rem_euclid(core::f64::consts::PI);
     let turned = (10.0 * stops).rem_euclid(2.0 * core::f64::consts::PI);
-    let simulate_spinning_ball = || simulate(&m).from(q, v).method(exact_method());
+    let simulate_spinning_ball = || simulate(&m).from(q, v).method(precise_event_driven_method());
     let half = simulate_spinning_ball().duration(stops / 2.0).finish().unwrap();
     assert!((half.v[5] - 10.0).abs() < 1e-10, "{half:?}");
     let end = simulate_spinning_ball().duration(100.0).finish().unwrap();
@@ -74,11 +74,11 @@ fn spinning_ball_stops_by_the_friction_moment() {
 /// rest for an hour.
 #[test]
 fn rolling_ball_stops_by_rolling_friction() {
-    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
+    let (m, q) = (LEVEL, LEVEL.configuration_on_ground());
     let v = SVector::from([1.0, 0.0, 0.0, 0.0, 20.0, 0.0]);
     let brakes = 5.0 / 7.0 * 0.001 * G / RADIUS;
     let way = 0.5 / brakes;
-    let simulate_rolling_ball = || simulate(&m).from(q, v).method(exact_method());
+    let simulate_rolling_ball = || simulate(&m).from(q, v).method(precise_event_driven_method());
     let two = simulate_rolling_ball().duration(2.0).finish().unwrap();
     assert!((two.q[0] - (2.0 - 2.0 * brakes)).abs() < 1e-9, "{two:?}");
     let end = simulate_rolling_ball().duration(20.0).finish().unwrap();
@@ -100,8 +100,8 @@ fn ball_rests_on_slopes_below_the_rolling_limit() {
         let (sin, cos) = m.tilt.sin_cos();
         let a = 5.0 / 7.0 * G * (sin - 0.1 * cos).max(0.0);
         for t in [1.0, 3.0] {
-            let run = simulate(&m).from(m.ball_on_ground(), [0.0; 6]);
-            let events = run.clone().method(exact_method()).duration(t).finish().unwrap();
+            let run = simulate(&m).from(m.configuration_on_ground(), [0.0; 6]);
+            let events = run.clone().method(precise_event_driven_method()).duration(t).finish().unwrap();
             let steps = run.method(TimeStepping::step(1e-3)).duration(t).finish().unwrap();
             assert!((events.q[0] + a * t * t / 2.0).abs() < 1e-9, "{tilt}: {events:?}");
             assert!((steps.q[0] + a * t * t / 2.0).abs() < 1e-5, "{tilt}: {steps:?}");
@@ -111,7 +111,7 @@ fn ball_rests_on_slopes_below_the_rolling_limit() {
 
 #[test]
 fn friction_moments_oppose_the_angular_velocity() {
-    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
+    let (m, q) = (LEVEL, LEVEL.configuration_on_ground());
     let (u, none) = (SVector::<f64, 0>::zeros(), SVector::<f64, 6>::zeros());
     let weight = MASS * G;
     let spins = contact::acting(&m, 0.0, &q, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0].into(), &u).unwrap();
@@ -138,7 +138,7 @@ fn contact_derivatives_include_friction_moments() {
     use Touch::{Open, Slips, Sticks};
     let m = Ball { tilt: 0.2, ..LEVEL };
     let mut random = Random(11);
-    let q = m.integrate(&m.ball_on_ground(), &random.random_vector(1.0));
+    let q = m.integrate(&m.configuration_on_ground(), &random.random_vector(1.0));
     let (v, tau) = (random.random_vector(1.0), random.random_vector(1.0));
     for touches in [
         [Sticks, Slips, Slips],
@@ -163,7 +163,10 @@ fn impacts_with_friction_moments_gain_no_energy() {
             torsional: random.random_choice([0.0, 1e-3, 0.1]),
             rolling: random.random_choice([0.0, 1e-3, 0.1]),
         };
-        let q = m.integrate(&m.ball_on_ground(), &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]));
+        let q = m.integrate(
+            &m.configuration_on_ground(),
+            &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]),
+        );
         let v =
             random.random_vector::<6>(3.0).component_mul(&SVector::from([1.0, 1.0, 1.0, 20.0, 20.0, 20.0]));
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
@@ -183,7 +186,7 @@ fn impacts_with_friction_moments_gain_no_energy() {
 }
 
 #[mechanism(gravity = -9.81 * z)]
-struct OnFelt {
+struct CompliantBallOnFelt {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
     ball: Body,
     #[joint(ground -> ball)]
@@ -198,7 +201,7 @@ struct OnFelt {
 /// Compliant surfaces have the same decelerations: spin by a m g / I, and rolling by 5/7 ρ g / r.
 #[test]
 fn compliant_friction_moments_have_equal_decelerations() {
-    let m = OnFelt {};
+    let m = CompliantBallOnFelt {};
     let mut q = m.neutral();
     q[2] = RADIUS - MASS * G / 1e6;
     let simulate_ball_from = |v: [f64; 6], t: f64| {
@@ -215,7 +218,7 @@ fn compliant_friction_moments_have_equal_decelerations() {
 
 /// Ball on felt, with the contact moments as an output.
 #[mechanism(gravity = -9.81 * z)]
-struct Felt {
+struct BallOnFelt {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
     ball: Body,
     #[joint(ground -> ball)]
@@ -230,7 +233,7 @@ struct Felt {
 
 /// Ball on a compliant surface, with the contact moments as an output.
 #[mechanism(gravity = -9.81 * z)]
-struct Soft {
+struct BallOnSoftGround {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
     ball: Body,
     #[joint(ground -> ball)]
@@ -253,11 +256,11 @@ fn outputs_include_friction_moments() {
     let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();
     let moments = SVector::<f64, 3>::from([0.0, -0.001, 0.002]) * (MASS * G);
     let lost = -(0.001 * 20.0 + 0.002 * 15.0) * MASS * G;
-    let q = LEVEL.ball_on_ground();
-    let m = Felt {};
+    let q = LEVEL.configuration_on_ground();
+    let m = BallOnFelt {};
     assert!((m.couple(&q, &v).unwrap() + moments).amax() < 1e-8);
     assert!((m.taken(&q, &v).unwrap() - lost).abs() < 1e-6, "{:?} {lost}", m.taken(&q, &v));
-    let m = Soft {};
+    let m = BallOnSoftGround {};
     let mut q = q;
     q[2] -= MASS * G / 1e4;
     assert!((m.couple(&q, &v) - moments).amax() < 1e-6, "{}", m.couple(&q, &v));

@@ -1,7 +1,8 @@
 //! Jacobians of implicit midpoint steps, of steps under constraints and of multipliers, against differences.
 
 use super::{
-    Carrier, Driven, Linkage, assert_columns, check_step, check_steps, derivatives_along_directions,
+    Driven, Linkage, RotorCraftWithPendulum, assert_concatenated_columns, check_step_jacobians, check_steps,
+    derivatives_along_directions,
 };
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -32,7 +33,7 @@ struct Ballbot {
 
 /// Two arms on ball joints whose ends are connected by a rod of time-dependent length: a spatial loop.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
-struct Arms {
+struct ArmsLinkedByRod {
     span: f64,
     mass: f64,
     rate: f64,
@@ -77,14 +78,20 @@ struct FourBar {
 #[test]
 fn implicit_step_jacobians_agree_with_differences() {
     for h in [0.01, 0.03] {
-        check_steps(&format!("carrier, {h}"), &Carrier {}, &ImplicitMidpoint::step(h), 2.0, 5.0);
+        check_steps(
+            &format!("carrier, {h}"),
+            &RotorCraftWithPendulum {},
+            &ImplicitMidpoint::step(h),
+            2.0,
+            5.0,
+        );
         check_steps(&format!("driven, {h}"), &Driven { rate: 30.0 }, &ImplicitMidpoint::step(h), 2.0, 1.0);
     }
 }
 
 /// Checks the Jacobians of steps of all methods on a mechanism with constraints, at a state that satisfies
 /// them. The directions of the derivatives include inadmissible ones.
-pub(super) fn check_constrained<
+pub(super) fn check_constrained_step_jacobians<
     M,
     const NQ: usize,
     const NV: usize,
@@ -108,13 +115,20 @@ pub(super) fn check_constrained<
     }
     let (q, v) = m.project(t, &near, &random.random_vector(1.0)).expect("it can be assembled");
     let u = random.random_vector(2.0);
-    check_step(&format!("{name}, Rk4"), m, &Rk4::step(0.01), t, (&q, &v, &u));
-    check_step(&format!("{name}, Euler"), m, &SemiImplicitEuler::step(0.01), t, (&q, &v, &u));
-    check_step(&format!("{name}, midpoint"), m, &ImplicitMidpoint::step(0.01), t, (&q, &v, &u));
-    check_multipliers(name, m, t, (&q, &v, &random.random_vector(3.0)));
+    check_step_jacobians(&format!("{name}, Rk4"), m, &Rk4::step(0.01), t, (&q, &v, &u));
+    check_step_jacobians(&format!("{name}, Euler"), m, &SemiImplicitEuler::step(0.01), t, (&q, &v, &u));
+    check_step_jacobians(&format!("{name}, midpoint"), m, &ImplicitMidpoint::step(0.01), t, (&q, &v, &u));
+    check_multiplier_derivatives(name, m, t, (&q, &v, &random.random_vector(3.0)));
 }
 
-fn check_multipliers<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn check_multiplier_derivatives<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     name: &str,
     m: &M,
     t: f64,
@@ -129,7 +143,7 @@ fn check_multipliers<M, const NQ: usize, const NV: usize, const NU: usize, const
     let expected: Vec<f64> = expected.iter().flatten().copied().collect();
     let scale = expected.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
     let found = [by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()];
-    assert_columns(&format!("{name}, multipliers"), &found, &expected, scale);
+    assert_concatenated_columns(&format!("{name}, multipliers"), &found, &expected, scale);
 }
 
 #[test]
@@ -137,18 +151,18 @@ fn constrained_step_jacobians_agree_with_differences() {
     let mut random = Random::new(17);
     let linkage = Linkage {};
     let closed = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
-    check_constrained("linkage", &linkage, &mut random, &closed);
+    check_constrained_step_jacobians("linkage", &linkage, &mut random, &closed);
     for k in 0..3 {
         let mut near = |x: f64| x * (1.0 + random.uniform_number(0.15));
         let bars = FourBar { base: near(1.8), crank_length: near(0.9), mass: near(2.0) };
-        let arms = Arms { span: near(1.9), mass: near(0.8), rate: near(5.0) };
+        let arms = ArmsLinkedByRod { span: near(1.9), mass: near(0.8), rate: near(5.0) };
         let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
-        check_constrained(&format!("four bars, {k}"), &bars, &mut random, &closed);
+        check_constrained_step_jacobians(&format!("four bars, {k}"), &bars, &mut random, &closed);
         let bent = arms.integrate(&Mechanism::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
-        check_constrained(&format!("arms, {k}"), &arms, &mut random, &bent);
+        check_constrained_step_jacobians(&format!("arms, {k}"), &arms, &mut random, &bent);
         let mut lifted = Mechanism::neutral(&ball);
         lifted[2] = ball.radius;
-        check_constrained(&format!("ball, {k}"), &ball, &mut random, &lifted);
+        check_constrained_step_jacobians(&format!("ball, {k}"), &ball, &mut random, &lifted);
     }
 }
 

@@ -11,7 +11,7 @@ mod speeds;
 
 /// Flying body with four rotors, two of which also exert a drag torque, and a pendulum on a ball joint below.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
-struct Carrier {
+struct RotorCraftWithPendulum {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
     frame: Body,
     #[body(mass = 0.3, com = -0.4 * z + 0.05 * x, inertia = diagonal(0.004, 0.005, 0.001))]
@@ -82,7 +82,7 @@ fn derivatives_along_directions<const NV: usize, const NU: usize, const R: usize
 ) -> Vec<SVector<f64, R>> {
     let h = 1e-3;
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-    let value_along = |k: usize, x: f64| {
+    let value_along_direction = |k: usize, x: f64| {
         f(
             &unit_direction_times(k, 0, x),
             &unit_direction_times(k, NV, x),
@@ -90,13 +90,13 @@ fn derivatives_along_directions<const NV: usize, const NU: usize, const R: usize
         )
     };
     let derivative_along = |k| {
-        let central_difference = |x: f64| value_along(k, x) - value_along(k, -x);
+        let central_difference = |x: f64| value_along_direction(k, x) - value_along_direction(k, -x);
         weights.iter().zip([h, 2.0 * h, 3.0 * h, 4.0 * h]).map(|(w, x)| central_difference(x) * (w / h)).sum()
     };
     (0..2 * NV + NU).map(derivative_along).collect()
 }
 
-fn assert_columns(what: &str, found: &[&[f64]], expected: &[f64], scale: f64) {
+fn assert_concatenated_columns(what: &str, found: &[&[f64]], expected: &[f64], scale: f64) {
     let found: Vec<f64> = found.concat();
     assert_eq!(found.len(), expected.len(), "{what}");
     let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -119,12 +119,12 @@ fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
         let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform_number(1.2)));
         let v = SVector::from_fn(|_, _| random.uniform_number(speed));
         let u = SVector::from_fn(|_, _| random.uniform_number(push));
-        check_step(&format!("{name}, {seed}"), m, method, random.uniform_number(1.0), (&q, &v, &u));
+        check_step_jacobians(&format!("{name}, {seed}"), m, method, random.uniform_number(1.0), (&q, &v, &u));
     }
 }
 
 /// Compares the Jacobians of one integration step with finite differences of steps.
-fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_step_jacobians<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     method: &S,
@@ -159,8 +159,13 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let q_blocks = [found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()];
     let v_blocks = [found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()];
     let largest_magnitude = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
-    assert_columns(&format!("{name}: configuration"), &q_blocks, &by_q, largest_magnitude(&q_blocks));
-    assert_columns(&format!("{name}: velocity"), &v_blocks, &by_v, largest_magnitude(&v_blocks));
+    assert_concatenated_columns(
+        &format!("{name}: configuration"),
+        &q_blocks,
+        &by_q,
+        largest_magnitude(&q_blocks),
+    );
+    assert_concatenated_columns(&format!("{name}: velocity"), &v_blocks, &by_v, largest_magnitude(&v_blocks));
     // Adjoint products equal products with the transposed blocks.
     let (a, b) = (
         SVector::from_fn(|_, _| random.uniform_number(1.0)),
@@ -180,7 +185,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 
 #[test]
 fn step_jacobians_agree_with_differences() {
-    let carrier = Carrier {};
+    let carrier = RotorCraftWithPendulum {};
     check_steps("carrier, Rk4", &carrier, &Rk4::step(0.02), 2.0, 5.0);
     check_steps("carrier, a long step of Rk4", &carrier, &Rk4::step(0.15), 4.0, 5.0);
     check_steps("carrier, Euler", &carrier, &SemiImplicitEuler::step(0.02), 2.0, 5.0);
@@ -191,7 +196,7 @@ fn step_jacobians_agree_with_differences() {
 }
 
 /// Compares the linear motion of the trait with differences of accelerations, also for loops.
-fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_linear_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     q: &SVector<f64, NQ>,
@@ -200,50 +205,52 @@ fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
 ) where
     M: Derivatives<NQ, NV, NU, Scalar = f64> + linkwork::Scleronomic,
 {
-    let acceleration_at = |q: &_, v: &_, u: &_| {
+    let acceleration_at_state = |q: &_, v: &_, u: &_| {
         Mechanism::forward_dynamics(m, 0.0, q, v, &Mechanism::generalized_forces(m, 0.0, q, v, u))
     };
     let found = m.linear_motion(q, v, u);
-    assert!((found.acceleration - acceleration_at(q, v, u)).amax() < 1e-12);
+    assert!((found.acceleration - acceleration_at_state(q, v, u)).amax() < 1e-12);
     let expected = derivatives_along_directions(|dq, dv, du| {
-        acceleration_at(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du))
+        acceleration_at_state(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du))
     });
     let expected: Vec<f64> = expected.iter().flatten().copied().collect();
     let scale = expected.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
     let blocks = [found.by_q.as_slice(), found.by_v.as_slice(), found.by_u.as_slice()];
-    assert_columns(name, &blocks, &expected, scale);
+    assert_concatenated_columns(name, &blocks, &expected, scale);
 }
 
 #[test]
 fn linear_system_predicts_perturbed_motions() {
     let mut random = Random::new(7);
-    let carrier = Carrier {};
-    let q =
-        carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform_number(1.0)));
+    let carrier = RotorCraftWithPendulum {};
+    let q = carrier.integrate(
+        &RotorCraftWithPendulum::neutral(&carrier),
+        &SVector::from_fn(|_, _| random.uniform_number(1.0)),
+    );
     let (v, u) = (
         SVector::from_fn(|_, _| random.uniform_number(1.0)),
         SVector::from_fn(|_, _| random.uniform_number(4.0)),
     );
-    check_motion("carrier", &carrier, &q, &v, &u);
+    check_linear_motion("carrier", &carrier, &q, &v, &u);
     // The matrix of the linear motion equals that of the mechanism's `linearize`.
     let (a, b) = carrier.linearize(&q, &v, &u);
     let found = carrier.linear_motion(&q, &v, &u);
-    assert!((found.a::<{ 2 * Carrier::NV }>() - a).amax() < 1e-11 * a.amax());
-    assert!((found.b::<{ 2 * Carrier::NV }>() - b).amax() < 1e-12 * b.amax());
+    assert!((found.a::<{ 2 * RotorCraftWithPendulum::NV }>() - a).amax() < 1e-11 * a.amax());
+    assert!((found.b::<{ 2 * RotorCraftWithPendulum::NV }>() - b).amax() < 1e-12 * b.amax());
 
     let driven = Driven { rate: 20.0 };
-    check_motion("driven", &at(&driven, 0.3), &[0.4].into(), &[1.0].into(), &[0.2].into());
+    check_linear_motion("driven", &at(&driven, 0.3), &[0.4].into(), &[1.0].into(), &[0.2].into());
 
     let linkage = Linkage {};
     let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
-    check_motion("linkage", &linkage, &q, &v, &[3.0].into());
+    check_linear_motion("linkage", &linkage, &q, &v, &[3.0].into());
 }
 
 /// A single step equals a simulation of that duration, for every method and with constraints.
 #[test]
 fn single_steps_equal_simulations() {
-    fn check_method<M, S, const NQ: usize, const NV: usize>(
+    fn check_discrete_derivatives_of_method<M, S, const NQ: usize, const NV: usize>(
         m: &M,
         method: S,
         h: f64,
@@ -262,12 +269,12 @@ fn single_steps_equal_simulations() {
     let (linkage, driven, h) = (Linkage {}, Driven { rate: 30.0 }, 0.01);
     let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
-    check_method(&linkage, Rk4::step(h), h, &q, &v);
-    check_method(&linkage, ImplicitMidpoint::step(h), h, &q, &v);
-    check_method(&linkage, SemiImplicitEuler::step(h), h, &q, &v);
-    check_method(&driven, Rk4::step(h), h, &[0.4].into(), &[1.0].into());
-    check_method(&driven, ImplicitMidpoint::step(h), h, &[0.4].into(), &[1.0].into());
-    check_method(&driven, Rosenbrock::step(h), h, &[0.4].into(), &[1.0].into());
+    check_discrete_derivatives_of_method(&linkage, Rk4::step(h), h, &q, &v);
+    check_discrete_derivatives_of_method(&linkage, ImplicitMidpoint::step(h), h, &q, &v);
+    check_discrete_derivatives_of_method(&linkage, SemiImplicitEuler::step(h), h, &q, &v);
+    check_discrete_derivatives_of_method(&driven, Rk4::step(h), h, &[0.4].into(), &[1.0].into());
+    check_discrete_derivatives_of_method(&driven, ImplicitMidpoint::step(h), h, &[0.4].into(), &[1.0].into());
+    check_discrete_derivatives_of_method(&driven, Rosenbrock::step(h), h, &[0.4].into(), &[1.0].into());
 }
 
 #[test]
@@ -288,15 +295,17 @@ fn invalid_sample_periods_are_errors() {
 #[test]
 fn frame_placements_by_index_equal_those_by_name() {
     let mut random = Random::new(3);
-    let carrier = Carrier {};
-    let q =
-        carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform_number(1.0)));
+    let carrier = RotorCraftWithPendulum {};
+    let q = carrier.integrate(
+        &RotorCraftWithPendulum::neutral(&carrier),
+        &SVector::from_fn(|_, _| random.uniform_number(1.0)),
+    );
     let (v, a) = (
         SVector::from_fn(|_, _| random.uniform_number(1.0)),
         SVector::from_fn(|_, _| random.uniform_number(1.0)),
     );
-    let load = index_of(<Carrier as Frames<11, 9>>::FRAMES, "load").expect("it is one");
-    let named = frame!(Carrier, "load");
+    let load = index_of(<RotorCraftWithPendulum as Frames<11, 9>>::FRAMES, "load").expect("it is one");
+    let named = frame!(RotorCraftWithPendulum, "load");
     assert_eq!(carrier.placement_of(load, 0.0, &q), Some(carrier.frame_placement(named, &q)));
     assert_eq!(carrier.velocity_of(load, 0.0, &q, &v), Some(carrier.frame_velocity(named, &q, &v)));
     assert_eq!(
@@ -304,7 +313,7 @@ fn frame_placements_by_index_equal_those_by_name() {
         Some(carrier.frame_acceleration(named, &q, &v, &a))
     );
     assert_eq!(carrier.jacobian_of(load, 0.0, &q), Some(carrier.frame_jacobian(named, &q)));
-    assert_eq!(carrier.placement_of(Carrier::FRAMES.len(), 0.0, &q), None);
+    assert_eq!(carrier.placement_of(RotorCraftWithPendulum::FRAMES.len(), 0.0, &q), None);
     // Frames of a driven mechanism depend on time.
     let driven = Driven { rate: 2.0 };
     let pivot = index_of(&Driven::FRAMES, "pivot").expect("it is one");

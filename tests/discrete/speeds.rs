@@ -2,7 +2,7 @@
 //! differences of steps.
 
 use super::check_steps;
-use super::implicit::check_constrained;
+use super::implicit::check_constrained_step_jacobians;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use support::random::Random;
@@ -145,11 +145,11 @@ fn constrained_step_jacobians_in_speeds_agree_with_differences() {
         let arms = Arms { span: near(1.9), rate: near(5.0) };
         let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
         let closed = bars.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
-        check_constrained(&format!("four bars, {k}"), &bars, &mut random, &closed);
+        check_constrained_step_jacobians(&format!("four bars, {k}"), &bars, &mut random, &closed);
         let bent = arms.integrate(&linkwork::Mechanism::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
-        check_constrained(&format!("arms, {k}"), &arms, &mut random, &bent);
+        check_constrained_step_jacobians(&format!("arms, {k}"), &arms, &mut random, &bent);
         let mut lifted: SVector<f64, 8> = Mechanism::neutral(&ball);
         lifted[2] = ball.radius;
-        check_constrained(&format!("ball, {k}"), &ball, &mut random, &lifted);
+        check_constrained_step_jacobians(&format!("ball, {k}"), &ball, &mut random, &lifted);
     }
 }

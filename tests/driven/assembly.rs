@@ -51,7 +51,7 @@ impl FourBar {
 /// Returns the pin of the crank and the end of the coupler of a four-bar linkage, by intersection of circles.
 pub fn linkage_corners([base, first, second, third]: [f64; 4], side: f64, angle: f64) -> [[f64; 2]; 2] {
     let pin = [first * angle.cos(), first * angle.sin()];
-    [pin, jansen::corner_of_triangle(pin, [base, 0.0], second, third, side)]
+    [pin, jansen::triangle_corner_from_sides(pin, [base, 0.0], second, third, side)]
 }
 
 /// Returns the bar lengths, the assembly mode and the crank angle of a random four-bar linkage. The sine of

@@ -22,15 +22,15 @@ four_bar!(
 /// Returns the first and second derivatives at zero, by central differences of order six.
 fn first_and_second_derivatives(f: impl Fn(f64) -> f64) -> [f64; 2] {
     let h = 2e-3;
-    let even_difference = |k: f64| f(k * h) + f(-k * h);
-    let second = (2.0 * even_difference(3.0) - 27.0 * even_difference(2.0) + 270.0 * even_difference(1.0)
+    let symmetric_sum = |k: f64| f(k * h) + f(-k * h);
+    let second = (2.0 * symmetric_sum(3.0) - 27.0 * symmetric_sum(2.0) + 270.0 * symmetric_sum(1.0)
         - 490.0 * f(0.0))
         / (180.0 * h * h);
     [time_derivative(f, 0.0), second]
 }
 
 /// Returns the reference torque on the crank of a four-bar linkage, from formulas independent of the library.
-fn crank_torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64 {
+fn reference_crank_torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64 {
     let [base, first, second, third] = bars;
     let pose_of_bar = |k: usize, angle: f64| -> [f64; 3] {
         let [pin, end] = linkage_corners(bars, side, angle);
@@ -73,7 +73,7 @@ fn random_four_bar_drives_obey_dalemberts_principle() {
         let (bars, side, angle) = random_linkage(&mut source, 0.4);
         let [base, first, second, third] = bars;
         let (speed, growth) = (source.uniform_number(5.0), source.uniform_number(20.0));
-        let expected = crank_torque(bars, side, angle, speed, growth);
+        let expected = reference_crank_torque(bars, side, angle, speed, growth);
         // The differences may use angles beyond the position with coupler and rocker in line.
         if !expected.is_finite() {
             continue;

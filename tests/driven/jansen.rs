@@ -53,7 +53,7 @@ pub type Point = [f64; 2];
 
 /// Returns the third corner of a triangle over `a` and `b` from its distances to them. The corner is to the
 /// left of the direction from `a` to `b` if `side` is 1.
-pub fn corner_of_triangle(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
+pub fn triangle_corner_from_sides(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
     let d = [b[0] - a[0], b[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];
     let along = (from_a * from_a - from_b * from_b + square) / (2.0 * square);
@@ -63,7 +63,7 @@ pub fn corner_of_triangle(a: Point, b: Point, from_a: f64, from_b: f64, side: f6
 
 /// Returns the ground coordinates of a body's point (`x`, `y`), in the body's frame with origin `a` and x
 /// axis towards `b`.
-fn body_point(a: Point, b: Point, x: f64, y: f64) -> Point {
+fn ground_coordinates_of_body_point(a: Point, b: Point, x: f64, y: f64) -> Point {
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
     let e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
     [a[0] + x * e[0] - y * e[1], a[1] + x * e[1] + y * e[0]]
@@ -76,10 +76,10 @@ struct Skeleton(Vec<(f64, Point, f64, [Point; 2])>);
 fn skeleton_at_angle(angle: f64) -> Skeleton {
     let (pivot, centre) = ([-0.38, -0.078], [0.0, 0.0]);
     let pin = [0.15 * angle.cos(), 0.15 * angle.sin()];
-    let top = corner_of_triangle(pivot, pin, 0.415, 0.5, 1.0);
-    let left = body_point(pivot, top, 0.026_098_795_180_722_9, 0.400_149_788_067_062);
-    let bottom = corner_of_triangle(pivot, pin, 0.393, 0.619, -1.0);
-    let rear = corner_of_triangle(left, bottom, 0.394, 0.367, -1.0);
+    let top = triangle_corner_from_sides(pivot, pin, 0.415, 0.5, 1.0);
+    let left = ground_coordinates_of_body_point(pivot, top, 0.026_098_795_180_722_9, 0.400_149_788_067_062);
+    let bottom = triangle_corner_from_sides(pivot, pin, 0.393, 0.619, -1.0);
+    let rear = triangle_corner_from_sides(left, bottom, 0.394, 0.367, -1.0);
     let rod_inertia = |m: f64, l: f64| m * l * l / 12.0;
     Skeleton(vec![
         (0.1, [0.075, 0.0], rod_inertia(0.1, 0.15), [centre, pin]),
@@ -100,7 +100,7 @@ impl Skeleton {
 
     fn center_of_bar(&self, k: usize) -> Point {
         let (_, com, _, [a, b]) = self.0[k];
-        body_point(a, b, com[0], com[1])
+        ground_coordinates_of_body_point(a, b, com[0], com[1])
     }
 }
 

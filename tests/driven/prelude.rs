@@ -26,7 +26,7 @@ struct Ring {
 }
 
 #[mechanism]
-struct Lagged {
+struct CartWithThrustLag {
     lag: f64,
     command: Input,
     #[body(mass = 1)]
@@ -57,7 +57,7 @@ fn wrapped_driven_mechanisms_need_no_other_trait() {
     // 2.2 a = −9 (1.21 − 1).
     assert!((a[0] + 9.0 * 0.21 / 2.2).abs() < 1e-12);
 
-    let cart = Lagged { lag: 1.0, thrust: 5.0 };
+    let cart = CartWithThrustLag { lag: 1.0, thrust: 5.0 };
     let whole = cart.extended();
     let tau = whole.generalized_forces(0.0, &[0.0].into(), &[0.0, 5.0].into(), &[7.0].into());
     let a = whole.forward_dynamics(0.0, &[0.0].into(), &[0.0, 5.0].into(), &tau);

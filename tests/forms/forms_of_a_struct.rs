@@ -20,7 +20,7 @@ pub struct Plain {
 #[repr(C)]
 #[non_exhaustive]
 #[must_use]
-pub struct Adorned {
+pub struct CartWithAllAttributes {
     /// Mass of the cart, kg.
     #[doc(alias = "weight")]
     pub mass: f64,
@@ -38,7 +38,7 @@ pub struct Adorned {
 
 /// Mechanism whose scalar type is `f32`.
 #[mechanism(scalar = f32)]
-struct Single {
+struct SinglePrecisionCart {
     #[body(mass = 0.1)]
     cart: Body,
     #[joint(ground -> cart, along = -x)]
@@ -62,10 +62,10 @@ where
 
 #[test]
 fn all_struct_forms_compile() {
-    let adorned = Adorned { mass: 2.0, _serial: 7.0 };
+    let adorned = CartWithAllAttributes { mass: 2.0, _serial: 7.0 };
     assert_eq!(adorned.total_mass() + adorned._serial, 9.0);
     assert_eq!(Plain.total_mass(), 1.0);
-    assert_eq!(Single {}.total_mass(), 0.1_f32);
+    assert_eq!(SinglePrecisionCart {}.total_mass(), 0.1_f32);
     let generic = Generic { g: 9.81_f32 };
     assert_eq!(generic.total_mass(), 2.0_f32);
 }

@@ -72,11 +72,11 @@ mod own {
 
     /// Requires the argument to implement the local traits of this module, which have the names of traits in
     /// the prelude.
-    fn takes(_: impl Mechanism + Real) {}
+    fn require_local_traits(_: impl Mechanism + Real) {}
 
     pub fn run() -> usize {
         at();
-        takes(());
+        require_local_traits(());
         simulate();
         frame();
         let _ = (Error, Sample, Body, Result, Option, Lanes, Cart { m: 1.0 }.prepare());

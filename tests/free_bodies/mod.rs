@@ -7,7 +7,7 @@ use support::random::Random;
 
 /// Free rigid body that an inerter connects to the ground.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
-struct Moored {
+struct BodyOnInerter {
     inertance: f64,
     #[body(mass = 1, inertia = diagonal(0.1, 0.2, 0.3))]
     hull: Body,
@@ -21,7 +21,7 @@ struct Moored {
 
 /// Particle on a body, placed along an axis of the ground.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
-struct Loaded {
+struct BodyWithPlacedParticle {
     mass: f64,
     way: Coordinate,
     #[body(mass = 1, inertia = diagonal(0.1, 0.2, 0.3))]
@@ -89,9 +89,10 @@ macro_rules! free_body {
                 assert_near("∂v̇/∂q, prepared", &found.0, &by_q);
                 assert_near("∂v̇/∂v, prepared", &found.1, &by_v);
                 let u = random.random_vector::<{ $type::NU }>(2.0);
-                let acceleration_at = |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
-                let by_q = difference_columns(|e| acceleration_at(&m.integrate(&q, e), &v));
-                let by_v = difference_columns(|e| acceleration_at(&q, &(v + e)));
+                let acceleration_at_state =
+                    |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
+                let by_q = difference_columns(|e| acceleration_at_state(&m.integrate(&q, e), &v));
+                let by_v = difference_columns(|e| acceleration_at_state(&q, &(v + e)));
                 let (a, _) = m.linearize(&q, &v, &u);
                 let block_of_state_matrix = |column: usize| a.fixed_view::<NV, NV>(NV, column).into_owned();
                 assert_near("linearised by q", &block_of_state_matrix(0), &by_q);
@@ -101,6 +102,10 @@ macro_rules! free_body {
     };
 }
 
-free_body!(an_inerter_to_the_ground_sees_where_a_body_is, Moored { inertance: 0.5 }, Moored);
-free_body!(a_particle_along_axes_of_the_ground_sees_how_a_body_turns, Loaded { mass: 0.7 }, Loaded);
+free_body!(an_inerter_to_the_ground_sees_where_a_body_is, BodyOnInerter { inertance: 0.5 }, BodyOnInerter);
+free_body!(
+    a_particle_along_axes_of_the_ground_sees_how_a_body_turns,
+    BodyWithPlacedParticle { mass: 0.7 },
+    BodyWithPlacedParticle
+);
 free_body!(an_inerter_between_bodies_couples_them, Pair { inertance: 0.6 }, Pair);

@@ -1,7 +1,7 @@
 //! Free-body diagrams of bodies with contacts, under prescribed contact forces and under the forces of the
 //! complementarity conditions.
 
-use super::check_diagram;
+use super::check_free_body_diagram_sums;
 use linkwork::contact::{self, Touch};
 use linkwork::free_body::Origin;
 use linkwork::prelude::*;
@@ -63,11 +63,11 @@ fn prescribed_contact_forces_balance_momentum_rates() {
         let tau = m.generalized_forces(&q, &u);
         let held = contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap();
         let state_after = |h: f64| (m.integrate(&q, &(v * h + held.a * (0.5 * h * h))), v + held.a * h);
-        check_diagram(&m.on_trunk_under(&q, &v, &u, &held.forces), |h| {
+        check_free_body_diagram_sums(&m.on_trunk_under(&q, &v, &u, &held.forces), |h| {
             let (q, v) = state_after(h);
             [m.p_trunk(&q, &v), m.h_trunk(&q, &v), m.c_trunk(&q)]
         });
-        check_diagram(&m.on_leg_under(&q, &v, &u, &held.forces), |h| {
+        check_free_body_diagram_sums(&m.on_leg_under(&q, &v, &u, &held.forces), |h| {
             let (q, v) = state_after(h);
             [m.p_leg(&q, &v), m.h_leg(&q, &v), m.c_leg(&q)]
         });

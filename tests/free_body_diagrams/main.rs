@@ -14,11 +14,14 @@ mod places;
 const DIFFERENCE: f64 = 2e-6;
 
 /// Momentum, angular momentum about the ground's origin, and centre of mass of a body at an instant.
-type Seen = [SVector<f64, 3>; 3];
+type BodyMomentumState = [SVector<f64, 3>; 3];
 
 /// Compares the sums of the diagram with the rates of the momenta, of which `seen` gives the values at a
 /// time.
-fn check_diagram<const N: usize>(diagram: &Diagram<f64, N>, seen: impl Fn(f64) -> Seen) {
+fn check_free_body_diagram_sums<const N: usize>(
+    diagram: &Diagram<f64, N>,
+    seen: impl Fn(f64) -> BodyMomentumState,
+) {
     let h = 1e-4;
     let (before, now, after) = (seen(-h), seen(0.0), seen(h));
     let momentum_rate = |k: usize| (after[k] - before[k]) / (2.0 * h);
@@ -48,7 +51,7 @@ macro_rules! check {
             let (q, v) = ($m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
             [$m.$momentum(&q, &v), $m.$angular(&q, &v), $m.$center(&q)]
         };
-        check_diagram(&$m.$body(&q, &v, $u), momenta_after)
+        check_free_body_diagram_sums(&$m.$body(&q, &v, $u), momenta_after)
     }};
 }
 
@@ -329,7 +332,7 @@ fn friction_acts_at_the_point_of_the_normal_force() {
         let tau = SVector::zeros();
         let (a, normal) = m.constrained_dynamics(t, &q, &v, &tau);
         let diagram = m.on_disk(t, &q, &v);
-        check_diagram(&diagram, |h| {
+        check_free_body_diagram_sums(&diagram, |h| {
             let (q, v) = (m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
             [m.p(t + h, &q, &v), m.h(t + h, &q, &v), SVector::from([q[0], q[1], 0.0])]
         });

@@ -1,7 +1,7 @@
 //! Bodies and particles placed by `at` and `frame`: the forces that enforce their placement act on them and,
 //! in reverse, on the bodies that carry them.
 
-use super::check_diagram;
+use super::check_free_body_diagram_sums;
 use linkwork::free_body::Origin;
 use linkwork::prelude::*;
 use support::random::Random;
@@ -63,7 +63,7 @@ struct Places {
 }
 
 #[test]
-fn places_carry_the_reactions_of_bodies_on_them() {
+fn free_body_diagrams_include_reactions_of_placed_elements() {
     let m = Places {};
     let mut random = Random::new(12);
     for t in [0.0, 0.4, 1.3] {
@@ -71,15 +71,15 @@ fn places_carry_the_reactions_of_bodies_on_them() {
         let (v, u) = (random.random_vector(1.5), random.random_vector(4.0));
         let a = m.forward_dynamics(t, &q, &v, &m.generalized_forces(t, &q, &u));
         let state_after = |h: f64| (m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
-        check_diagram(&m.on_arm(t, &q, &v, &u), |h| {
+        check_free_body_diagram_sums(&m.on_arm(t, &q, &v, &u), |h| {
             let (q, v) = state_after(h);
             [m.p_arm(t + h, &q, &v), m.h_arm(t + h, &q, &v), m.c_arm(t + h, &q)]
         });
-        check_diagram(&m.on_bead(t, &q, &v, &u), |h| {
+        check_free_body_diagram_sums(&m.on_bead(t, &q, &v, &u), |h| {
             let (q, v) = state_after(h);
             [m.p_bead(t + h, &q, &v), m.h_bead(t + h, &q, &v), m.c_bead(t + h, &q)]
         });
-        check_diagram(&m.on_plate(t, &q, &v, &u), |h| {
+        check_free_body_diagram_sums(&m.on_plate(t, &q, &v, &u), |h| {
             let (q, v) = state_after(h);
             [m.p_plate(t + h, &q, &v), m.h_plate(t + h, &q, &v), m.c_plate(t + h, &q)]
         });

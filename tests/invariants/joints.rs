@@ -1,6 +1,6 @@
 //! Properties of joints: names, order, and equivalence to chains of simpler joints.
 
-use super::{IDENTITY, check_undamped};
+use super::{IDENTITY, check_bias_quadratic_in_velocity};
 use linkwork::nalgebra::{SMatrix, SVector, Vector3};
 use linkwork::{frame, mechanism};
 use support::compare::{assert_close, assert_same_dynamics};
@@ -68,7 +68,7 @@ fn joints_may_be_declared_in_any_order() {
     }
     assert_eq!(FromTheHand::CONFIGURATION, ["mast.qx", "mast.qy", "mast.qz", "mast.qw", "wrist", "shoulder"]);
     assert_eq!(FromTheHand::VELOCITIES, ["mast.wx", "mast.wy", "mast.wz", "wrist", "shoulder"]);
-    check_undamped(&FromTheHand {});
+    check_bias_quadratic_in_velocity(&FromTheHand {});
 
     let (usual, turned) = (FromTheGround {}, FromTheHand {});
     let reordered_velocity = |v: &SVector<f64, 5>| SVector::from([v[2], v[3], v[4], v[1], v[0]]);
@@ -186,12 +186,15 @@ macro_rules! check_against_chain {
             let mut positions: Vec<f64> = position.take(first).collect();
             positions.extend(quaternion.coords.iter());
             let jq = SVector::from_column_slice(&positions);
-            let joint_vector = |pivot: f64, linear: Vector3<f64>, angular: Vector3<f64>| {
+            let pivot_and_twist_entries = |pivot: f64, linear: Vector3<f64>, angular: Vector3<f64>| {
                 let all: Vec<f64> =
                     [pivot].iter().chain(&linear).take(first).chain(&angular).copied().collect();
                 SVector::from_column_slice(&all)
             };
-            let (jv, ja) = (joint_vector(v[0], v_linear, v_angular), joint_vector(a[0], a_linear, a_angular));
+            let (jv, ja) = (
+                pivot_and_twist_entries(v[0], v_linear, v_angular),
+                pivot_and_twist_entries(a[0], a_linear, a_angular),
+            );
 
             let energies = [joint.kinetic_energy(&jq, &jv), joint.potential_energy(&jq)];
             let expected = [chain.kinetic_energy(&q, &v), chain.potential_energy(&q)];
@@ -223,7 +226,7 @@ fn free_joint_equals_a_stage_and_three_pins() {
 #[test]
 fn welded_bodies_equal_one_rigid_body() {
     #[mechanism(gravity = -9.81 * y)]
-    struct Welded {
+    struct WeldedBodies {
         #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.02, 0.03, 0.04))]
         first: Body,
         #[body(mass = 3, com = 0.2 * y, inertia = diagonal(0.05, 0.06, 0.07))]
@@ -236,10 +239,10 @@ fn welded_bodies_equal_one_rigid_body() {
     // The second body has the axes of the first; its centre is at (0.5, 0.2).
     let inertia = 0.04 + 2.0 * 0.1 * 0.1 + 0.07 + 3.0 * (0.5 * 0.5 + 0.2 * 0.2);
     let (q, v) = (SVector::from([0.3]), SVector::from([1.0]));
-    assert_close("inertia about the pin", Welded {}.mass_matrix(&q).as_slice(), &[inertia], IDENTITY);
+    assert_close("inertia about the pin", WeldedBodies {}.mass_matrix(&q).as_slice(), &[inertia], IDENTITY);
     let (x, y) = (2.0 * 0.1 + 3.0 * 0.5, 3.0 * 0.2);
     let height = 0.3_f64.sin() * x + 0.3_f64.cos() * y;
-    assert_close("potential energy", &[Welded {}.potential_energy(&q)], &[9.81 * height], IDENTITY);
+    assert_close("potential energy", &[WeldedBodies {}.potential_energy(&q)], &[9.81 * height], IDENTITY);
     let lever = 0.3_f64.cos() * x - 0.3_f64.sin() * y;
-    assert_close("gravity", Welded {}.bias_forces(&q, &v).as_slice(), &[9.81 * lever], IDENTITY);
+    assert_close("gravity", WeldedBodies {}.bias_forces(&q, &v).as_slice(), &[9.81 * lever], IDENTITY);
 }

@@ -42,8 +42,8 @@ fn check_trait_consequences<M, const NQ: usize, const NV: usize, const NU: usize
         let q = random.random_configuration(m);
         let (v, tau) = (random.random_vector(1.0), random.random_vector(1.0));
         check_equation_of_motion(m, &q, &v, &tau);
-        check_energy(m, &q, &v, &tau, dissipation(&v));
-        check_configurations(m, &q, &v, &random.random_vector(1.0));
+        check_power_balance(m, &q, &v, &tau, dissipation(&v));
+        check_configuration_manifold(m, &q, &v, &random.random_vector(1.0));
     }
 }
 
@@ -74,7 +74,7 @@ fn check_equation_of_motion<M, const NQ: usize, const NV: usize, const NU: usize
     assert_close("ṗ", expected.as_slice(), matrix_rate_at_zero(momentum_at).as_slice(), RATE);
 }
 
-fn check_energy<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_power_balance<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -99,7 +99,7 @@ fn check_energy<M, const NQ: usize, const NV: usize, const NU: usize>(
     assert_close("d(T + U)/dt", &[power], &[v.dot(tau) - dissipation], RATE);
 }
 
-fn check_configurations<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_configuration_manifold<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -120,7 +120,7 @@ fn check_configurations<M, const NQ: usize, const NV: usize, const NU: usize>(
 }
 
 /// Checks that the velocity-dependent bias forces are quadratic in the velocity if there are no dashpots.
-fn check_undamped<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
+fn check_bias_quadratic_in_velocity<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
@@ -138,7 +138,7 @@ macro_rules! undamped {
         $(
             #[test]
             fn $test() {
-                check_undamped(&$mechanism);
+                check_bias_quadratic_in_velocity(&$mechanism);
             }
         )*
     };
@@ -321,7 +321,7 @@ fn spacecraft_conserves_momentum_and_energy() {
 fn workshop_energy_changes_by_work_minus_dissipation() {
     let m = sample_workshop();
     let input_at_time = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
-    let net_power = |t: f64, q: &_, v: &SVector<f64, 3>| {
+    let input_power_minus_dissipation = |t: f64, q: &_, v: &SVector<f64, 3>| {
         v.dot(&m.generalized_forces(q, &input_at_time(t)))
             - (m.shoulder_damping * v[0] * v[0]
                 + m.slide_damping * v[1] * v[1]
@@ -339,9 +339,12 @@ fn workshop_energy_changes_by_work_minus_dissipation() {
         |k: usize| m.kinetic_energy(&samples[k].q, &samples[k].v) + m.potential_energy(&samples[k].q);
     // Integration by Simpson's rule.
     let simpson_weight = |k: usize| [1.0, 4.0, 2.0][if k == 0 || k == 2000 { 0 } else { 2 - k % 2 }];
-    let work: f64 =
-        samples.iter().enumerate().map(|(k, s)| simpson_weight(k) * net_power(s.t, &s.q, &s.v)).sum::<f64>()
-            / 3e3;
+    let work: f64 = samples
+        .iter()
+        .enumerate()
+        .map(|(k, s)| simpson_weight(k) * input_power_minus_dissipation(s.t, &s.q, &s.v))
+        .sum::<f64>()
+        / 3e3;
     assert_close("energy", &[total_energy(2000) - total_energy(0)], &[work], 1e-9);
 }
 

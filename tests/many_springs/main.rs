@@ -27,9 +27,9 @@ fn potential_gradient<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let energy_slope = |i: usize| {
+    let potential_energy_slope = |i: usize| {
         derivative_at_zero(|s| [m.potential_energy(0.0, &m.integrate(q, &(unit_vector::<NV>(i) * s)))].into())
             [0]
     };
-    SVector::from_fn(|i, _| energy_slope(i))
+    SVector::from_fn(|i, _| potential_energy_slope(i))
 }

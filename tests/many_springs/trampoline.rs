@@ -3,7 +3,7 @@
 use super::{derivative_at_zero, potential_gradient, unit_vector};
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use support::compare::{assert_close, assert_same_dynamics, assert_similar};
+use support::compare::{assert_close, assert_close_relative_to_largest, assert_same_dynamics};
 use support::random::Random;
 
 /// Deck on springs and dashpots around it, with a swinging arm.
@@ -308,7 +308,7 @@ fn spring_forces_are_gradients_of_the_stored_energy() {
     for _ in 0..5 {
         let q = random.random_configuration(&m);
         let v: SVector<f64, 7> = random.random_vector(2.0);
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂U/∂q",
             m.bias_forces(&q, &SVector::zeros()).as_slice(),
             potential_gradient(&m, &q).as_slice(),
@@ -336,7 +336,12 @@ fn all_functions_agree_for_many_springs() {
         let rate = derivative_at_zero(|s| {
             m.generalized_momentum(&m.integrate(&q, &(v * s + a * (s * s / 2.0))), &(v + a * s))
         });
-        assert_similar("ṗ", (m.momentum_rate(&q, &v) + tau).as_slice(), rate.as_slice(), 1e-6);
+        assert_close_relative_to_largest(
+            "ṗ",
+            (m.momentum_rate(&q, &v) + tau).as_slice(),
+            rate.as_slice(),
+            1e-6,
+        );
     }
 }
 
@@ -376,7 +381,7 @@ fn derivatives_include_the_dependencies_of_passive_forces() {
                 ),
             ];
             for (what, column, expected) in columns {
-                assert_similar(what, column.as_slice(), expected.as_slice(), 1e-8);
+                assert_close_relative_to_largest(what, column.as_slice(), expected.as_slice(), 1e-8);
             }
         }
         let u = SVector::from([0.3]);
@@ -403,5 +408,5 @@ fn prepared_trampoline_equals_the_trampoline() {
     let single = Trampoline::<f32> { k: 30.0, c: 0.7 };
     let h = single.bias_forces(&single.neutral(), &SVector::from_element(0.1));
     let exact = sample_trampoline().bias_forces(&sample_trampoline().neutral(), &SVector::from_element(0.1));
-    assert_similar("single precision", h.cast::<f64>().as_slice(), exact.as_slice(), 1e-5);
+    assert_close_relative_to_largest("single precision", h.cast::<f64>().as_slice(), exact.as_slice(), 1e-5);
 }

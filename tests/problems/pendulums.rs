@@ -66,7 +66,7 @@ struct TwoPendulums {
 
 /// Follows a trajectory in absolute angles, to a hundred times the error of another program's integration in
 /// double precision (DOP853): `errors` at the times of the table.
-fn check_two_pendulums<const N: usize>(name: &str, errors: [f64; N]) {
+fn check_pendulum_trajectory_in_angles<const N: usize>(name: &str, errors: [f64; N]) {
     let rows = Record::load("problems/pendulums.json").rows_with_key::<5>(name);
     assert_eq!(rows.len(), N + 1);
     let [_, a1, a2, r1, r2] = rows[0];
@@ -81,12 +81,12 @@ fn check_two_pendulums<const N: usize>(name: &str, errors: [f64; N]) {
 
 #[test]
 fn chaotic_double_pendulum_agrees_with_its_reference() {
-    check_two_pendulums("double", [4.7e-14, 6.7e-14, 1.6e-12, 1.1e-11, 6.1e-8]);
+    check_pendulum_trajectory_in_angles("double", [4.7e-14, 6.7e-14, 1.6e-12, 1.1e-11, 6.1e-8]);
 }
 
 #[test]
 fn double_pendulum_of_small_angles_agrees_with_its_reference() {
-    check_two_pendulums("double_small", [4.7e-14, 2.8e-14, 2.2e-14, 2.2e-13]);
+    check_pendulum_trajectory_in_angles("double_small", [4.7e-14, 2.8e-14, 2.2e-14, 2.2e-13]);
 }
 
 /// Pendulum chain of five point masses on massless rods.

@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// Random mechanism with several limbs on a trunk. All limbs have the same joints; their values may differ.
 #[derive(Clone, Debug)]
-pub struct Creature {
+pub struct RandomLimbMechanism {
     /// Index into `TRUNKS` of the body that carries the limbs.
     trunk: usize,
     limbs: usize,
@@ -62,7 +62,7 @@ const TRUNKS: [&str; 4] = ["ground", "free body", "pinned body", "arm on a free 
 const KINDS: [&str; 4] = ["Pin", "Sleeve", "Screw", "Ball"];
 
 /// Returns creatures with two to five limbs of up to `joints` joints.
-pub fn random_creatures(joints: usize) -> impl Strategy<Value = Creature> {
+pub fn random_creatures(joints: usize) -> impl Strategy<Value = RandomLimbMechanism> {
     let kinds = vec((0..KINDS.len(), 0..3_usize), 1..=joints);
     let random_end = || (0..7_usize, 0..4_usize);
     let interaction = (0..INTERACTIONS.len(), random_end(), random_end())
@@ -70,11 +70,21 @@ pub fn random_creatures(joints: usize) -> impl Strategy<Value = Creature> {
     let flags = any::<[bool; 4]>();
     let parts = (0..TRUNKS.len(), 2..6_usize, kinds, flags, vec(interaction, 0..=3), vec(-1.0..1.0_f64, 61));
     parts.prop_map(|(trunk, limbs, joints, [forked, mirrored, symbolic, sprung], interactions, numbers)| {
-        Creature { trunk, limbs, joints, forked, mirrored, symbolic, sprung, interactions, numbers }
+        RandomLimbMechanism {
+            trunk,
+            limbs,
+            joints,
+            forked,
+            mirrored,
+            symbolic,
+            sprung,
+            interactions,
+            numbers,
+        }
     })
 }
 
-impl Creature {
+impl RandomLimbMechanism {
     /// Returns the generated source: the arguments of the attribute and the struct.
     pub fn creature_source(&self) -> (String, String) {
         let mut fields = String::new();
@@ -121,9 +131,9 @@ impl Creature {
         if is_refused {
             return;
         }
-        let indexed_number = |which: usize| self.numbers[(5 * k + which) % self.numbers.len()];
-        let a = format!("{a}.at([{:?}, {:?}, 0.3])", indexed_number(0), indexed_number(1));
-        let b = format!("{b}.at([{:?}, 0.7, {:?}])", indexed_number(2), indexed_number(3));
+        let stored_number_at_index = |which: usize| self.numbers[(5 * k + which) % self.numbers.len()];
+        let a = format!("{a}.at([{:?}, {:?}, 0.3])", stored_number_at_index(0), stored_number_at_index(1));
+        let b = format!("{b}.at([{:?}, 0.7, {:?}])", stored_number_at_index(2), stored_number_at_index(3));
         let text = INTERACTIONS[kind].replace("@a", &a).replace("@b", &b).replace("@p", &p).replace("@q", &q);
         let text = if one == "Sleeve" { text.replace("Torque", "Force") } else { text };
         let _ = writeln!(out, "{}", text.replacen("#:", &format!("between{k}:"), 1));
@@ -157,12 +167,12 @@ impl Creature {
 
     fn write_joint(&self, limb: usize, k: usize, parent: &str, out: &mut String) {
         let (kind, axis) = self.joints[k];
-        let indexed_number = |which: usize| self.random_number_of_joint(limb, k, which);
+        let stored_number_at_index = |which: usize| self.random_number_of_joint(limb, k, which);
         // Signs of mirrored limbs: left and right, front and back.
         let side = if limb.is_multiple_of(2) { 1.0 } else { -1.0 };
         let end = if limb / 2 == 0 { 1.0 } else { -1.0 };
         let mass = match (self.symbolic, k % 2) {
-            (false, _) => format!("{:?}", 1.5 + indexed_number(0)),
+            (false, _) => format!("{:?}", 1.5 + stored_number_at_index(0)),
             (true, 0) => "common".to_string(),
             (true, _) => {
                 let _ = writeln!(out, "mass{limb}_{k}: f64,");
@@ -173,25 +183,29 @@ impl Creature {
             out,
             "#[body(mass = {mass}, com = [{:?}, {:?}, {:?}], inertia = cuboid({mass}, 0.3, 0.2, {:?}))] \
              limb{limb}_{k}: Body,",
-            0.2 * indexed_number(1) * end,
-            0.2 * indexed_number(2) * side,
-            0.3 * indexed_number(3),
-            0.5 + 0.2 * indexed_number(4)
+            0.2 * stored_number_at_index(1) * end,
+            0.2 * stored_number_at_index(2) * side,
+            0.3 * stored_number_at_index(3),
+            0.5 + 0.2 * stored_number_at_index(4)
         );
         let turned = if self.mirrored {
             String::new()
         } else {
-            format!(".rotated(z({:?}), x({:?}))", indexed_number(5), indexed_number(6))
+            format!(".rotated(z({:?}), x({:?}))", stored_number_at_index(5), stored_number_at_index(6))
         };
         let sign = if side < 0.0 && self.mirrored { "-" } else { "" };
         let axis = ["x", "y", "z"][axis];
         let words = match KINDS[kind] {
             "Pin" => format!(", about = {sign}{axis}"),
             "Sleeve" => format!(", along = {sign}{axis}"),
-            "Screw" => format!(", about = {axis}, pitch = {:?}", 0.2 + 0.1 * indexed_number(7)),
+            "Screw" => format!(", about = {axis}, pitch = {:?}", 0.2 + 0.1 * stored_number_at_index(7)),
             _ => String::new(),
         };
-        let at = [0.3 * end + 0.1 * indexed_number(8), (0.2 + 0.1 * indexed_number(9)) * side, -0.3];
+        let at = [
+            0.3 * end + 0.1 * stored_number_at_index(8),
+            (0.2 + 0.1 * stored_number_at_index(9)) * side,
+            -0.3,
+        ];
         let _ = writeln!(
             out,
             "#[joint({parent}.at({at:?}){turned} -> limb{limb}_{k}{words})] joint{limb}_{k}: {},",
@@ -202,8 +216,8 @@ impl Creature {
                 out,
                 "#[acts(on = joint{limb}_{k}, stiffness = {:?})] spring{limb}_{k}: Spring,
                  #[acts(on = joint{limb}_{k}, damping = {:?})] dashpot{limb}_{k}: Dashpot,",
-                5.0 + indexed_number(10),
-                0.5 + 0.2 * indexed_number(11)
+                5.0 + stored_number_at_index(10),
+                0.5 + 0.2 * stored_number_at_index(11)
             );
         }
     }

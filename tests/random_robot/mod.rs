@@ -70,8 +70,8 @@ impl Link {
     }
 
     fn write_link(&self, k: usize, [angles, axes, lengths]: [f64; 3], out: &mut String) {
-        let indexed_number = |which: usize| self.numbers[which];
-        let (mass, s) = ((1.5 + indexed_number(12)) * self.size, self.size);
+        let stored_number_at_index = |which: usize| self.numbers[which];
+        let (mass, s) = ((1.5 + stored_number_at_index(12)) * self.size, self.size);
         let _ = writeln!(
             out,
             "#[body(mass = {mass:?}, com = {}, inertia = cuboid({mass:?}, {s:?}, {:?}, \
@@ -79,18 +79,22 @@ impl Link {
             self.noisy_vector_text(3, lengths),
             0.7 * s,
             0.4 * s,
-            if self.present[5] { indexed_number(13) } else { angles * indexed_number(13) },
+            if self.present[5] { stored_number_at_index(13) } else { angles * stored_number_at_index(13) },
         );
         let angle_with_noise = |i: usize| match self.turns[i] {
-            4 => indexed_number(14 + i),
-            turns => turns as f64 * FRAC_PI_2 + angles * indexed_number(14 + i),
+            4 => stored_number_at_index(14 + i),
+            turns => turns as f64 * FRAC_PI_2 + angles * stored_number_at_index(14 + i),
         };
         let parent = match k {
             0 => "ground".to_string(),
             _ => format!("b{}", k - 1 - self.parent.min(k - 1)),
         };
         let (word, kind) = if self.slides { ("along", "Sleeve") } else { ("about", "Pin") };
-        let axis = format!("unit([{:?}, {:?}, 1])", axes * indexed_number(17), axes * indexed_number(18));
+        let axis = format!(
+            "unit([{:?}, {:?}, 1])",
+            axes * stored_number_at_index(17),
+            axes * stored_number_at_index(18)
+        );
         let _ = writeln!(
             out,
             "#[joint({parent}.at({}).rotated(z({:?}), y({:?}), x({:?})) -> b{k}, {word} = {axis})] j{k}: \

@@ -93,7 +93,7 @@ impl<'g> CompiledMechanism<'g> {
 fn speed_transformation(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
     let speeds = model.speeds.as_ref().expect("there are speeds");
     let state = State { q: q.to_vec(), ..State::default() };
-    [&speeds.of_rates, &speeds.rates]
+    [&speeds.velocity_to_speed_matrix, &speeds.rates]
         .map(|m| m.iter().map(|row| eval(row, &|s| state.value_of_symbol(s))).collect())
 }
 
@@ -197,11 +197,11 @@ fn check_tree(tree: &Tree, seed: u64) -> bool {
     let item = item.trim_end().trim_end_matches('}').to_string() + &speeds + "}";
     let with = CompiledMechanism::compile_source(&(arguments, item.clone()), &graph);
     let with = with.unwrap_or_else(|messages| panic!("{}\n{item}", messages.join("\n")));
-    check_functions(&plain, &with, &mut random, seed);
+    check_functions_in_speeds(&plain, &with, &mut random, seed);
     true
 }
 
-fn check_functions(
+fn check_functions_in_speeds(
     plain: &CompiledMechanism<'_>,
     with: &CompiledMechanism<'_>,
     random: &mut Random,
@@ -290,12 +290,17 @@ fn check_functions(
         &transposed_rows(&centroidal).concat(),
         TOLERANCE,
     );
-    check_rates(plain, with, &ours, &theirs);
+    check_rates_along_motion(plain, with, &ours, &theirs);
     check_derivatives(plain, with, &ours, &z);
 }
 
 /// Checks generated functions that are rates along the motion, with and without declared speeds.
-fn check_rates(plain: &CompiledMechanism<'_>, with: &CompiledMechanism<'_>, ours: &State, theirs: &State) {
+fn check_rates_along_motion(
+    plain: &CompiledMechanism<'_>,
+    with: &CompiledMechanism<'_>,
+    ours: &State,
+    theirs: &State,
+) {
     let n = plain.model.nv();
     let way = plain.configuration_rates(&ours.q, &theirs.v);
     let state_after = |e: f64| State {

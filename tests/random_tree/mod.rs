@@ -91,9 +91,18 @@ impl Tree {
         for (k, (kind, first, second)) in self.ties.iter().enumerate() {
             let (first, second) = (first % self.limbs.len(), second % self.limbs.len());
             let other = if first == second { "ground".to_string() } else { format!("body{second}") };
-            let indexed_number = |which: usize| self.limbs[first].indexed_number(which + 3 * k);
-            let a = format!("body{first}.at([{:?}, 0.8, {:?}])", indexed_number(0), indexed_number(1));
-            let b = format!("{other}.at([{:?}, {:?}, 1.1])", indexed_number(2), indexed_number(3));
+            let stored_number_at_index =
+                |which: usize| self.limbs[first].stored_number_at_index(which + 3 * k);
+            let a = format!(
+                "body{first}.at([{:?}, 0.8, {:?}])",
+                stored_number_at_index(0),
+                stored_number_at_index(1)
+            );
+            let b = format!(
+                "{other}.at([{:?}, {:?}, 1.1])",
+                stored_number_at_index(2),
+                stored_number_at_index(3)
+            );
             let tie = TIES[*kind].replace("@a", &a).replace("@b", &b);
             let tie = tie.replace("way#", &format!("way{k}")).replace("@o", &format!("body{first}"));
             let _ = writeln!(fields, "{}", tie.replace("#:", &format!("tie{k}:")));
@@ -104,25 +113,32 @@ impl Tree {
 }
 
 impl Limb {
-    fn indexed_number(&self, k: usize) -> f64 {
+    fn stored_number_at_index(&self, k: usize) -> f64 {
         self.numbers[k % self.numbers.len()]
     }
 
     fn vector_text(&self, k: usize) -> String {
         format!(
             "[{:?}, {:?}, {:?}]",
-            self.indexed_number(k),
-            self.indexed_number(k + 1),
-            self.indexed_number(k + 2)
+            self.stored_number_at_index(k),
+            self.stored_number_at_index(k + 1),
+            self.stored_number_at_index(k + 2)
         )
     }
 
     fn axis_text(&self, k: usize) -> String {
         if self.plain_axes {
-            let sign = if self.indexed_number(k) < 0.0 { "-" } else { "" };
-            format!("{sign}{}", ["x", "y", "z"][(self.indexed_number(k + 1).abs() * 3.0) as usize % 3])
+            let sign = if self.stored_number_at_index(k) < 0.0 { "-" } else { "" };
+            format!(
+                "{sign}{}",
+                ["x", "y", "z"][(self.stored_number_at_index(k + 1).abs() * 3.0) as usize % 3]
+            )
         } else {
-            format!("unit([{:?}, {:?}, 1.5])", self.indexed_number(k), self.indexed_number(k + 1))
+            format!(
+                "unit([{:?}, {:?}, 1.5])",
+                self.stored_number_at_index(k),
+                self.stored_number_at_index(k + 1)
+            )
         }
     }
 
@@ -132,7 +148,10 @@ impl Limb {
             let _ = writeln!(out, "mass{k}: f64, length{k}: f64,");
             (format!("mass{k}"), format!("length{k}"))
         } else {
-            (format!("{:?}", 1.5 + self.indexed_number(0)), format!("{:?}", 1.2 + self.indexed_number(1)))
+            (
+                format!("{:?}", 1.5 + self.stored_number_at_index(0)),
+                format!("{:?}", 1.2 + self.stored_number_at_index(1)),
+            )
         };
         let (m, l) = mass;
         let _ = writeln!(
@@ -140,8 +159,8 @@ impl Limb {
             "#[body(mass = {m}, com = {l} * {}, inertia = cuboid({m}, {l}, 0.7, 0.4).rotated(z({:?}), \
              x({:?})))] body{k}: Body,",
             self.vector_text(2),
-            self.indexed_number(5),
-            self.indexed_number(6)
+            self.stored_number_at_index(5),
+            self.stored_number_at_index(6)
         );
         let parent = if k == 0 { "ground".to_string() } else { format!("body{}", self.parent % k) };
         // The joint is off its parent's centre, with rotations on both sides; with plain axes it has only an
@@ -151,25 +170,28 @@ impl Limb {
             false => format!(
                 "{parent}.at({}).rotated(y({:?}), x({:?}))",
                 self.vector_text(7),
-                self.indexed_number(8),
-                self.indexed_number(9)
+                self.stored_number_at_index(8),
+                self.stored_number_at_index(9)
             ),
         };
         let child_end = match self.symbolic {
-            true => format!("body{k}.at(-{l} * z).rotated(z({:?}))", self.indexed_number(10)),
+            true => format!("body{k}.at(-{l} * z).rotated(z({:?}))", self.stored_number_at_index(10)),
             false => format!("body{k}"),
         };
-        let _ =
-            writeln!(out, "#[joint({parent_end} -> {child_end}{})] joint{k}: {kind},", self.axes_text(kind));
+        let _ = writeln!(
+            out,
+            "#[joint({parent_end} -> {child_end}{})] joint{k}: {kind},",
+            self.joint_axes_source_text(kind)
+        );
         self.write_actions(k, kind, out);
     }
 
-    fn axes_text(&self, kind: &str) -> String {
+    fn joint_axes_source_text(&self, kind: &str) -> String {
         let (a, b) = (self.axis_text(11), self.axis_text(14));
         match kind {
             "Pin" => format!(", about = {a}"),
             "Sleeve" => format!(", along = {a}"),
-            "Screw" => format!(", about = {a}, pitch = {:?}", self.indexed_number(13)),
+            "Screw" => format!(", about = {a}, pitch = {:?}", self.stored_number_at_index(13)),
             "Collar" => format!(", about = {a}"),
             "Slot" => format!(", along = {a}, about = {b}"),
             "Universal" => ", about = (x, y)".to_string(),
@@ -189,9 +211,9 @@ impl Limb {
                 "#[acts(on = {on}, stiffness = {:?}, {free} = {:?})] spring{k}_{c}: Spring,
                  #[acts(on = {on}, damping = {:?})] dashpot{k}_{c}: Dashpot,
                  #[acts(on = {on})] drive{k}_{c}: {input},",
-                10.0 * self.indexed_number(16),
-                self.indexed_number(17),
-                self.indexed_number(18).abs()
+                10.0 * self.stored_number_at_index(16),
+                self.stored_number_at_index(17),
+                self.stored_number_at_index(18).abs()
             );
         }
         // A body that only welds connect to the ground does not move, and the language rejects forces on it.

@@ -1,8 +1,8 @@
 //! Second derivatives under constraints, against automatic differentiation of hand-written equations, and
 //! against differences of first derivatives for loops and spatial rolling.
 
-use super::hyper::{Hyper, solve_linear_system};
-use super::{TOLERANCE, assert_block, check_second_derivatives, check_steps_from};
+use super::hyper::{HyperDual, solve_linear_system};
+use super::{TOLERANCE, assert_block, check_second_derivatives, check_second_derivatives_of_steps};
 use linkwork::prelude::*;
 use support::random::Random;
 
@@ -31,7 +31,7 @@ struct FourBar {
 
 /// Flying body with a rod on a ball joint; a second ball joint closes the loop.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
-pub struct Tied {
+pub struct TiedFlyingBody {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.05, 0.06, 0.07))]
     flyer: Body,
     #[body(mass = 0.6, com = -0.4 * z, inertia = diagonal(0.04, 0.05, 0.01))]
@@ -88,8 +88,8 @@ struct Driven {
 
 /// Returns the accelerations of `Driven` by Lagrange's equations with multipliers; `x` has configuration,
 /// velocity and forces.
-fn constrained_accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
-    let ([_, q1, q2, v0, v1, v2, ..], number) = (*x, Hyper::constant_hyper);
+fn constrained_accelerations(sway: f64, t: f64, x: &[HyperDual; 9]) -> [HyperDual; 3] {
+    let ([_, q1, q2, v0, v1, v2, ..], number) = (*x, HyperDual::constant_hyper);
     let (masses, reach, gravity) =
         ([number(0.8), number(0.7), number(0.4)], [0.9, 0.7].map(number), number(9.81));
     let ((s, c), (s2, c2), zero) = (q1.sin_cos(), (q1 + q2).sin_cos(), number(0.0));
@@ -102,9 +102,9 @@ fn constrained_accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
     let middle = [-reach[0] * s * turn, reach[0] * c * turn];
     let end = [middle[0] - reach[1] * s2 * both, middle[1] + reach[1] * c2 * both];
     let own = [[zero; 2], middle, end];
-    let dot_product = |a: [Hyper; 2], b: [Hyper; 2]| a[0] * b[0] + a[1] * b[1];
+    let dot_product = |a: [HyperDual; 2], b: [HyperDual; 2]| a[0] * b[0] + a[1] * b[1];
     let weighted_sum =
-        |f: &dyn Fn(usize) -> Hyper| masses.iter().zip(0..).fold(zero, |sum, (m, k)| sum + *m * f(k));
+        |f: &dyn Fn(usize) -> HyperDual| masses.iter().zip(0..).fold(zero, |sum, (m, k)| sum + *m * f(k));
     let mass_entry = |i: usize, j: usize| weighted_sum(&|k| dot_product(columns[k][i], columns[k][j]));
     let bias_entry =
         |i: usize| weighted_sum(&|k| dot_product(columns[k][i], own[k]) + gravity * columns[k][i][1]);
@@ -140,9 +140,12 @@ fn acceleration_hessian(
     lambda: &SVector<f64, 3>,
 ) -> SMatrix<f64, 9, 9> {
     SMatrix::from_fn(|i, j| {
-        let unit_entry = |k: usize, direction: usize| if k == direction { 1.0 } else { 0.0 };
-        let seeded_coordinate =
-            |k: usize| Hyper { value: x[k], first: [unit_entry(k, i), unit_entry(k, j)], second: 0.0 };
+        let kronecker_delta = |k: usize, direction: usize| if k == direction { 1.0 } else { 0.0 };
+        let seeded_coordinate = |k: usize| HyperDual {
+            value: x[k],
+            first: [kronecker_delta(k, i), kronecker_delta(k, j)],
+            second: 0.0,
+        };
         let a = constrained_accelerations(sway, t, &std::array::from_fn(seeded_coordinate));
         a.iter().zip(lambda.iter()).map(|(a, factor)| a.second * factor).sum()
     })
@@ -156,8 +159,9 @@ fn hand_derived_equations_have_the_generated_second_derivatives() {
         let (q, v) = (random.random_vector::<3>(1.2), random.random_vector::<3>(2.0));
         let (tau, lambda) = (random.random_vector::<3>(5.0), random.random_vector::<3>(1.0));
         let x = SVector::from_fn(|k, _| [q[k % 3], v[k % 3], tau[k % 3]][k / 3]);
-        let values = constrained_accelerations(2.0, t, &std::array::from_fn(|k| Hyper::constant_hyper(x[k])))
-            .map(|a| a.value);
+        let values =
+            constrained_accelerations(2.0, t, &std::array::from_fn(|k| HyperDual::constant_hyper(x[k])))
+                .map(|a| a.value);
         let off = (m.forward_dynamics(t, &q, &v, &tau) - SVector::from(values)).amax();
         assert!(off < 1e-10 * (1.0 + values.iter().fold(0.0_f64, |s, a| s.max(a.abs()))), "{off:e}");
 
@@ -180,7 +184,7 @@ fn hand_derived_equations_have_the_generated_second_derivatives() {
 #[test]
 fn constrained_second_derivatives_agree_with_differences() {
     check_second_derivatives("four-bar linkage", &FourBar {}, 2.0);
-    check_second_derivatives("tied bodies", &Tied {}, 3.0);
+    check_second_derivatives("tied bodies", &TiedFlyingBody {}, 3.0);
     check_second_derivatives("marble", &Marble {}, 1.0);
     check_second_derivatives("driven", &Driven { sway: 2.0 }, 1.0);
 }
@@ -190,14 +194,21 @@ fn constrained_step_second_derivatives_agree_with_differences() {
     let m = FourBar {};
     let q = m.assemble(&[0.9, -0.5, 1.6].into(), &[0]).expect("it can be assembled");
     let v = m.project_velocity(&q, &[1.5, 0.0, 0.0].into()).expect("it moves");
-    check_steps_from("linkage", &m, &Rk4::step(0.02), 2.0, q, v);
+    check_second_derivatives_of_steps("linkage", &m, &Rk4::step(0.02), 2.0, q, v);
     // The state violates the constraints, so that the projection has a larger effect.
-    check_steps_from("torn linkage", &m, &Rk4::step(0.02), 2.0, q.add_scalar(0.05), v.add_scalar(0.3));
+    check_second_derivatives_of_steps(
+        "torn linkage",
+        &m,
+        &Rk4::step(0.02),
+        2.0,
+        q.add_scalar(0.05),
+        v.add_scalar(0.3),
+    );
 
     let m = Driven { sway: 2.0 };
     let q = m.assemble(0.3, &[0.2, 0.4, 0.5].into(), &[0]).expect("it can be assembled");
     let v = m.project_velocity(0.3, &q, &[0.7, 0.3, 0.0].into()).expect("it moves");
-    check_steps_from("driven", &m, &Rk4::step(0.02), 1.0, q, v);
+    check_second_derivatives_of_steps("driven", &m, &Rk4::step(0.02), 1.0, q, v);
 }
 
 /// A bead on a circular wire is a pendulum: `v̇ = −g / l sin q`.

@@ -122,7 +122,7 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
         let (v, a, tau, lambda): (SVector<f64, NV>, SVector<f64, NV>, _, _) = (v, a, tau, lambda);
         let displaced_configuration = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
         // Maps changes of `dq` to changes of `q ⊕ dq`.
-        let displacement_map = |dq: &SVector<f64, NV>| m.integrate_derivatives_at(&q, dq).1;
+        let displacement_jacobian = |dq: &SVector<f64, NV>| m.integrate_derivatives_at(&q, dq).1;
         let largest_magnitude = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
 
         let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(t, &q, &v, &a, &lambda);
@@ -130,7 +130,7 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
             |q: &_, v: &_, a: &_| Derivatives::inverse_dynamics_derivatives(m, t, q, v, a);
         let expected = [
             contracted_derivatives(&lambda, |d| {
-                inverse_derivatives(&displaced_configuration(d), &v, &a).0 * displacement_map(d)
+                inverse_derivatives(&displaced_configuration(d), &v, &a).0 * displacement_jacobian(d)
             }),
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).0),
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).1),
@@ -148,7 +148,7 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
             |q: &_, v: &_, tau: &_| Derivatives::forward_dynamics_derivatives(m, t, q, v, tau);
         let expected = [
             contracted_derivatives(&lambda, |d| {
-                forward_derivatives(&displaced_configuration(d), &v, &tau).0 * displacement_map(d)
+                forward_derivatives(&displaced_configuration(d), &v, &tau).0 * displacement_jacobian(d)
             }),
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).0),
             contracted_derivatives(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).1),
@@ -163,25 +163,26 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
 
         let now = at(m, t);
         let (qq, qv, vv, qu, vu, uu) = now.second_order_motion(&q, &v, &u, &lambda);
-        let linear_motion_at = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
-        let linear_motion_at_input_step = |d: &SVector<f64, NU>| linear_motion_at(&q, &v, &(u + d));
+        let linearization_at_state = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
+        let linearization_at_input_step = |d: &SVector<f64, NU>| linearization_at_state(&q, &v, &(u + d));
         let states = [
             (
                 qq,
                 contracted_derivatives(&lambda, |d| {
-                    linear_motion_at(&displaced_configuration(d), &v, &u).by_q * displacement_map(d)
+                    linearization_at_state(&displaced_configuration(d), &v, &u).by_q
+                        * displacement_jacobian(d)
                 }),
             ),
             (
                 qv,
                 contracted_derivatives(&lambda, |d: &SVector<f64, NV>| {
-                    linear_motion_at(&q, &(v + d), &u).by_q
+                    linearization_at_state(&q, &(v + d), &u).by_q
                 }),
             ),
             (
                 vv,
                 contracted_derivatives(&lambda, |d: &SVector<f64, NV>| {
-                    linear_motion_at(&q, &(v + d), &u).by_v
+                    linearization_at_state(&q, &(v + d), &u).by_v
                 }),
             ),
         ];
@@ -192,19 +193,19 @@ fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize
         assert_block(
             "qu",
             &qu,
-            &contracted_derivatives(&lambda, |d| linear_motion_at_input_step(d).by_q),
+            &contracted_derivatives(&lambda, |d| linearization_at_input_step(d).by_q),
             size,
         );
         assert_block(
             "vu",
             &vu,
-            &contracted_derivatives(&lambda, |d| linear_motion_at_input_step(d).by_v),
+            &contracted_derivatives(&lambda, |d| linearization_at_input_step(d).by_v),
             size,
         );
         assert_block(
             "uu",
             &uu,
-            &contracted_derivatives(&lambda, |d| linear_motion_at_input_step(d).by_u),
+            &contracted_derivatives(&lambda, |d| linearization_at_input_step(d).by_u),
             size,
         );
     }
@@ -237,11 +238,11 @@ where
 {
     let mut random = Random::new(11);
     let (q, v) = (random.random_vector::<NV>(1.0), random.random_vector::<NV>(1.0));
-    check_steps_from(name, m, method, push, q, v);
+    check_second_derivatives_of_steps(name, m, method, push, q, v);
 }
 
 /// Checks second derivatives of steps against differences, from a given state at the time 0.3 s.
-fn check_steps_from<M, S, const NV: usize, const NU: usize>(
+fn check_second_derivatives_of_steps<M, S, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     method: &S,
@@ -281,18 +282,18 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
         size,
     );
     let gradient_at_input_step = |d: &SVector<f64, NU>| gradient_of_step(&q, &v, &(u + d));
-    let matrix_of_columns =
+    let matrix_from_column_function =
         |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NU>::from_fn(|i, j| columns[j][i]);
     assert_block(
         &format!("{name}: qu"),
         &qu,
-        &matrix_of_columns(derivatives_along_directions(|d| gradient_at_input_step(d).0)),
+        &matrix_from_column_function(derivatives_along_directions(|d| gradient_at_input_step(d).0)),
         size,
     );
     assert_block(
         &format!("{name}: vu"),
         &vu,
-        &matrix_of_columns(derivatives_along_directions(|d| gradient_at_input_step(d).1)),
+        &matrix_from_column_function(derivatives_along_directions(|d| gradient_at_input_step(d).1)),
         size,
     );
     let inputs = derivatives_along_directions(|d| gradient_at_input_step(d).2);

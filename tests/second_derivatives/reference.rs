@@ -1,7 +1,7 @@
 //! Checks of second derivatives of inverse dynamics against those of Pinocchio.
 
 use linkwork::prelude::*;
-use support::compare::assert_similar;
+use support::compare::assert_close_relative_to_largest;
 use support::table::Record;
 
 #[mechanism(urdf = "../models/urdf/ur5.urdf", second_derivatives)]
@@ -30,7 +30,7 @@ macro_rules! robot {
             for (key, found) in [("qq", qq), ("qv", qv), ("vv", vv), ("qa", qa)] {
                 let expected: SMatrix<f64, { $robot::NV }, { $robot::NV }> = case.matrix_with_key(key);
                 let what = format!("{}, case {i}: {key}", $file);
-                assert_similar(&what, found.as_slice(), expected.as_slice(), REFERENCE);
+                assert_close_relative_to_largest(&what, found.as_slice(), expected.as_slice(), REFERENCE);
             }
         }
     };

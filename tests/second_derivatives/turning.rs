@@ -2,7 +2,7 @@
 //! The reference is second differences of the steps themselves, with displacements in the tangent spaces at
 //! the start and at the end.
 
-use super::constrained::{Marble, Tied};
+use super::constrained::{Marble, TiedFlyingBody};
 use super::{Carrier, Solo};
 use linkwork::prelude::*;
 use linkwork::{SecondDerivatives, discrete};
@@ -14,7 +14,7 @@ const WEIGHTS: [f64; 5] = [5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1
 
 /// Compares quadratic forms of the second derivatives along random changes of state and inputs with
 /// differences.
-fn check_second_derivatives_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_second_derivative_forms<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
     method: &S,
@@ -42,7 +42,7 @@ fn check_second_derivatives_along<M, S, const NQ: usize, const NV: usize, const 
         let dq = random.random_vector::<NV>(weights[0]);
         let dv = random.random_vector::<NV>(weights[1]);
         let du = random.random_vector::<NU>(weights[2]);
-        let scalar_value = |s: f64| {
+        let weighted_step_end = |s: f64| {
             let (q, v) = (m.integrate(q, &(dq * s)), v + dv * s);
             let found = discrete::step(m, method, t, &q, &v, &(u + du * s)).expect("it moves");
             of_q.dot(&m.difference(&end.0, &found.0)) + of_v.dot(&(found.1 - end.1))
@@ -50,7 +50,8 @@ fn check_second_derivatives_along<M, S, const NQ: usize, const NV: usize, const 
         let step = 0.02;
         let mut expected = 0.0;
         for (k, weight) in (1..).zip(&WEIGHTS) {
-            expected += weight * (scalar_value(f64::from(k) * step) + scalar_value(f64::from(-k) * step));
+            expected +=
+                weight * (weighted_step_end(f64::from(k) * step) + weighted_step_end(f64::from(-k) * step));
         }
         expected /= step * step;
         let form = dq.dot(&(qq * dq)) + dv.dot(&(vv * dv)) + du.dot(&(uu * du));
@@ -67,11 +68,11 @@ fn rotating_body_step_second_derivatives_agree_with_differences() {
     let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
     // Fast rotations, so that displacements rotate considerably within a step.
     let v = random.random_vector(4.0);
-    check_second_derivatives_along("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
-    check_second_derivatives_along("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
-    check_second_derivatives_along("carrier from rest", &m, &Rk4::step(0.1), (&q, &SVector::zeros()));
+    check_second_derivative_forms("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
+    check_second_derivative_forms("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
+    check_second_derivative_forms("carrier from rest", &m, &Rk4::step(0.1), (&q, &SVector::zeros()));
     let q = Solo.integrate(&Solo.neutral(), &random.random_vector(0.8));
-    check_second_derivatives_along(
+    check_second_derivative_forms(
         "quadruped, Euler",
         &Solo,
         &SemiImplicitEuler::step(0.02),
@@ -81,17 +82,17 @@ fn rotating_body_step_second_derivatives_agree_with_differences() {
 
 #[test]
 fn constrained_rotating_body_step_second_derivatives_agree() {
-    let m = Tied {};
+    let m = TiedFlyingBody {};
     let start = m.integrate(&m.neutral(), &(SVector::from_element(0.2)));
     let q = m.assemble(&start, &[]).expect("it can be assembled");
     let v = m.project_velocity(&q, &SVector::from_fn(|k, _| 0.4 + 0.1 * k as f64)).expect("it moves");
-    check_second_derivatives_along("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
+    check_second_derivative_forms("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
     // The state violates the constraints, so that the projection has a larger effect.
     let torn = m.integrate(&q, &SVector::from_element(0.03));
-    check_second_derivatives_along("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
+    check_second_derivative_forms("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
 
     let m = Marble {};
     let q = m.integrate(&m.neutral(), &SVector::from([0.1, 0.0, 0.3, 0.2, -0.3, 0.4]));
     let v = m.project_velocity(&q, &SVector::from([0.3, 0.1, 0.0, 1.0, 2.0, 0.5])).expect("it rolls");
-    check_second_derivatives_along("marble", &m, &Rk4::step(0.02), (&q, &v));
+    check_second_derivative_forms("marble", &m, &Rk4::step(0.02), (&q, &v));
 }

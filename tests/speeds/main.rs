@@ -4,7 +4,7 @@ use linkwork::discrete;
 use linkwork::frame;
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
-use support::compare::{assert_close, assert_similar};
+use support::compare::{assert_close, assert_close_relative_to_largest};
 use support::random::Random;
 use support::simulate::state_after_duration;
 
@@ -167,8 +167,10 @@ fn derivative_columns<const R: usize, const C: usize>(
 
 /// Checks the operations of the configuration space in generalized speeds: inverses, rates, and all
 /// derivatives.
-fn check_space<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M, q: &SVector<f64, NQ>)
-where
+fn check_configuration_space<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+) where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(3);
@@ -185,13 +187,13 @@ where
         let (by_q, by_dv) = m.integrate_derivatives_at(q, &dv);
         let displacement_between =
             |q: &SVector<f64, NQ>, dv: &SVector<f64, NV>| m.difference(&there, &m.integrate(q, dv));
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂(q ⊕ dv)/∂q",
             by_q.as_slice(),
             derivative_columns(|e| displacement_between(&m.integrate(q, &e), &dv)).as_slice(),
             DIFFERENCE,
         );
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂(q ⊕ dv)/∂dv",
             by_dv.as_slice(),
             derivative_columns(|e| displacement_between(q, &(dv + e))).as_slice(),
@@ -201,19 +203,19 @@ where
         let perturbed_rate =
             |e: [SVector<f64, NV>; 3]| m.displacement_rate(&m.integrate(q, &e[0]), &(dv + e[1]), &(v + e[2]));
         let o = SVector::zeros();
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂/∂q",
             by_q.as_slice(),
             derivative_columns(|e| perturbed_rate([e, o, o])).as_slice(),
             DIFFERENCE,
         );
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂/∂dv",
             by_dv.as_slice(),
             derivative_columns(|e| perturbed_rate([o, e, o])).as_slice(),
             DIFFERENCE,
         );
-        assert_similar(
+        assert_close_relative_to_largest(
             "∂/∂v",
             by_v.as_slice(),
             derivative_columns(|e| perturbed_rate([o, o, e])).as_slice(),
@@ -254,9 +256,9 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
         ),
     ];
     for (found, [by_q, by_v, faster]) in found {
-        assert_similar("q by q", found.q_by_q.as_slice(), by_q.as_slice(), DIFFERENCE);
-        assert_similar("q by v", found.q_by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
-        assert_similar("v by q", found.v_by_q.as_slice(), faster.as_slice(), DIFFERENCE);
+        assert_close_relative_to_largest("q by q", found.q_by_q.as_slice(), by_q.as_slice(), DIFFERENCE);
+        assert_close_relative_to_largest("q by v", found.q_by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
+        assert_close_relative_to_largest("v by q", found.v_by_q.as_slice(), faster.as_slice(), DIFFERENCE);
     }
     // Displacement φ between two neighbouring motions with the same generalized speeds: φ(h) = (1 + h T) φ +
     // O(h²).
@@ -267,24 +269,24 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
         m.difference(&configuration_after(q), &configuration_after(&m.integrate(q, &e)))
     });
     let rate = (grown - SMatrix::<f64, NV, NV>::identity()) / h;
-    assert_similar("turning", turning.as_slice(), rate.as_slice(), 1e-4);
+    assert_close_relative_to_largest("turning", turning.as_slice(), rate.as_slice(), 1e-4);
 }
 
 fn mechanism_with_speeds() -> Speeds {
     Speeds { axial: 0.45 }
 }
 
-fn euler_start() -> (SVector<f64, 3>, SVector<f64, 3>) {
+fn euler_angle_start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
     ([0.3, 0.9, -0.4].into(), [0.5, -0.7, 6.0].into())
 }
 
 #[test]
 fn configuration_space_is_independent_of_speeds() {
-    let (q, v) = euler_start();
-    check_space(&mechanism_with_speeds(), &q);
+    let (q, v) = euler_angle_start_state();
+    check_configuration_space(&mechanism_with_speeds(), &q);
     check_steps(&mechanism_with_speeds(), &q, &(v * 0.3));
     let q = Random::new(5).random_configuration(&Satellite {});
-    check_space(&Satellite {}, &q);
+    check_configuration_space(&Satellite {}, &q);
     check_steps(&Satellite {}, &q, &Random::new(6).random_vector(0.8));
 }
 
@@ -293,7 +295,7 @@ fn speeds_have_names_and_conversions() {
     assert_eq!(Speeds::VELOCITIES, ["wx", "wy", "wz"]);
     assert_eq!(Satellite::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
     assert_eq!(Speeds::CONFIGURATION, ["psi", "theta", "phi"]);
-    let (q, rates) = euler_start();
+    let (q, rates) = euler_angle_start_state();
     let m = mechanism_with_speeds();
     let u = m.speeds_of_rates(&q, &rates);
     assert_close("rates", m.rates_of_speeds(&q, &u).as_slice(), rates.as_slice(), 1e-14);
@@ -307,7 +309,7 @@ fn speeds_have_names_and_conversions() {
 
 #[test]
 fn frame_velocities_are_equal_in_speeds() {
-    let (q, rates) = euler_start();
+    let (q, rates) = euler_angle_start_state();
     let (plain, m) = (Angles {}, mechanism_with_speeds());
     let u = m.speeds_of_rates(&q, &rates);
     let (twist, expected) = (
@@ -340,10 +342,10 @@ fn frame_velocities_are_equal_in_speeds() {
 }
 
 /// Returns the end of a run in generalized speeds, transformed to joint velocities.
-fn end_in_joint_velocities<S: linkwork::integrate::Method<f64>>(
+fn end_state_transformed_to_velocities<S: linkwork::integrate::Method<f64>>(
     method: S,
 ) -> (SVector<f64, 3>, SVector<f64, 3>) {
-    let (q, rates) = euler_start();
+    let (q, rates) = euler_angle_start_state();
     let m = mechanism_with_speeds();
     let run = simulate(&m).from(q, m.speeds_of_rates(&q, &rates)).duration(0.5).method(method);
     let end = run.finish().expect("it arrives");
@@ -353,31 +355,32 @@ fn end_in_joint_velocities<S: linkwork::integrate::Method<f64>>(
 /// Halving the step divides the errors by 16 for order four, and by 4 for order two.
 #[test]
 fn integrators_in_speeds_have_their_orders() {
-    let (q, rates) = euler_start();
+    let (q, rates) = euler_angle_start_state();
     let exact = state_after_duration(&Angles {}, &q, &rates, 0.5);
     let error_of_end =
         |(q, v): (SVector<f64, 3>, SVector<f64, 3>)| (q - exact.0).norm() + (v - exact.1).norm();
     let order_of_errors = |coarse: f64, fine: f64| (coarse / fine).log2();
     let rk4 = order_of_errors(
-        error_of_end(end_in_joint_velocities(Rk4::step(0.01))),
-        error_of_end(end_in_joint_velocities(Rk4::step(0.005))),
+        error_of_end(end_state_transformed_to_velocities(Rk4::step(0.01))),
+        error_of_end(end_state_transformed_to_velocities(Rk4::step(0.005))),
     );
     assert!((3.8..4.3).contains(&rk4), "{rk4}");
     let midpoint = order_of_errors(
-        error_of_end(end_in_joint_velocities(ImplicitMidpoint::step(0.01))),
-        error_of_end(end_in_joint_velocities(ImplicitMidpoint::step(0.005))),
+        error_of_end(end_state_transformed_to_velocities(ImplicitMidpoint::step(0.01))),
+        error_of_end(end_state_transformed_to_velocities(ImplicitMidpoint::step(0.005))),
     );
     assert!((1.9..2.1).contains(&midpoint), "{midpoint}");
     let rosenbrock = order_of_errors(
-        error_of_end(end_in_joint_velocities(Rosenbrock::step(0.002))),
-        error_of_end(end_in_joint_velocities(Rosenbrock::step(0.001))),
+        error_of_end(end_state_transformed_to_velocities(Rosenbrock::step(0.002))),
+        error_of_end(end_state_transformed_to_velocities(Rosenbrock::step(0.001))),
     );
     assert!((1.8..2.2).contains(&rosenbrock), "{rosenbrock}");
     for tolerance in [1e-6, 1e-9, 1e-12] {
-        let adaptive =
-            error_of_end(end_in_joint_velocities(DormandPrince::new().tolerance(tolerance, tolerance)));
+        let adaptive = error_of_end(end_state_transformed_to_velocities(
+            DormandPrince::new().tolerance(tolerance, tolerance),
+        ));
         assert!(adaptive < 300.0 * tolerance, "{adaptive} with {tolerance}");
-        let stiff = error_of_end(end_in_joint_velocities(
+        let stiff = error_of_end(end_state_transformed_to_velocities(
             Rodas::new().tolerance(tolerance.max(1e-9), tolerance.max(1e-9)),
         ));
         assert!(stiff < 1000.0 * tolerance.max(1e-9), "{stiff} with {tolerance}");
@@ -388,21 +391,21 @@ fn integrators_in_speeds_have_their_orders() {
 fn batches_in_speeds_equal_single_states() {
     use linkwork::__private::{lane, lane_by_lane};
     let m = mechanism_with_speeds();
-    let (q, rates) = euler_start();
+    let (q, rates) = euler_angle_start_state();
     let u = m.speeds_of_rates(&q, &rates);
-    let scaled_speeds = |k: usize| u * (1.0 + k as f64);
+    let speeds_times_lane_number = |k: usize| u * (1.0 + k as f64);
     let q_lanes = lane_by_lane::<f64, 4, 3, 1>(|_| q);
-    let u_lanes = lane_by_lane::<f64, 4, 3, 1>(scaled_speeds);
+    let u_lanes = lane_by_lane::<f64, 4, 3, 1>(speeds_times_lane_number);
     let moved = m.integrate_lanes(&q_lanes, &u_lanes);
     let rate = m.displacement_rate_lanes(&q_lanes, &u_lanes, &u_lanes);
     for k in 0..4 {
         assert_close(
             "integrate",
             lane(&moved, k).as_slice(),
-            m.integrate(&q, &scaled_speeds(k)).as_slice(),
+            m.integrate(&q, &speeds_times_lane_number(k)).as_slice(),
             1e-14,
         );
-        let one = m.displacement_rate(&q, &scaled_speeds(k), &scaled_speeds(k));
+        let one = m.displacement_rate(&q, &speeds_times_lane_number(k), &speeds_times_lane_number(k));
         assert_close("rate", lane(&rate, k).as_slice(), one.as_slice(), 1e-13);
     }
 }
@@ -441,16 +444,16 @@ fn rolling_disk_moves_equally_in_kanes_speeds() {
     // Derivatives under constraints, along displacements in generalized speeds.
     let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(&q, &u, &tau);
     let expected = derivative_columns(|e| m.forward_dynamics(&q, &(u + e), &tau));
-    assert_similar("∂u̇/∂u", by_v.as_slice(), expected.as_slice(), 1e-7);
+    assert_close_relative_to_largest("∂u̇/∂u", by_v.as_slice(), expected.as_slice(), 1e-7);
     let expected = derivative_columns(|e| m.forward_dynamics(&m.integrate(&q, &e), &u, &tau));
-    assert_similar("∂u̇/∂q", by_q.as_slice(), expected.as_slice(), 1e-7);
+    assert_close_relative_to_largest("∂u̇/∂q", by_q.as_slice(), expected.as_slice(), 1e-7);
     let expected = derivative_columns(|e| m.forward_dynamics(&q, &u, &(tau + e)));
-    assert_similar("∂u̇/∂τ", by_tau.as_slice(), expected.as_slice(), 1e-7);
+    assert_close_relative_to_largest("∂u̇/∂τ", by_tau.as_slice(), expected.as_slice(), 1e-7);
 }
 
 /// Implicit steps under constraints have their order of convergence, and the energy does not drift.
 #[test]
-fn constrained_integrators_in_speeds_have_their_orders() {
+fn implicit_steps_in_speeds_keep_convergence_order() {
     let (plain, m) = (Disk {}, DiskInSpeeds {});
     let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
     let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");
@@ -466,12 +469,12 @@ fn constrained_integrators_in_speeds_have_their_orders() {
     };
     let order = (error_of_end(end_of_midpoint(0.01, 0.5)) / error_of_end(end_of_midpoint(0.005, 0.5))).log2();
     assert!((1.9..2.1).contains(&order), "{order}");
-    let error_of_euler = |h: f64| {
+    let semi_implicit_euler_error = |h: f64| {
         let run = simulate(&m).from(q, u).duration(0.5).method(SemiImplicitEuler::step(h));
         let end = run.finish().expect("it rolls");
         error_of_end((end.q, end.v))
     };
-    let order = (error_of_euler(0.002) / error_of_euler(0.001)).log2();
+    let order = (semi_implicit_euler_error(0.002) / semi_implicit_euler_error(0.001)).log2();
     assert!((0.9..1.1).contains(&order), "{order}");
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
     let energy_change =

@@ -30,7 +30,7 @@ fn singular_speeds_yield_nonfinite_coordinate_rates() {
 #[test]
 fn motions_from_singular_speeds_are_errors() {
     let (m, (q, u)) = (mechanism_with_speeds(), gimbal_lock_state());
-    fn start_error<S: linkwork::integrate::Method<f64>>(
+    fn simulation_error_from_start<S: linkwork::integrate::Method<f64>>(
         m: &Speeds,
         (q, u): (SVector<f64, 3>, SVector<f64, 3>),
         method: S,
@@ -39,11 +39,11 @@ fn motions_from_singular_speeds_are_errors() {
         run.map(|end| end.q).expect_err("it has no rates")
     }
     for error in [
-        start_error(&m, (q, u), Rk4::step(1e-3)),
-        start_error(&m, (q, u), SemiImplicitEuler::step(1e-3)),
-        start_error(&m, (q, u), ImplicitMidpoint::step(1e-3)),
-        start_error(&m, (q, u), DormandPrince::new()),
-        start_error(&m, (q, u), Rodas::new()),
+        simulation_error_from_start(&m, (q, u), Rk4::step(1e-3)),
+        simulation_error_from_start(&m, (q, u), SemiImplicitEuler::step(1e-3)),
+        simulation_error_from_start(&m, (q, u), ImplicitMidpoint::step(1e-3)),
+        simulation_error_from_start(&m, (q, u), DormandPrince::new()),
+        simulation_error_from_start(&m, (q, u), Rodas::new()),
     ] {
         assert!(matches!(error, Error::NotFinite { t: 0.0 }), "{error}");
     }

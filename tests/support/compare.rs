@@ -23,7 +23,7 @@ pub fn assert_close(what: impl Display, actual: &[f64], expected: &[f64], tolera
 /// Panics unless all entries agree with the expected ones, with errors relative to the largest expected
 /// entry.
 #[track_caller]
-pub fn assert_similar(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
+pub fn assert_close_relative_to_largest(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
     let scale = expected.iter().fold(1.0_f64, |m, e| m.max(e.abs()));
     let divide_by_scale = |x: &[f64]| x.iter().map(|x| x / scale).collect::<Vec<_>>();
     assert_close(what, &divide_by_scale(actual), &divide_by_scale(expected), tolerance);

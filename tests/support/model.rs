@@ -15,7 +15,7 @@ pub type Source = (String, String);
 
 /// Calls `check` with the description and the model of a source. Returns the error messages if the source has
 /// no model.
-pub fn try_model(
+pub fn check_model_or_errors(
     (arguments, item): &Source,
     check: impl FnOnce(&Description, &Model<'_>),
 ) -> Result<(), Vec<String>> {
@@ -34,7 +34,7 @@ pub fn try_model(
 
 /// Calls `check` with the description and the model of a source, and panics if it has none.
 pub fn with_model(source: &Source, check: impl FnOnce(&Description, &Model<'_>)) {
-    if let Err(messages) = try_model(source, check) {
+    if let Err(messages) = check_model_or_errors(source, check) {
         panic!("{}\n{}", messages.join("\n"), source.1);
     }
 }

@@ -14,11 +14,11 @@ pub fn state_after_duration<M, const NQ: usize, const NV: usize, const NU: usize
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    advance_from(mechanism, 0.0, q, v, duration)
+    state_after_duration_from(mechanism, 0.0, q, v, duration)
 }
 
 /// Returns the state after `duration` from the time `start`, integrated to the precision of `f64`.
-pub fn advance_from<M, const NQ: usize, const NV: usize, const NU: usize>(
+pub fn state_after_duration_from<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     start: f64,
     q: &SVector<f64, NQ>,

@@ -80,7 +80,7 @@ impl Record {
 
     /// Returns the entries of the object with this key, whose values are lists of numbers, together with
     /// their names.
-    pub fn named_lists(&self, key: &str) -> Vec<(String, Vec<f64>)> {
+    pub fn number_lists_with_names(&self, key: &str) -> Vec<(String, Vec<f64>)> {
         let object =
             self.entry_with_key(key).as_object().unwrap_or_else(|| panic!("`{key}` is not an object"));
         object.iter().map(|(name, value)| (name.clone(), numbers_of_value(value))).collect()

@@ -149,9 +149,9 @@ struct TwoPins {
 #[test]
 fn double_pendulum_agrees_in_absolute_and_relative_angles() {
     let (absolute, relative) = (TwoParticles {}, TwoPins {});
-    let to_relative = |a: &Vector2<f64>| Vector2::new(a[0], a[1] - a[0]);
+    let to_relative_angles = |a: &Vector2<f64>| Vector2::new(a[0], a[1] - a[0]);
     let (q, v) = (Vector2::new(0.8, -0.5), Vector2::new(0.3, 1.7));
-    let (p, w) = (to_relative(&q), to_relative(&v));
+    let (p, w) = (to_relative_angles(&q), to_relative_angles(&v));
     let energies = [absolute.kinetic_energy(&q, &v), absolute.potential_energy(&q)];
     assert_close(
         "energies",
@@ -161,8 +161,8 @@ fn double_pendulum_agrees_in_absolute_and_relative_angles() {
     );
     let (end, rates) = state_after_duration(&absolute, &q, &v, 3.0);
     let (end_relative, rates_relative) = state_after_duration(&relative, &p, &w, 3.0);
-    assert_close("angles", to_relative(&end).as_slice(), end_relative.as_slice(), MOTION);
-    assert_close("rates", to_relative(&rates).as_slice(), rates_relative.as_slice(), MOTION);
+    assert_close("angles", to_relative_angles(&end).as_slice(), end_relative.as_slice(), MOTION);
+    assert_close("rates", to_relative_angles(&rates).as_slice(), rates_relative.as_slice(), MOTION);
 
     let rows = Record::load("problems/pendulums.json").rows_with_key::<5>("double");
     let [_, a1, a2, r1, r2] = rows[0];

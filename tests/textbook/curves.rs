@@ -141,7 +141,7 @@ fn spherical_and_cylindrical_accelerations_have_textbook_terms() {
 
 /// Particle in a field, given by its energy and by a force that is the gradient of the same field.
 #[mechanism]
-struct Field {
+struct ParticleInField {
     mu: f64,
     k: f64,
     #[particle(mass = 2)]
@@ -160,7 +160,7 @@ struct Field {
 
 #[test]
 fn force_of_a_field_is_its_gradient() {
-    let (m, mut random) = (Field { mu: 3.0, k: 0.5 }, Random::new(2));
+    let (m, mut random) = (ParticleInField { mu: 3.0, k: 0.5 }, Random::new(2));
     for _ in 0..4 {
         let q: SVector<f64, 3> = random.random_vector(2.0);
         let r = q.norm();
@@ -198,14 +198,14 @@ struct Cables {
 
 /// Returns the length of the shortest path of two straight lines and a helix, by search over the points of
 /// contact with the cylinder that are visible from the ends.
-fn shortest_path_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
+fn shortest_path_length_around_cylinder(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
     let length_of_path = |[alpha, beta, za, zb]: [f64; 4]| {
         let point_at_angle_and_height = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
-        let distance_between =
+        let distance_of_points =
             |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
-        distance_between(a, point_at_angle_and_height(alpha, za))
+        distance_of_points(a, point_at_angle_and_height(alpha, za))
             + (radius * (beta - alpha)).hypot(zb - za)
-            + distance_between(point_at_angle_and_height(beta, zb), b)
+            + distance_of_points(point_at_angle_and_height(beta, zb), b)
     };
     let (from, to) = (a[1].atan2(a[0]), b[1].atan2(b[0]));
     let to = if to < from { to + 2.0 * PI } else { to };
@@ -239,9 +239,9 @@ fn cables_wrap_along_the_shortest_path() {
         let q = ball_configuration(a, b);
         let found = m.drum(&q);
         assert!(
-            (found - shortest_path_around(a, b, 0.5)).abs() < 1e-7,
+            (found - shortest_path_length_around_cylinder(a, b, 0.5)).abs() < 1e-7,
             "{found} {}",
-            shortest_path_around(a, b, 0.5)
+            shortest_path_length_around_cylinder(a, b, 0.5)
         );
         assert!((m.back(&q) - found).abs() < 1e-14);
         assert!(found > m.straight(&q));

@@ -6,7 +6,7 @@ use linkwork::{frame, mechanism, simulate};
 use linkwork_models::KapitzaPendulum;
 use std::f64::consts::PI;
 use support::compare::assert_close;
-use support::simulate::{advance_from, state_after_duration};
+use support::simulate::{state_after_duration, state_after_duration_from};
 
 /// Checks Kapitza's pendulum with a vibrating pivot: `m l² θ̈ + m l (g + ÿ) sin θ = 0`. The upper equilibrium
 /// is stable if `a² γ² > 2 g l` (Landau and Lifshitz, *Mechanics*, §§ 5 and 30).
@@ -158,7 +158,7 @@ fn forced_oscillator_has_the_closed_form_response() {
     let expected = [amplitude * (speed * 4.0).cos(), -amplitude * speed * (speed * 4.0).sin()];
     assert_close("steady state", &[q[0], v[0]], &expected, MOTION);
     // A run may start at any time.
-    let (later, _) = advance_from(
+    let (later, _) = state_after_duration_from(
         &cart,
         1.5,
         &Vector1::new(amplitude * (speed * 1.5).cos()),

@@ -135,7 +135,7 @@ duffing!(
 );
 
 #[mechanism]
-struct LinearByForce {
+struct SpringsWithLinearForceLaw {
     k: f64,
     #[body(mass = 0.7)]
     slider: Body,
@@ -165,7 +165,7 @@ fn springs_by_force_and_by_energy_agree() {
     let (k, c, stiff, hard) = (20.0, 300.0, 5.0, 2.0);
     let (force, energy) = (DuffingByForce { k, c, stiff, hard }, DuffingByEnergy { k, c, stiff, hard });
     assert_same_dynamics(&force, &energy, 4, 1e-12);
-    assert_same_dynamics(&LinearByForce { k }, &LinearByStiffness { k }, 4, 1e-12);
+    assert_same_dynamics(&SpringsWithLinearForceLaw { k }, &LinearByStiffness { k }, 4, 1e-12);
 }
 
 /// Cart between buffers that act beyond a gap.
@@ -187,10 +187,10 @@ struct Buffers {
 fn elastic_buffers_act_only_beyond_their_gap() {
     let (k, gap) = (1000.0, 0.5);
     let cart = Buffers { k, gap };
-    let force_at = |x: f64| cart.bias_forces(&Vector1::new(x), &Vector1::zeros())[0];
+    let force_at_position = |x: f64| cart.bias_forces(&Vector1::new(x), &Vector1::zeros())[0];
     let cases = [(0.3, 0.0), (-0.4, 0.0), (0.5, 0.0), (-0.5, 0.0), (0.7, 200.0), (-0.6, -100.0)];
     for (x, expected) in cases {
-        assert_close(format!("at {x}"), &[force_at(x)], &[expected], 1e-12);
+        assert_close(format!("at {x}"), &[force_at_position(x)], &[expected], 1e-12);
     }
     // One period: across the gap and back, with half an oscillation in each buffer.
     let period = 4.0 * gap / 2.0 + 2.0 * PI / k.sqrt();
@@ -344,7 +344,7 @@ fn charged_particles_have_coulomb_and_lorentz_forces() {
 
 /// Springs and dashpots to a point that the particle can reach.
 #[mechanism]
-struct Meeting {
+struct ParticleAtSpringAnchor {
     l: f64,
     #[particle(mass = 2)]
     ball: Particle,
@@ -365,7 +365,7 @@ struct Meeting {
 #[test]
 fn coincident_points_exert_no_force() {
     for l in [0.0, 0.3] {
-        let meeting = Meeting { l };
+        let meeting = ParticleAtSpringAnchor { l };
         let origin = Vector2::zeros();
         let v = Vector2::new(1.0, 2.0);
         assert_close("bias", meeting.bias_forces(&origin, &v).as_slice(), &[0.0, 0.0], EXACT);
@@ -432,21 +432,21 @@ struct Workbench {
 /// Checks the power balance `d(T + U)/dt = control + disturbance − dissipated`, with the left side by central
 /// differences along the motion.
 #[test]
-fn power_balance() {
+fn power_balance_holds_along_motion() {
     let m = Workbench { wind: 0.8 };
     let mut random = Random::new(3);
     for _ in 0..20 {
         let (q, v, u): (Vector2<f64>, Vector2<f64>, Vector2<f64>) =
             (random.random_vector(1.0), random.random_vector(2.0), random.random_vector(3.0));
         let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
-        let total_energy_after = |h: f64| {
+        let total_energy_after_taylor_step = |h: f64| {
             let (q, v) = (q + v * h + a * (h * h / 2.0), v + a * h);
             m.kinetic_energy(&q, &v) + m.potential_energy(&q)
         };
         let h = 1e-4;
         // Differences of fourth order.
-        let rate = (8.0 * (total_energy_after(h) - total_energy_after(-h))
-            - (total_energy_after(2.0 * h) - total_energy_after(-2.0 * h)))
+        let rate = (8.0 * (total_energy_after_taylor_step(h) - total_energy_after_taylor_step(-h))
+            - (total_energy_after_taylor_step(2.0 * h) - total_energy_after_taylor_step(-2.0 * h)))
             / (12.0 * h);
         let power = m.control_power(&q, &v, &u) + m.disturbance_power(&q, &v) - m.dissipated_power(&q, &v);
         assert_close("power", &[rate], &[power], 1e-8);

@@ -109,7 +109,7 @@ fn matrix_expressions_equal_vector_expressions() {
 /// Free body whose velocity has components along three of its directions that are not perpendicular, with
 /// reciprocal vectors as expressions.
 #[mechanism]
-struct Oblique {
+struct BodyWithObliqueAxes {
     #[body(mass = 1, inertia = sphere(1, 1))]
     body: Body,
     #[joint(ground -> body)]
@@ -136,7 +136,7 @@ struct Oblique {
 fn outputs_may_have_oblique_components() {
     let frame = Matrix3::new(1.0, 0.0, 0.2, 0.5, 1.0, 0.4, 0.0, -0.3, 1.0);
     let dual = reciprocal(&frame).unwrap();
-    let (m, mut random) = (Oblique {}, Random::new(11));
+    let (m, mut random) = (BodyWithObliqueAxes {}, Random::new(11));
     for _ in 0..5 {
         let (q, v): (SVector<f64, 7>, SVector<f64, 6>) =
             (random.random_configuration(&m), random.random_vector(2.0));

@@ -226,7 +226,7 @@ fn eulers_laws_hold_for_a_set_of_bodies() {
 
 /// Wheel on three axes that rolls by a rolling pair of surfaces.
 #[mechanism(gravity = -9.81 * z)]
-struct Rolls {
+struct RollingWheel {
     radius: f64,
     #[body]
     hub: Body,
@@ -244,8 +244,8 @@ struct Rolls {
     contact: Rolling,
 }
 
-/// The wheel of [`Rolls`] with its lowest point given in the axes of the fork: this point is on the ground,
-/// and at rest.
+/// The wheel of [`RollingWheel`] with its lowest point given in the axes of the fork: this point is on the
+/// ground, and at rest.
 #[mechanism(gravity = -9.81 * z)]
 struct Written {
     radius: f64,
@@ -279,7 +279,8 @@ struct Written {
 
 #[test]
 fn wheel_rolls_on_a_point_in_fork_axes() {
-    let (pair, written, mut random) = (Rolls { radius: 0.4 }, Written { radius: 0.4 }, Random::new(21));
+    let (pair, written, mut random) =
+        (RollingWheel { radius: 0.4 }, Written { radius: 0.4 }, Random::new(21));
     for _ in 0..4 {
         let mut q: SVector<f64, 6> = random.random_vector(0.8);
         q[2] = 0.4 * q[4].cos();
@@ -304,7 +305,7 @@ fn wheel_rolls_on_a_point_in_fork_axes() {
 /// Two pendulums: the inertia of one is given about its pivot, that of the other about a point other than its
 /// centre of mass.
 #[mechanism(gravity = -9.81 * y)]
-struct AboutPivot {
+struct PendulumsWithShiftedInertia {
     j: f64,
     #[body(mass = 2, com = 0.1 * x - 0.5 * y, inertia = [[j, 0.1, 0], [0.1, 0.3, 0], [0, 0, j]], about = 0)]
     rod: Body,
@@ -318,7 +319,7 @@ struct AboutPivot {
 
 #[test]
 fn inertia_about_another_point_is_moved_to_the_centre_of_mass() {
-    let m = AboutPivot { j: 0.7 };
+    let m = PendulumsWithShiftedInertia { j: 0.7 };
     let mass = m.mass_matrix(&[0.3, 0.2].into());
     // The moment of inertia about the pivot is the given value.
     assert!((mass[(0, 0)] - 0.7).abs() < 1e-15);
@@ -363,7 +364,7 @@ fn work_state_integrates_the_power_of_a_force() {
 
 /// Ball that slides and rotates on a lane, pulled by a force.
 #[mechanism(gravity = -9.81 * z)]
-struct Sliding {
+struct BallSlidingOnLane {
     mu: f64,
     #[body(mass = 2, inertia = sphere(2, 0.1))]
     ball: Body,
@@ -387,7 +388,7 @@ struct Sliding {
 /// the power balance.
 #[test]
 fn slipping_contact_friction_dissipates_closed_form_power() {
-    let m = Sliding { mu: 0.3 };
+    let m = BallSlidingOnLane { mu: 0.3 };
     let (q, v, u) = (SVector::zeros(), [0.8, -0.6, 0.0].into(), SVector::from([-5.0]));
     let normal = 2.0 * 9.81 + 5.0;
     let expected = -0.3 * normal / 1.0_f64.hypot(0.02);

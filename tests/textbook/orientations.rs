@@ -81,7 +81,7 @@ sequences! {
 
 /// Heavy top with a fixed tip in Euler angles of a frame, against the same top on a ball joint.
 #[mechanism(gravity = -9.81 * z)]
-struct TopByFrame {
+struct TopOnEulerAngleFrame {
     psi: Coordinate,
     theta: Coordinate,
     phi: Coordinate,
@@ -107,12 +107,13 @@ struct TopByBall {
 
 #[test]
 fn heavy_top_agrees_in_two_coordinate_charts() {
-    let (one, other) = (TopByFrame {}, TopByBall {});
+    let (one, other) = (TopOnEulerAngleFrame {}, TopByBall {});
     let (q, v) = (Vector3::new(0.2, 0.7, -0.1), Vector3::new(0.5, -0.3, 40.0));
-    let rotation_about = |axis, angle| linkwork::nalgebra::UnitQuaternion::from_axis_angle(&axis, angle);
-    let pose = rotation_about(Vector3::z_axis(), q[0])
-        * rotation_about(Vector3::x_axis(), q[1])
-        * rotation_about(Vector3::z_axis(), q[2]);
+    let quaternion_about_axis =
+        |axis, angle| linkwork::nalgebra::UnitQuaternion::from_axis_angle(&axis, angle);
+    let pose = quaternion_about_axis(Vector3::z_axis(), q[0])
+        * quaternion_about_axis(Vector3::x_axis(), q[1])
+        * quaternion_about_axis(Vector3::z_axis(), q[2]);
     let rate = one.rate(&q, &v);
     let energies = [one.kinetic_energy(&q, &v), one.potential_energy(&q)];
     let quaternion = SVector::from(pose.into_inner().coords);

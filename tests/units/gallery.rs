@@ -221,7 +221,7 @@ fn exponents_of_unit(unit: &str) -> [i32; 3] {
 
 /// Replaces each occurrence of each parameter that has a unit, and checks that the mechanism is rejected.
 /// Returns the number of rejected mechanisms.
-fn check_all_rejected(text: impl Fn(&str) -> String, itself: bool) -> usize {
+fn check_replaced_parameters_rejected(text: impl Fn(&str) -> String, itself: bool) -> usize {
     let mut refused = 0;
     // Tables accept any unit, and so do the factors of their values.
     for source in gallery_mechanisms().into_iter().filter(|source| !source.has_tables()) {
@@ -252,14 +252,14 @@ fn check_all_rejected(text: impl Fn(&str) -> String, itself: bool) -> usize {
 
 #[test]
 fn additional_unit_factors_are_rejected() {
-    let refused = check_all_rejected(|p| format!("{p} * {p}"), false);
+    let refused = check_replaced_parameters_rejected(|p| format!("{p} * {p}"), false);
     assert!(refused > 15, "{refused} mistakes");
 }
 
 /// The ratio of a parameter to itself removes the factor while the parameter is still used.
 #[test]
 fn missing_unit_factors_are_rejected() {
-    let refused = check_all_rejected(|p| format!("{p} / {p}"), true);
+    let refused = check_replaced_parameters_rejected(|p| format!("{p} / {p}"), true);
     assert!(refused > 40, "{refused} mistakes");
 }
 

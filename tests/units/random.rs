@@ -87,7 +87,7 @@ fn pick_randomly<T: Copy>(from: &[T], random: &mut Random) -> T {
 }
 
 /// Returns a factor of this dimension: powers of the first three parameters.
-fn missing_factor(mut by: Dimension) -> String {
+fn factor_of_dimension(mut by: Dimension) -> String {
     let mut text = String::new();
     for (k, (name, unit)) in PARAMETERS.iter().take(3).enumerate() {
         let power = by[k] / unit[k];
@@ -115,15 +115,15 @@ fn anchored_product(dimension: Dimension, depth: usize, random: &mut Random) -> 
     if random_index(2, random) == 0 {
         text = format!("{} * {text}", pick_randomly(&["0.6", "0.5", "9.81", "40", "2", "pi"], random));
     }
-    text.push_str(&missing_factor(multiply_dimension(dimension, has, -1)));
+    text.push_str(&factor_of_dimension(multiply_dimension(dimension, has, -1)));
     match depth.checked_sub(1).map(|depth| (depth, random_index(6, random))) {
-        Some((depth, 0)) => format!("{text} * sin({})", random_sum(PLAIN, depth, random)),
+        Some((depth, 0)) => format!("{text} * sin({})", random_sum_text(PLAIN, depth, random)),
         Some((depth, 1)) => {
             let square = multiply_dimension(dimension, dimension, 1);
-            format!("sqrt({})", random_sum(square, depth, random))
+            format!("sqrt({})", random_sum_text(square, depth, random))
         }
-        Some((depth, 2)) => format!("max({text}, {})", random_sum(dimension, depth, random)),
-        Some((depth, 3)) => format!("{text} / ({})", random_sum(PLAIN, depth, random)),
+        Some((depth, 2)) => format!("max({text}, {})", random_sum_text(dimension, depth, random)),
+        Some((depth, 3)) => format!("{text} / ({})", random_sum_text(PLAIN, depth, random)),
         _ => text,
     }
 }
@@ -144,7 +144,7 @@ fn random_term(dimension: Dimension, depth: usize, random: &mut Random) -> Strin
 }
 
 /// Returns the text of a random sum of terms of the given dimension; one term contains a parameter.
-fn random_sum(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+fn random_sum_text(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let mut text = anchored_product(dimension, depth, random);
     for _ in 0..random_index(3, random) {
         let sign = if random_index(2, random) == 0 { '+' } else { '-' };
@@ -157,7 +157,7 @@ fn random_sum(dimension: Dimension, depth: usize, random: &mut Random) -> String
 }
 
 /// Returns a random dimension other than the given one.
-fn other_dimension(dimension: Dimension, random: &mut Random) -> Dimension {
+fn random_other_dimension(dimension: Dimension, random: &mut Random) -> Dimension {
     loop {
         let other = std::array::from_fn(|k| dimension[k] + random_index(5, random) as i32 - 2);
         if other != dimension {
@@ -168,12 +168,16 @@ fn other_dimension(dimension: Dimension, random: &mut Random) -> Dimension {
 
 /// Returns the text of a random sum in which one term has an inconsistent dimension.
 fn sum_with_wrong_unit(dimension: Dimension, random: &mut Random) -> String {
-    let (good, bad) =
-        (random_sum(dimension, 1, random), anchored_product(other_dimension(dimension, random), 1, random));
+    let (good, bad) = (
+        random_sum_text(dimension, 1, random),
+        anchored_product(random_other_dimension(dimension, random), 1, random),
+    );
     match random_index(6, random) {
         0 => format!("{bad} + {good}"),
         1 => format!("{good} - {bad}"),
-        2 => format!("({good}) * cos({})", anchored_product(other_dimension(PLAIN, random), 1, random)),
+        2 => {
+            format!("({good}) * cos({})", anchored_product(random_other_dimension(PLAIN, random), 1, random))
+        }
         3 => format!("min({good}, {bad})"),
         4 => {
             // Sum without any parameter.
@@ -219,7 +223,7 @@ fn random_expressions_with_matching_units_are_accepted() {
     let mut random = Random::new(41);
     for _ in 0..600 {
         let dimension = random_dimension(&mut random);
-        let e = random_sum(dimension, 2, &mut random);
+        let e = random_sum_text(dimension, 2, &mut random);
         let more = random_element(&e, dimension, &mut random);
         assert_eq!(messages_for_element(&more), Vec::<String>::new(), "{more}");
     }
@@ -242,7 +246,7 @@ fn uses_with_other_units_are_rejected() {
     let mut random = Random::new(43);
     for _ in 0..600 {
         let (kind, place) = pick_randomly(&[("rail", FORCE), ("hinge", ENERGY)], &mut random);
-        let dimension = other_dimension(place, &mut random);
+        let dimension = random_other_dimension(place, &mut random);
         let e = match INPUTS.iter().find(|(_, unit)| *unit != place && random_index(4, &mut random) == 0) {
             Some((name, _)) => name.to_string(),
             None => anchored_product(dimension, 2, &mut random),

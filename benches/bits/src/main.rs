@@ -3,7 +3,7 @@
 //! without the feature show what it costs.
 
 use linkwork::prelude::*;
-use mechanisms::{Arm, Crate, Engine, Functions, Quadruped};
+use mechanisms::{Arm, Crate, Engine, ElementaryFunctionOutputs, Quadruped};
 use std::time::Instant;
 
 /// The mechanisms, in the arithmetic of the feature.
@@ -25,21 +25,21 @@ impl Hash {
 }
 
 /// Pseudo-random numbers in [-2, 2).
-struct Numbers(u64);
+struct PseudoRandomNumbers(u64);
 
-impl Numbers {
+impl PseudoRandomNumbers {
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         4.0 * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64) - 2.0
     }
 
-    fn vector<const N: usize>(&mut self) -> SVector<f64, N> {
+    fn pseudorandom_vector<const N: usize>(&mut self) -> SVector<f64, N> {
         SVector::from_fn(|_, _| self.next())
     }
 }
 
 /// Prints the hash of a part, and its time per call.
-fn report(name: &str, count: u64, part: impl FnOnce(&mut Hash, u64)) {
+fn print_hash_and_time(name: &str, count: u64, part: impl FnOnce(&mut Hash, u64)) {
     let (mut hash, start) = (Hash(0xcbf2_9ce4_8422_2325), Instant::now());
     part(&mut hash, count);
     let time = start.elapsed().as_secs_f64() * 1e9 / count.max(1) as f64;
@@ -49,10 +49,10 @@ fn report(name: &str, count: u64, part: impl FnOnce(&mut Hash, u64)) {
 /// Adds the dynamics of a mechanism at random states.
 macro_rules! dynamics {
     ($mechanism:expr, $hash:ident, $count:ident) => {{
-        let mut numbers = Numbers(1);
+        let mut numbers = PseudoRandomNumbers(1);
         for _ in 0..$count {
-            let q = $mechanism.integrate(&$mechanism.neutral(), &numbers.vector());
-            let (v, u) = (numbers.vector(), numbers.vector());
+            let q = $mechanism.integrate(&$mechanism.neutral(), &numbers.pseudorandom_vector());
+            let (v, u) = (numbers.pseudorandom_vector(), numbers.pseudorandom_vector());
             let a = $mechanism.forward_dynamics(&q, &v, &u);
             $hash.add(&$mechanism.inverse_dynamics(&q, &v, &a));
             $hash.add(&a);
@@ -63,10 +63,10 @@ macro_rules! dynamics {
 /// Adds the derivatives of the dynamics of a mechanism at random states.
 macro_rules! derivatives {
     ($mechanism:expr, $hash:ident, $count:ident) => {{
-        let mut numbers = Numbers(2);
+        let mut numbers = PseudoRandomNumbers(2);
         for _ in 0..$count {
-            let q = $mechanism.integrate(&$mechanism.neutral(), &numbers.vector());
-            let (v, u) = (numbers.vector(), numbers.vector());
+            let q = $mechanism.integrate(&$mechanism.neutral(), &numbers.pseudorandom_vector());
+            let (v, u) = (numbers.pseudorandom_vector(), numbers.pseudorandom_vector());
             let (by_q, by_v, inverse) = $mechanism.forward_dynamics_derivatives(&q, &v, &u);
             $hash.add(by_q.iter().chain(&by_v).chain(&inverse));
         }
@@ -74,22 +74,22 @@ macro_rules! derivatives {
 }
 
 /// Adds all elementary functions at random angles, some of them large.
-fn functions(hash: &mut Hash, count: u64) {
-    let mut numbers = Numbers(3);
+fn hash_elementary_functions(hash: &mut Hash, count: u64) {
+    let mut numbers = PseudoRandomNumbers(3);
     for k in 0..count {
         let x = numbers.next();
         let q = [if k % 64 == 0 { 1e6 * x } else { x }].into();
-        hash.add(&[Functions {}.angles(&q)]);
+        hash.add(&[ElementaryFunctionOutputs {}.angles(&q)]);
         let q = [x].into();
-        hash.add(&[Functions {}.inverse_functions(&q)]);
-        hash.add(&[Functions {}.exponentials(&q)]);
-        hash.add(&[Functions {}.powers(&q)]);
-        hash.add(&[Functions {}.pieces(&q)]);
+        hash.add(&[ElementaryFunctionOutputs {}.inverse_functions(&q)]);
+        hash.add(&[ElementaryFunctionOutputs {}.exponentials(&q)]);
+        hash.add(&[ElementaryFunctionOutputs {}.powers(&q)]);
+        hash.add(&[ElementaryFunctionOutputs {}.pieces(&q)]);
     }
 }
 
 /// Adds the motion of an engine with a closed loop.
-fn loops(hash: &mut Hash, count: u64) {
+fn hash_loop_motion(hash: &mut Hash, count: u64) {
     let engine = Engine { length: 0.13 };
     let q = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]).expect("the engine can be assembled");
     let v = engine.complete_velocity(&q, &[5.0, 0.0, 0.0].into(), &[0]).expect("the engine rotates");
@@ -101,7 +101,7 @@ fn loops(hash: &mut Hash, count: u64) {
 }
 
 /// Adds the motion of a crate that is pushed to and fro.
-fn contacts(hash: &mut Hash, count: u64) {
+fn hash_pushed_crate_motion(hash: &mut Hash, count: u64) {
     let crate_ = Crate { friction: 0.4 };
     let mut q = crate_.neutral();
     q[2] = 0.2;
@@ -117,11 +117,15 @@ fn main() {
     let mut counts = std::env::args().skip(1).map(|text| text.parse().expect("a number of calls"));
     let (calls, steps) = (counts.next().unwrap_or(1_000_000), counts.next().unwrap_or(10_000));
     println!("| part | calls | hash | time, ns |\n| --- | --- | --- | --- |");
-    report("arm, dynamics", calls, |hash, count| dynamics!(Arm {}, hash, count));
-    report("arm, derivatives", calls / 10, |hash, count| derivatives!(Arm {}, hash, count));
-    report("quadruped, dynamics", calls / 10, |hash, count| dynamics!(Quadruped {}, hash, count));
-    report("quadruped, derivatives", calls / 50, |hash, count| derivatives!(Quadruped {}, hash, count));
-    report("elementary functions", calls / 10, functions);
-    report("steps of a closed loop", steps, loops);
-    report("steps with contacts", steps, contacts);
+    print_hash_and_time("arm, dynamics", calls, |hash, count| dynamics!(Arm {}, hash, count));
+    print_hash_and_time("arm, derivatives", calls / 10, |hash, count| derivatives!(Arm {}, hash, count));
+    print_hash_and_time("quadruped, dynamics", calls / 10, |hash, count| {
+        dynamics!(Quadruped {}, hash, count)
+    });
+    print_hash_and_time("quadruped, derivatives", calls / 50, |hash, count| {
+        derivatives!(Quadruped {}, hash, count)
+    });
+    print_hash_and_time("elementary functions", calls / 10, hash_elementary_functions);
+    print_hash_and_time("steps of a closed loop", steps, hash_loop_motion);
+    print_hash_and_time("steps with contacts", steps, hash_pushed_crate_motion);
 }

@@ -13,7 +13,7 @@ pub struct Quadruped;
 
 /// Rotating rod whose outputs are all elementary functions.
 #[mechanism(gravity = -9.81 * y)]
-pub struct Functions {
+pub struct ElementaryFunctionOutputs {
     #[body(mass = 1, com = 0.3 * x, inertia = rod(1, 0.6, x))]
     rod: Body,
     #[joint(ground -> rod, about = z)]

@@ -127,7 +127,7 @@ struct Capsules4 {
 
 /// A box, a capsule, a cylinder and two balls on the ground and on each other.
 #[mechanism(gravity = -9.81 * z)]
-struct Mixed {
+struct MixedShapesScene {
     mass: f64,
     pub grade: f64,
     pub s: f64,
@@ -207,7 +207,7 @@ impl Random {
     fn uniform_between(&mut self, a: f64, b: f64) -> f64 {
         a + (b - a) * self.next()
     }
-    fn choose_element<T: Copy>(&mut self, list: &[T]) -> T {
+    fn random_list_element<T: Copy>(&mut self, list: &[T]) -> T {
         list[(self.next() * list.len() as f64) as usize % list.len()]
     }
 }
@@ -323,7 +323,7 @@ fn random_initial_state<const NQ: usize, const NV: usize>(
     half: impl Fn(usize) -> [f64; 3],
 ) -> (SVector<f64, NQ>, SVector<f64, NV>) {
     let (mut q, mut v) = (SVector::<f64, NQ>::zeros(), SVector::<f64, NV>::zeros());
-    let kind = r.choose_element(&[0, 1, 2, 3]);
+    let kind = r.random_list_element(&[0, 1, 2, 3]);
     let mut z = 0.0;
     let mut x = 0.0;
     for k in 0..n {
@@ -353,7 +353,7 @@ fn random_initial_state<const NQ: usize, const NV: usize>(
             1 => {
                 // stacked
                 z += h[2];
-                let yaw = r.uniform_between(-0.5, 0.5) * r.choose_element(&[0.0, 1.0]);
+                let yaw = r.uniform_between(-0.5, 0.5) * r.random_list_element(&[0.0, 1.0]);
                 set_body_pose(
                     &mut q,
                     k,
@@ -401,7 +401,7 @@ fn fixed_scene_state<const NQ: usize, const NV: usize>(n: usize) -> (SVector<f64
 }
 
 /// Measures the steps of the scenes with fixed initial states.
-fn fixed_scenes() {
+fn measure_fixed_scenes() {
     let methods = [
         ("4 evaluations", TimeStepping::step(1e-3)),
         ("2", TimeStepping::step(1e-3).midpoint()),
@@ -450,7 +450,7 @@ fn fixed_scenes() {
 }
 
 /// Runs random scenes of all families, or of the family with this name.
-fn random_scenes(count: u64, first: u64, which: &str) {
+fn run_random_scenes(count: u64, first: u64, which: &str) {
     macro_rules! family {
         ($name:ident, $n:tt, $nq:tt, $nv:tt, |$random:ident, $mu:ident, $e:ident, $grade:ident| $scene:expr) => {
             if which.is_empty() || which == stringify!($name) {
@@ -459,14 +459,14 @@ fn random_scenes(count: u64, first: u64, which: &str) {
                     let mut random = Random(seed.wrapping_mul(7919).wrapping_add(13));
                     (0..5).for_each(|_| _ = random.next());
                     let $random = &mut random;
-                    let $mu = $random.choose_element(&[0.0, 0.1, 0.3, 0.5, 0.8, 1.0, 2.0]);
+                    let $mu = $random.random_list_element(&[0.0, 0.1, 0.3, 0.5, 0.8, 1.0, 2.0]);
                     let $e = if $random.next() < 0.6 { 0.0 } else { $random.next() };
                     let h = 10f64.powf($random.uniform_between(-4.0, -2.3));
                     let step = TimeStepping::step(h);
-                    let method = $random.choose_element(&[step, step.midpoint(), step.leapfrog()]);
+                    let method = $random.random_list_element(&[step, step.midpoint(), step.leapfrog()]);
                     // Masses up to 10⁴ times as large as others.
                     let grade = $random.uniform_between(-1.0, 1.0) * 1e4_f64.ln() / ($n as f64 - 1.0);
-                    let $grade = $random.choose_element(&[0.0, grade]);
+                    let $grade = $random.random_list_element(&[0.0, grade]);
                     let (m, half, size): (_, Box<dyn Fn(usize) -> [f64; 3]>, f64) = $scene;
                     let begin = random_initial_state::<$nq, $nv>($random, $n, half);
                     let scene = Scene { name: stringify!($name), seed, size, method, h, duration: 150.0 * h };
@@ -481,7 +481,7 @@ fn random_scenes(count: u64, first: u64, which: &str) {
             let mut length = || $random.uniform_between(0.02, 0.1);
             let (a, b, c) = (length(), length(), length());
             let taper = $random.uniform_between(-0.3, 0.3);
-            let taper = $random.choose_element(&[0.0, taper]);
+            let taper = $random.random_list_element(&[0.0, taper]);
             let mass = $random.uniform_between(0.05, 2.0);
             let m = $name { mass, grade: $grade, a, b, c, taper, mu: $mu, e: $e };
             (m, Box::new(move |k: usize| [a, b, c].map(|x| x / 2.0 * (taper * k as f64).exp())), a.min(b).min(c))
@@ -499,7 +499,7 @@ fn random_scenes(count: u64, first: u64, which: &str) {
         let (r, l) = (random.uniform_between(0.02, 0.05), random.uniform_between(0.05, 0.2));
         (Capsules4 { mass: 0.3, grade, r, l, mu, e }, Box::new(move |_: usize| [r + l / 2.0, r, r]), r)
     });
-    family!(Mixed, 5, 35, 30, |random, mu, e, grade| {
+    family!(MixedShapesScene, 5, 35, 30, |random, mu, e, grade| {
         let s = random.uniform_between(0.02, 0.1);
         let half_lengths_of_body = move |k: usize| match k {
             0 => [s, 0.75 * s, 0.5 * s],
@@ -508,7 +508,7 @@ fn random_scenes(count: u64, first: u64, which: &str) {
             3 => [s; 3],
             _ => [s / 2.0; 3],
         };
-        (Mixed { mass: 0.3, grade, s, mu, e }, Box::new(half_lengths_of_body), s)
+        (MixedShapesScene { mass: 0.3, grade, s, mu, e }, Box::new(half_lengths_of_body), s)
     });
 }
 
@@ -519,9 +519,9 @@ fn run_requested_scenes() {
     let first = arguments.next().and_then(|x| x.parse().ok()).unwrap_or(0);
     let which = arguments.next().unwrap_or_default();
     if which.is_empty() {
-        fixed_scenes();
+        measure_fixed_scenes();
     }
-    random_scenes(count, first, &which);
+    run_random_scenes(count, first, &which);
 }
 
 fn main() {

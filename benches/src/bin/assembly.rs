@@ -44,8 +44,8 @@ fn main() -> ExitCode {
     }
     let words: Vec<String> = env::args().skip(1).collect();
     let done = match words.iter().map(String::as_str).collect::<Vec<&str>>().as_slice() {
-        [] => print_tables(""),
-        ["native"] => print_tables("-C target-cpu=native"),
+        [] => print_routine_tables(""),
+        ["native"] => print_routine_tables("-C target-cpu=native"),
         _ => Err("expected nothing or `native`".to_string()),
     };
     match done {
@@ -58,9 +58,9 @@ fn main() -> ExitCode {
 }
 
 /// Prints the tables. Returns an error for an undocumented call.
-fn print_tables(flags: &str) -> Result<(), String> {
+fn print_routine_tables(flags: &str) -> Result<(), String> {
     let (text, object) = build_package(flags)?;
-    let (routines, bytes) = (parse_routines(&text), function_sizes(&object)?);
+    let (routines, bytes) = (parse_routines(&text), function_sizes_in_object_file(&object)?);
     let (generated, others): (Vec<&String>, Vec<&String>) =
         routines.keys().partition(|symbol| mechanism_and_function_names(symbol).is_some());
     if generated.is_empty() {
@@ -80,10 +80,10 @@ fn print_tables(flags: &str) -> Result<(), String> {
         );
         for (k, part) in parts.iter().enumerate().skip(skipped) {
             if k == skipped {
-                println!("| {title} {}", format_table_row(part, &routines, &bytes));
+                println!("| {title} {}", format_routine_table_row(part, &routines, &bytes));
             } else if last_path_segment(part) == "with_avx2" && routines[parts[skipped]].calls.contains(*part)
             {
-                println!("| – with AVX2 and FMA {}", format_table_row(part, &routines, &bytes));
+                println!("| – with AVX2 and FMA {}", format_routine_table_row(part, &routines, &bytes));
             }
         }
         used.extend(parts);
@@ -99,7 +99,11 @@ fn print_tables(flags: &str) -> Result<(), String> {
     }
     for (title, symbols) in groups {
         if let Some(largest) = symbols.iter().max_by_key(|symbol| bytes.get(**symbol)) {
-            println!("| {title} | {} {}", symbols.len(), format_table_row(largest, &routines, &bytes));
+            println!(
+                "| {title} | {} {}",
+                symbols.len(),
+                format_routine_table_row(largest, &routines, &bytes)
+            );
         }
     }
     let wrong = undocumented_calls(&used, &routines);
@@ -124,7 +128,7 @@ fn name_of_symbol(symbol: &str) -> String {
 }
 
 /// Returns the values of a function as the remaining cells of a table row.
-fn format_table_row(
+fn format_routine_table_row(
     symbol: &str,
     routines: &BTreeMap<String, Routine>,
     bytes: &BTreeMap<String, u64>,
@@ -162,7 +166,7 @@ fn build_package(flags: &str) -> Result<(String, Vec<u8>), String> {
 }
 
 /// Returns the size of every function in an object file, bytes.
-fn function_sizes(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
+fn function_sizes_in_object_file(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
     let file = object::File::parse(object).map_err(|error| error.to_string())?;
     let symbols = file.symbols();
     Ok(symbols.filter_map(|symbol| Some((symbol.name().ok()?.to_string(), symbol.size()))).collect())

@@ -38,15 +38,15 @@ struct Humanoid;
 fn main() {
     println!("| robot | function | one state, ns | four lanes, ns per state | eight lanes, ns per state |");
     println!("| --- | --- | ---: | ---: | ---: |");
-    measure_robot("UR5", &Ur5);
-    measure_robot("Panda", &Panda);
-    measure_robot("Solo 12", &Solo12);
-    measure_robot("humanoid", &Humanoid);
+    print_batch_times_of_robot("UR5", &Ur5);
+    print_batch_times_of_robot("Panda", &Panda);
+    print_batch_times_of_robot("Solo 12", &Solo12);
+    print_batch_times_of_robot("humanoid", &Humanoid);
     println!();
     println!("| robot | function of {ARRAYS} states in arrays | eight lanes, ns per state |");
     println!("| --- | --- | ---: |");
-    measure_state_arrays("UR5", &Ur5);
-    measure_state_arrays("Panda", &Panda);
+    measure_batched_state_arrays("UR5", &Ur5);
+    measure_batched_state_arrays("Panda", &Panda);
 }
 
 /// Packs states into SIMD lanes, `L` states in each vector.
@@ -59,10 +59,10 @@ fn pack_into_lanes<const L: usize, const N: usize>(
 }
 
 /// States as single vectors, and packed into SIMD vectors of 4 and 8 lanes.
-type States<const N: usize> =
+type ScalarAndPackedStates<const N: usize> =
     (Vec<SVector<f64, N>>, Vec<SVector<Lanes<f64, 4>, N>>, Vec<SVector<Lanes<f64, 8>, N>>);
 
-fn measure_robot<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)
+fn print_batch_times_of_robot<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)
 where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
@@ -70,8 +70,8 @@ where
     let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
     let q: Vec<_> = (0..STATES).map(|_| m.integrate(&m.neutral(), &vector(2.0))).collect();
     let v: Vec<_> = (0..STATES).map(|_| vector(2.0)).collect();
-    let q: States<NQ> = (q.clone(), pack_into_lanes(&q), pack_into_lanes(&q));
-    let v: States<NV> = (v.clone(), pack_into_lanes(&v), pack_into_lanes(&v));
+    let q: ScalarAndPackedStates<NQ> = (q.clone(), pack_into_lanes(&q), pack_into_lanes(&q));
+    let v: ScalarAndPackedStates<NV> = (v.clone(), pack_into_lanes(&v), pack_into_lanes(&v));
     let (m4, m8) = (m.lanes::<4>(), m.lanes::<8>());
     let (t4, t8) = (Lanes([0.0; 4]), Lanes([0.0; 8]));
     macro_rules! row {
@@ -111,7 +111,7 @@ fn nanoseconds_per_state(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
 }
 
 /// Measures arrays of states of a robot whose `q` and `v` have equal length.
-fn measure_state_arrays<M, const N: usize, const NU: usize>(name: &str, m: &M)
+fn measure_batched_state_arrays<M, const N: usize, const NU: usize>(name: &str, m: &M)
 where
     M: Batch<N, N, NU, Scalar = f64>,
 {

@@ -37,8 +37,8 @@ struct Humanoid {
     right_heel: [Contact; 2],
 }
 
-type Stepping = TimeStepping<f64>;
-type End = Sample<f64, 19, 18, 12>;
+type TimeSteppingMethod = TimeStepping<f64>;
+type FinalSample = Sample<f64, 19, 18, 12>;
 
 /// Target angles of the three joint drives of each leg, rad.
 const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
@@ -54,9 +54,9 @@ fn state_after_duration(
     m: &Solo,
     start: (SVector<f64, 19>, SVector<f64, 18>),
     stiffness: f64,
-    method: Stepping,
+    method: TimeSteppingMethod,
     duration: f64,
-) -> End {
+) -> FinalSample {
     let run = simulate(m).from(start.0, start.1).inputs(|_, q, v| joint_spring_torques(q, v, stiffness));
     run.method(method).duration(duration).finish().expect("the robot moves")
 }
@@ -66,7 +66,7 @@ fn measure_quadruped_step(
     m: &Solo,
     start: (SVector<f64, 19>, SVector<f64, 18>),
     stiffness: f64,
-    method: Stepping,
+    method: TimeSteppingMethod,
 ) -> f64 {
     minimum_step_time(500.0, || {
         state_after_duration(m, start, stiffness, method, 0.5);
@@ -89,7 +89,7 @@ fn minimum_step_time(steps: f64, run: impl Fn()) -> f64 {
 
 /// Returns the times of the humanoid while it stands, collapses and is in the air, µs, and its creep, m/s.
 /// Each link has at least 1 kg·m² about its own joint, so that the drives can be stiff.
-fn measure_humanoid(method: Stepping) -> [f64; 4] {
+fn measure_humanoid(method: TimeSteppingMethod) -> [f64; 4] {
     let m = Humanoid {};
     let high = m.neutral();
     let mut low = high;
@@ -109,21 +109,21 @@ fn measure_humanoid(method: Stepping) -> [f64; 4] {
     let creep = (simulate_final_state(stands, 1e4, 1.0).0 - stands.0).fixed_rows::<3>(0).norm();
     let mut up = low;
     up[2] += 100.0;
-    let measure_simulation_time = |start, stiffness| {
+    let minimum_step_time_of_simulation = |start, stiffness| {
         minimum_step_time(500.0, || {
             simulate_final_state(start, stiffness, 0.5);
         })
     };
     [
-        measure_simulation_time(stands, 1e4),
-        measure_simulation_time((low, still), 0.0),
-        measure_simulation_time((up, still), 1e4),
+        minimum_step_time_of_simulation(stands, 1e4),
+        minimum_step_time_of_simulation((low, still), 0.0),
+        minimum_step_time_of_simulation((up, still), 1e4),
         creep,
     ]
 }
 
 /// Returns the table values for one kind of step as JSON.
-fn measured_values_as_json(stepping: impl Fn(f64) -> Stepping) -> String {
+fn measured_values_as_json(stepping: impl Fn(f64) -> TimeSteppingMethod) -> String {
     let standing_state_at_height = |m: &Solo, height: f64| {
         let mut q = m.neutral();
         q[2] = height;
@@ -133,17 +133,17 @@ fn measured_values_as_json(stepping: impl Fn(f64) -> Stepping) -> String {
     let method = stepping(1e-3);
     let (level, inclined) = (Solo { slope: 0.0 }, Solo { slope: 10.0_f64.to_radians() });
     let drop = standing_state_at_height(&level, 0.26);
-    let rest_state = |m: &Solo| {
+    let resting_state_after_drop = |m: &Solo| {
         let end = state_after_duration(m, drop, 6.0, method, 8.0);
         (end.q, end.v)
     };
     // Velocity over the following second, m/s.
     let creep_distance = |m: &Solo| {
-        let from = rest_state(m);
+        let from = resting_state_after_drop(m);
         (state_after_duration(m, from, 6.0, method, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0))
             .norm()
     };
-    let stands = rest_state(&level);
+    let stands = resting_state_after_drop(&level);
     let depth = -level.contact_gaps(&stands.0).min();
     let error_of_step_size = |h: f64| {
         let [coarse, fine] =

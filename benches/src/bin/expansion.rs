@@ -6,8 +6,8 @@
 //! processor time, and peak memory. `expansion FIRST [LAST]` prints the lines of some mechanisms, by number.
 
 use linkwork_benches::chains::{Source, chain_source};
-use linkwork_benches::checked::{Library, check_with_rustc};
-use linkwork_benches::elements::{placed_chain, sprung_arm};
+use linkwork_benches::checked::{CompiledRuntime, check_with_rustc};
+use linkwork_benches::elements::{arm_with_springs_source, particle_chain_source};
 use linkwork_benches::operations::Operations;
 use linkwork_compiler::expand;
 use proc_macro2::TokenStream;
@@ -69,8 +69,8 @@ fn mechanism_sources() -> Vec<(String, &'static str, Source)> {
             LENGTHS.map(|n| (format!("chain of {n}, {what}"), "", chain_source("Chain", n, symbolic))),
         );
     }
-    list.extend(SPRINGS.map(|n| (format!("arm with {n} springs"), "", sprung_arm(n))));
-    list.extend(PLACED.map(|n| (format!("{n} particles, placed"), "", placed_chain(n))));
+    list.extend(SPRINGS.map(|n| (format!("arm with {n} springs"), "", arm_with_springs_source(n))));
+    list.extend(PLACED.map(|n| (format!("{n} particles, placed"), "", particle_chain_source(n))));
     for n in DIFFERENTIATED {
         let mut source = chain_source("Chain", n, false);
         source.arguments += ", derivatives";
@@ -87,7 +87,7 @@ fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
-        [LINE, k, rlib] => k.parse().map_err(Into::into).and_then(|k| print_line(k, rlib)),
+        [LINE, k, rlib] => k.parse().map_err(Into::into).and_then(|k| print_mechanism_line(k, rlib)),
         [] => print_mechanism_table(0, usize::MAX),
         [first] => first.parse().map_err(Into::into).and_then(|k| print_mechanism_table(k, k)),
         [first, last, ..] => {
@@ -103,16 +103,16 @@ fn main() -> ExitCode {
 }
 
 /// Compiles mechanism `k` and prints its line of the table.
-fn print_line(k: usize, rlib: &str) -> Result<(), Box<dyn Error>> {
+fn print_mechanism_line(k: usize, rlib: &str) -> Result<(), Box<dyn Error>> {
     let mechanisms = mechanism_sources();
     let (name, goal, source) = mechanisms.get(k).ok_or("there is no such mechanism")?;
-    println!("{}", format_mechanism_line(name, goal, source, &Library { rlib: rlib.into() })?);
+    println!("{}", format_mechanism_line(name, goal, source, &CompiledRuntime { rlib: rlib.into() })?);
     Ok(())
 }
 
 /// Prints the lines of the mechanisms from `first` to `last`.
 fn print_mechanism_table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
-    let library = Library::build_runtime()?;
+    let library = CompiledRuntime::build_runtime_crate()?;
     let profile = if cfg!(debug_assertions) {
         "dev: as cargo builds procedural macros"
     } else {
@@ -139,7 +139,7 @@ fn format_mechanism_line(
     name: &str,
     goal: &str,
     source: &Source,
-    library: &Library,
+    library: &CompiledRuntime,
 ) -> Result<String, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let arguments: TokenStream = source.arguments.parse()?;
@@ -160,7 +160,7 @@ fn format_mechanism_line(
     }
     let duration_in_milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
     let derived = Operations::compile(&source.arguments, &source.item);
-    let operations_of_function = |name: &str| derived.size_of_function(name).operations;
+    let operations_of_function = |name: &str| derived.operation_counts_of_function(name).operations;
     Ok(format!(
         "| {name} | {} | {:.1} | {:.1} | {memory} | {:.0} | {} | {} | {} | {} | {:.1} | {:.0} | {goal} |",
         derived.velocities,

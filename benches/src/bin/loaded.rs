@@ -27,22 +27,22 @@ fn main() -> Result<(), Error> {
     println!("| robot | function | loaded, ns | compiled in, ns | loaded : compiled in |");
     println!("| --- | --- | ---: | ---: | ---: |");
     const LOCKED: &str = r#"lock = ["panda_finger_joint1", "panda_finger_joint2"]"#;
-    print_robot_rows("ur5", "ur5", "", &Ur5)?;
-    print_robot_rows("panda_arm", "panda", LOCKED, &PandaArm)?;
-    print_robot_rows("panda", "panda", "mimic = independent", &Panda)?;
-    print_robot_rows("kinova", "kinova", "", &Kinova)?;
-    print_robot_rows("gen3", "gen3", "", &Gen3)?;
-    print_robot_rows("solo12", "solo12", "base = free", &Solo12)?;
-    print_robot_rows("anymal_b", "anymal_b", "base = free, inertia = trust", &AnymalB)?;
-    print_robot_rows("simple_humanoid", "simple_humanoid", "base = free", &SimpleHumanoid)?;
-    print_robot_rows("g1", "g1", "base = free", &G1)
+    print_robot_timing_rows("ur5", "ur5", "", &Ur5)?;
+    print_robot_timing_rows("panda_arm", "panda", LOCKED, &PandaArm)?;
+    print_robot_timing_rows("panda", "panda", "mimic = independent", &Panda)?;
+    print_robot_timing_rows("kinova", "kinova", "", &Kinova)?;
+    print_robot_timing_rows("gen3", "gen3", "", &Gen3)?;
+    print_robot_timing_rows("solo12", "solo12", "base = free", &Solo12)?;
+    print_robot_timing_rows("anymal_b", "anymal_b", "base = free, inertia = trust", &AnymalB)?;
+    print_robot_timing_rows("simple_humanoid", "simple_humanoid", "base = free", &SimpleHumanoid)?;
+    print_robot_timing_rows("g1", "g1", "base = free", &G1)
 }
 
 /// A sample state: configuration, velocity, and acceleration or force.
 type Sample<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
 
 /// Prints the rows of a robot: each function loaded at run time and compiled in.
-fn print_robot_rows<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn print_robot_timing_rows<M, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     file: &str,
     options: &str,
@@ -60,7 +60,7 @@ where
     let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
     let mut state = || (own.integrate(&own.neutral(), &vector(1.0)), vector(2.0), vector(2.0));
     let states: Vec<Sample<NQ, NV>> = (0..STATES).map(|_| state()).collect();
-    let comparison = Comparison { name, robot: &robot, states: &states };
+    let comparison = LoadedRobotComparison { name, robot: &robot, states: &states };
     comparison.print_function_row(
         "inverse_dynamics",
         |(q, v, a)| own.inverse_dynamics(0.0, q, v, a),
@@ -81,22 +81,22 @@ where
         |(q, v, a)| own.inverse_dynamics_derivatives(0.0, q, v, a),
         |(by_q, by_v)| vec![by_q.as_slice(), by_v.as_slice()],
     )?;
-    type Three<const N: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>);
+    type ThreeMatrices<const N: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>);
     comparison.print_function_row(
         "forward_dynamics_derivatives",
         |(q, v, tau)| own.forward_dynamics_derivatives(0.0, q, v, tau),
-        |(by_q, by_v, by_tau): &Three<NV>| vec![by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()],
+        |(by_q, by_v, by_tau): &ThreeMatrices<NV>| vec![by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()],
     )
 }
 
 /// Robot that is loaded at run time, and the states at which its functions are called.
-struct Comparison<'a, const NQ: usize, const NV: usize> {
+struct LoadedRobotComparison<'a, const NQ: usize, const NV: usize> {
     name: &'a str,
     robot: &'a Robot,
     states: &'a [Sample<NQ, NV>],
 }
 
-impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
+impl<const NQ: usize, const NV: usize> LoadedRobotComparison<'_, NQ, NV> {
     /// Measures one function both loaded at run time and compiled into the program, and prints its row.
     fn print_function_row<T>(
         &self,

@@ -5,7 +5,7 @@
 //! flag for the default target. The values are nanoseconds per call: the minimum over many batches, in which
 //! both take turns.
 
-use linkwork_benches::pairs::{Pair, benchmark_robots};
+use linkwork_benches::pairs::{ImplementationPair, benchmark_robots};
 use linkwork_benches::states::STATES;
 use std::time::{Duration, Instant};
 
@@ -41,7 +41,7 @@ fn main() {
 }
 
 /// Returns the times of the generated and of the generic implementation, ns per call.
-fn measure_pair(pair: &mut Pair) -> (f64, f64) {
+fn measure_pair(pair: &mut ImplementationPair) -> (f64, f64) {
     let (mut generated, mut generic) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();
     while start.elapsed() < BUDGET {

@@ -21,30 +21,33 @@ const STATES: usize = 64;
 const BOUND: f64 = 1e4;
 
 /// Sines and cosines of `N` angles.
-type Both<const N: usize> = ([f64; N], [f64; N]);
+type SineCosineArrays<const N: usize> = ([f64; N], [f64; N]);
 
 /// First part of a generated function: sines and cosines of the angles.
-struct Sines;
+struct SineCosineStage;
 
-impl<const N: usize> Evaluate<0, &[f64; N]> for Sines {
-    type Output = Both<N>;
+impl<const N: usize> Evaluate<0, &[f64; N]> for SineCosineStage {
+    type Output = SineCosineArrays<N>;
 
     #[inline(always)]
-    fn evaluate<A: Arithmetic>(&self, angles: &[f64; N]) -> Both<N> {
+    fn evaluate<A: Arithmetic>(&self, angles: &[f64; N]) -> SineCosineArrays<N> {
         A::sin_cos_all(*angles)
     }
 }
 
 /// Returns the implementations of Linkwork, of the standard library, and of `libm`.
-fn sine_implementations<const N: usize>() -> [fn(&[f64; N]) -> Both<N>; 3] {
+fn sine_implementations<const N: usize>() -> [fn(&[f64; N]) -> SineCosineArrays<N>; 3] {
     [
-        |x| dispatch::<0, f64, _, _>(&Sines, x),
-        |x| sines_and_cosines_by(x, f64::sin_cos),
-        |x| sines_and_cosines_by(x, libm::sincos),
+        |x| dispatch::<0, f64, _, _>(&SineCosineStage, x),
+        |x| sines_and_cosines_with_function(x, f64::sin_cos),
+        |x| sines_and_cosines_with_function(x, libm::sincos),
     ]
 }
 
-fn sines_and_cosines_by<const N: usize>(x: &[f64; N], sin_cos: impl Fn(f64) -> (f64, f64)) -> Both<N> {
+fn sines_and_cosines_with_function<const N: usize>(
+    x: &[f64; N],
+    sin_cos: impl Fn(f64) -> (f64, f64),
+) -> SineCosineArrays<N> {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         (*s, *c) = sin_cos(*x);

@@ -47,10 +47,10 @@ fn print_stack_table() {
         ($name:literal, $m:expr) => {
             print_dynamics_stack($name, &$m);
             let (q, v) = random_state(&$m);
-            print_derivatives_stack($name, "derivatives of inverse dynamics", || {
+            print_stack_of_call($name, "derivatives of inverse dynamics", || {
                 black_box($m.inverse_dynamics_derivatives(&q, &v, &v));
             });
-            print_derivatives_stack($name, "derivatives of forward dynamics", || {
+            print_stack_of_call($name, "derivatives of forward dynamics", || {
                 black_box($m.forward_dynamics_derivatives(&q, &v, &v));
             });
         };
@@ -94,7 +94,7 @@ where
     row!("forward dynamics", forward_dynamics, forward_dynamics_lanes, q q8, v v8, v v8);
 }
 
-fn print_derivatives_stack(name: &str, text: &str, mut call: impl FnMut()) {
+fn print_stack_of_call(name: &str, text: &str, mut call: impl FnMut()) {
     println!("| {name} | {text} | {} | |", bytes_to_kib(stack_usage_of_call(&mut call)));
 }
 

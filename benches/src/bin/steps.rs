@@ -6,9 +6,9 @@ use linkwork::prelude::*;
 use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::library::{self, Rows};
-use linkwork_benches::peers::own::{Call, Flat, GeneratedContender};
-use linkwork_benches::peers::turns::{TOLERANCE, measure_in_turns, remove_disagreeing};
+use linkwork_benches::peers::library::{self, StateRows};
+use linkwork_benches::peers::own::{Flat, GeneratedContender, MechanismCall};
+use linkwork_benches::peers::turns::{TOLERANCE, measure_in_turns, remove_disagreeing_contenders};
 use linkwork_benches::states::{STATES, State, random_states};
 use std::path::Path;
 use std::rc::Rc;
@@ -44,7 +44,7 @@ where
 struct StackedBlocks<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
 
 impl<const N: usize> Flat for StackedBlocks<N> {
-    fn flat(&self) -> Vec<f64> {
+    fn to_number_list(&self) -> Vec<f64> {
         let columns = self.0.iter().flat_map(|[q, v]| q.column_iter().zip(v.column_iter()));
         columns.flat_map(|(q, v)| q.iter().chain(v.iter()).copied().collect::<Vec<f64>>()).collect()
     }
@@ -54,7 +54,7 @@ impl<const N: usize> Flat for StackedBlocks<N> {
 fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
     mechanism: M,
     states: &Rc<Vec<State<N, N>>>,
-    call: Call<M, R, N, N>,
+    call: MechanismCall<M, R, N, N>,
 ) -> Box<dyn Contender> {
     let (owner, name, states) = (Owner::Linkwork, Function::Step.function_name(), states.clone());
     Box::new(GeneratedContender { owner, mechanism, states, name, call })
@@ -64,7 +64,7 @@ fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
 struct UnreadResult<R>(R);
 
 impl<R> Flat for UnreadResult<R> {
-    fn flat(&self) -> Vec<f64> {
+    fn to_number_list(&self) -> Vec<f64> {
         Vec::new()
     }
 }
@@ -85,15 +85,15 @@ where
 {
     let states: Rc<Vec<State<N, N>>> = Rc::new(random_states(model));
     if let Some(folder) = folder {
-        let numbers: Vec<f64> = states.iter().flat_map(State::all_numbers).collect();
-        let rows = Rows { nq: N, nv: N, numbers: numbers.leak() };
+        let numbers: Vec<f64> = states.iter().flat_map(State::concatenated_state_numbers).collect();
+        let rows = StateRows { nq: N, nv: N, numbers: numbers.leak() };
         let mut all = Vec::new();
         for file in ["plain.exact", "plain.fast", "shared.exact", "shared.fast"] {
             let path = folder.join(name).join(format!("step_{file}.so"));
-            all.extend(library::casadi_function(&path, Function::Step, rows));
+            all.extend(library::load_casadi_function(&path, Function::Step, rows));
         }
         all.push(linkwork_contender(m, &states, |m, s| StackedBlocks(step_jacobian(m, s))));
-        let wrong = remove_disagreeing(&mut all, name, (2 * N, STATES), TOLERANCE);
+        let wrong = remove_disagreeing_contenders(&mut all, name, (2 * N, STATES), TOLERANCE);
         if !wrong.is_empty() {
             return Err(wrong.join("\n"));
         }

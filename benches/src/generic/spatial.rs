@@ -205,7 +205,7 @@ impl AddAssign for Inertia {
 
 /// Articulated inertia: force `m a + hᵀ w`, moment `h a + i w` for an acceleration `(a, w)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Articulated {
+pub struct ArticulatedInertia {
     /// Block of the articulated inertia that maps linear acceleration to force.
     pub m: Matrix3<f64>,
     /// Block of the articulated inertia that maps linear acceleration to moment.
@@ -214,10 +214,10 @@ pub struct Articulated {
     pub i: Matrix3<f64>,
 }
 
-impl Articulated {
+impl ArticulatedInertia {
     /// Returns the articulated inertia of a rigid body.
-    pub fn from_rigid_inertia(inertia: &Inertia) -> Articulated {
-        Articulated {
+    pub fn from_rigid_inertia(inertia: &Inertia) -> ArticulatedInertia {
+        ArticulatedInertia {
             m: Matrix3::from_diagonal_element(inertia.mass),
             h: inertia.moment.cross_matrix(),
             i: inertia.tensor,
@@ -230,9 +230,9 @@ impl Articulated {
     }
 
     /// Returns the articulated inertia after elimination of a joint: `IA − U Uᵀ / D`.
-    pub fn subtract_rank_one(&self, u: &Spatial, inverse: f64) -> Articulated {
+    pub fn inertia_after_joint_elimination(&self, u: &Spatial, inverse: f64) -> ArticulatedInertia {
         let scaled = *u * inverse;
-        Articulated {
+        ArticulatedInertia {
             m: self.m - scaled.linear * u.linear.transpose(),
             h: self.h - scaled.angular * u.linear.transpose(),
             i: self.i - scaled.angular * u.angular.transpose(),
@@ -240,14 +240,14 @@ impl Articulated {
     }
 
     /// Transforms the articulated inertia to the parent's origin and axes.
-    pub fn inertia_in_parent(&self, placement: &Placement) -> Articulated {
+    pub fn inertia_in_parent(&self, placement: &Placement) -> ArticulatedInertia {
         let r = &placement.rotation;
         let rotate_matrix = |x: &Matrix3<f64>| r * x * r.transpose();
         let p = placement.translation.cross_matrix();
         let m = rotate_matrix(&self.m);
         let h = rotate_matrix(&self.h);
         let moved = h + p * m;
-        Articulated { m, h: moved, i: rotate_matrix(&self.i) - moved * p + p * h.transpose() }
+        ArticulatedInertia { m, h: moved, i: rotate_matrix(&self.i) - moved * p + p * h.transpose() }
     }
 
     /// Returns the acceleration that a wrench causes by this articulated inertia.
@@ -263,8 +263,8 @@ impl Articulated {
     }
 }
 
-impl AddAssign for Articulated {
-    fn add_assign(&mut self, b: Articulated) {
+impl AddAssign for ArticulatedInertia {
+    fn add_assign(&mut self, b: ArticulatedInertia) {
         self.m += b.m;
         self.h += b.h;
         self.i += b.i;

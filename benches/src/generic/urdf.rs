@@ -58,7 +58,7 @@ struct UrdfReader<'a, 'd, 'i> {
 impl UrdfReader<'_, '_, '_> {
     /// Adds a moving link of zero mass, and returns its index.
     fn add(&mut self, parent: Option<usize>, placement: Placement, motion: Motion) -> usize {
-        let (nq, nv) = motion.coordinate_counts();
+        let (nq, nv) = motion.entry_counts_of_q_and_v();
         let (q, v) = (self.model.nq, self.model.nv);
         self.model.nq += nq;
         self.model.nv += nv;

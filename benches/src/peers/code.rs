@@ -12,8 +12,8 @@ const SMALLEST: u64 = 500;
 /// an address, into which it may have been inlined. Returns `None` if it only calls other functions, or if
 /// the system does not report the sizes.
 pub fn machine_code_bytes<M>(caller: *const (), name: &str) -> Option<u64> {
-    static SIZES: OnceLock<Option<Sizes>> = OnceLock::new();
-    let sizes = SIZES.get_or_init(Sizes::read_symbol_sizes).as_ref()?;
+    static SIZES: OnceLock<Option<SymbolCodeSizes>> = OnceLock::new();
+    let sizes = SIZES.get_or_init(SymbolCodeSizes::read_symbol_sizes).as_ref()?;
     let mechanism = type_name::<M>().rsplit("::").next()?;
     // Mangled names contain each identifier after its length.
     let end = format!("{}{mechanism}{}{name}", mechanism.len(), name.len());
@@ -22,13 +22,13 @@ pub fn machine_code_bytes<M>(caller: *const (), name: &str) -> Option<u64> {
     (all >= SMALLEST).then_some(all)
 }
 
-struct Sizes {
+struct SymbolCodeSizes {
     addresses: HashMap<u64, u64>,
     names: Vec<(String, u64)>,
 }
 
-impl Sizes {
-    fn read_symbol_sizes() -> Option<Sizes> {
+impl SymbolCodeSizes {
+    fn read_symbol_sizes() -> Option<SymbolCodeSizes> {
         let path = std::env::current_exe().ok()?;
         // The first line of the map is the start address of this program in memory.
         let maps = std::fs::read_to_string("/proc/self/maps").ok()?;
@@ -38,7 +38,7 @@ impl Sizes {
         let file = object::File::parse(&*file).ok()?;
         let offset = if file.kind() == ObjectKind::Dynamic { start } else { 0 };
         let symbol_name = |symbol: &object::Symbol<'_, '_>| symbol.name().unwrap_or_default().to_string();
-        Some(Sizes {
+        Some(SymbolCodeSizes {
             addresses: file.symbols().map(|symbol| (symbol.address() + offset, symbol.size())).collect(),
             names: file.symbols().map(|symbol| (symbol_name(&symbol), symbol.size())).collect(),
         })

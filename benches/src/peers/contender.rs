@@ -33,7 +33,7 @@ impl Function {
     ];
 
     /// Returns the title of the function in the printed table.
-    pub fn table_title(self) -> &'static str {
+    pub fn title_in_table(self) -> &'static str {
         match self {
             Function::Inverse => "inverse dynamics",
             Function::Mass => "mass matrix",

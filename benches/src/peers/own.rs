@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::rc::Rc;
 
 /// Closure type that calls one function of the mechanism `M` at a state.
-pub type Call<M, R, const NQ: usize, const NV: usize> = fn(&M, &State<NQ, NV>) -> R;
+pub type MechanismCall<M, R, const NQ: usize, const NV: usize> = fn(&M, &State<NQ, NV>) -> R;
 
 /// Contender that calls a generated function of a mechanism.
 pub struct GeneratedContender<M, R, const NQ: usize, const NV: usize> {
@@ -21,7 +21,7 @@ pub struct GeneratedContender<M, R, const NQ: usize, const NV: usize> {
     /// Name of the generated function that is called.
     pub name: &'static str,
     /// Closure that calls the generated function.
-    pub call: Call<M, R, NQ, NV>,
+    pub call: MechanismCall<M, R, NQ, NV>,
 }
 
 impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for GeneratedContender<M, R, NQ, NV> {
@@ -41,7 +41,7 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for GeneratedConten
     }
 
     fn result(&mut self, state: usize) -> Vec<f64> {
-        (self.call)(&self.mechanism, &self.states[state]).flat()
+        (self.call)(&self.mechanism, &self.states[state]).to_number_list()
     }
 
     fn bytes(&self) -> Option<u64> {
@@ -81,7 +81,7 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixCo
 
     fn result(&mut self, state: usize) -> Vec<f64> {
         (self.call)(&self.mechanism, &self.states[state], &mut self.matrices);
-        self.matrices.iter().flat_map(Flat::flat).collect()
+        self.matrices.iter().flat_map(Flat::to_number_list).collect()
     }
 
     fn bytes(&self) -> Option<u64> {
@@ -92,23 +92,23 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixCo
 /// Conversion of results to lists of numbers.
 pub trait Flat {
     /// Returns all numbers in column-major order.
-    fn flat(&self) -> Vec<f64>;
+    fn to_number_list(&self) -> Vec<f64>;
 }
 
 impl<const R: usize, const C: usize> Flat for SMatrix<f64, R, C> {
-    fn flat(&self) -> Vec<f64> {
+    fn to_number_list(&self) -> Vec<f64> {
         self.as_slice().to_vec()
     }
 }
 
 impl<A: Flat, B: Flat> Flat for (A, B) {
-    fn flat(&self) -> Vec<f64> {
-        [self.0.flat(), self.1.flat()].concat()
+    fn to_number_list(&self) -> Vec<f64> {
+        [self.0.to_number_list(), self.1.to_number_list()].concat()
     }
 }
 
 impl<A: Flat, B: Flat, C: Flat> Flat for (A, B, C) {
-    fn flat(&self) -> Vec<f64> {
-        [self.0.flat(), self.1.flat(), self.2.flat()].concat()
+    fn to_number_list(&self) -> Vec<f64> {
+        [self.0.to_number_list(), self.1.to_number_list(), self.2.to_number_list()].concat()
     }
 }

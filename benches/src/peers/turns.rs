@@ -9,7 +9,7 @@ pub const TOLERANCE: f64 = 1e-9;
 const BATCH: f64 = 1e-4;
 
 /// Measured time and code size of a contender.
-pub struct Measured {
+pub struct ContenderMeasurement {
     /// Library that the contender belongs to.
     pub owner: Owner,
     /// Variant of the contender among the implementations of one library.
@@ -22,7 +22,7 @@ pub struct Measured {
 
 /// Removes contenders whose results differ from those of the first one (Pinocchio if present). Returns a
 /// message for each removed contender of Linkwork.
-pub fn remove_disagreeing(
+pub fn remove_disagreeing_contenders(
     contenders: &mut Vec<Box<dyn Contender>>,
     what: &str,
     (nv, states): (usize, usize),
@@ -68,7 +68,11 @@ pub fn largest_or_nan(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Measures the contenders in turns, each for `budget` seconds. The result is the minimum time.
-pub fn measure_in_turns(contenders: &mut [Box<dyn Contender>], states: usize, budget: f64) -> Vec<Measured> {
+pub fn measure_in_turns(
+    contenders: &mut [Box<dyn Contender>],
+    states: usize,
+    budget: f64,
+) -> Vec<ContenderMeasurement> {
     let seconds_per_pass = |contender: &mut Box<dyn Contender>, passes: usize| {
         let start = clock::thread_seconds();
         for _ in 0..passes {
@@ -88,7 +92,7 @@ pub fn measure_in_turns(contenders: &mut [Box<dyn Contender>], states: usize, bu
             least[k] = least[k].min(seconds_per_pass(contender, passes[k]));
         }
     }
-    let measured = contenders.iter().zip(least).map(|(contender, least)| Measured {
+    let measured = contenders.iter().zip(least).map(|(contender, least)| ContenderMeasurement {
         owner: contender.owner(),
         variant: contender.variant(),
         time: least * 1e9 / states as f64,

@@ -17,13 +17,13 @@ const SATISFIED: f64 = 1e-10;
 const ASSEMBLIES: u8 = 50;
 
 /// Constraints of a mechanism, evaluated for its assembly.
-pub struct Assembly<'a, 'g> {
+pub struct MechanismAssembler<'a, 'g> {
     pub robot: &'a Robot,
     pub model: &'a Model<'g>,
 }
 
 /// Returns the indices of the marks that are true.
-fn marked_indices(marks: &[bool]) -> Vec<usize> {
+fn indices_of_true_values(marks: &[bool]) -> Vec<usize> {
     (0..marks.len()).filter(|k| marks[*k]).collect()
 }
 
@@ -32,19 +32,19 @@ fn perturbation_of_guess(attempt: u8, k: usize) -> f64 {
     2.0 * (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract() - 1.0
 }
 
-impl Assembly<'_, '_> {
+impl MechanismAssembler<'_, '_> {
     /// Iterates over the ranges of configuration entries that change together, with their velocities: the
     /// entries of a rotation, or the position of a free body.
-    fn coupled_ranges(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+    fn coupled_entry_ranges(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         self.model
             .charts
             .iter()
             .flat_map(|chart| match *chart {
-                Chart::Plain(at, from) => [Some((at.and_next(1), from.and_next(1))), None],
-                Chart::Ball(at, from) => [Some((at.and_next(4), from.and_next(3))), None],
+                Chart::Plain(at, from) => [Some((at.range_of_entries(1), from.range_of_entries(1))), None],
+                Chart::Ball(at, from) => [Some((at.range_of_entries(4), from.range_of_entries(3))), None],
                 Chart::Free(at, from) => [
-                    Some((at.and_next(3), from.and_next(3))),
-                    Some(((at + 3).and_next(4), (from + 3).and_next(3))),
+                    Some((at.range_of_entries(3), from.range_of_entries(3))),
+                    Some(((at + 3).range_of_entries(4), (from + 3).range_of_entries(3))),
                 ],
             })
             .flatten()
@@ -54,16 +54,16 @@ impl Assembly<'_, '_> {
     /// together with them.
     pub fn velocities_moving_entries(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
-        for (entries, velocities) in self.coupled_ranges() {
+        for (entries, velocities) in self.coupled_entry_ranges() {
             moving[velocities].fill(marks[entries].contains(&true));
         }
         moving
     }
 
     /// Returns which entries of a configuration are changed by marked velocities of joints only.
-    fn entries_moved_only_by(&self, marks: &[bool]) -> Vec<bool> {
+    fn entries_moved_only_by_marked(&self, marks: &[bool]) -> Vec<bool> {
         let mut found = vec![false; self.model.nq()];
-        for (entries, velocities) in self.coupled_ranges() {
+        for (entries, velocities) in self.coupled_entry_ranges() {
             found[entries].fill(!marks[velocities].contains(&false));
         }
         found
@@ -72,11 +72,11 @@ impl Assembly<'_, '_> {
     fn evaluate_function(&self, name: &str, arguments: &[(&str, &[f64])]) -> Option<Vec<f64>> {
         let f = self.robot.function(name).ok()?;
         let time = [0.0];
-        let find_argument_values = |(name, _): &(&str, usize)| match *name {
+        let values_by_argument_name = |(name, _): &(&str, usize)| match *name {
             "t" => Some(&time[..]),
             name => arguments.iter().find(|(known, _)| *known == name).map(|(_, values)| *values),
         };
-        let arguments: Option<Vec<&[f64]>> = f.arguments().iter().map(find_argument_values).collect();
+        let arguments: Option<Vec<&[f64]>> = f.arguments().iter().map(values_by_argument_name).collect();
         self.robot.evaluate(&f, &arguments?).ok()
     }
 
@@ -144,12 +144,12 @@ impl Assembly<'_, '_> {
         held: &[bool],
     ) -> Result<Vec<f64>, Stop> {
         let mut zero = self.robot.neutral()?.as_slice().to_vec();
-        let is_apart = self.entries_moved_only_by(apart);
+        let is_apart = self.entries_moved_only_by_marked(apart);
         for k in (0..q.len()).filter(|k| is_apart[*k]) {
             zero[k] = q[k];
         }
         let Some(begin) = self.assemble_near(&zero, &zero, apart) else { return Ok(q.to_vec()) };
-        let (mut at, held) = (begin.clone(), marked_indices(held));
+        let (mut at, held) = (begin.clone(), indices_of_true_values(held));
         for step in 1..=STEPS {
             let part = f64::from(step) / f64::from(STEPS);
             for k in (0..q.len()).filter(|k| given[*k]) {
@@ -169,7 +169,7 @@ impl Assembly<'_, '_> {
     /// velocities are held. The search starts from `q`, then from increasingly perturbed values of the other
     /// entries. The first result whose angles are within half a revolution of the guess is preferred.
     pub fn assemble_near(&self, q: &[f64], guess: &[f64], held: &[bool]) -> Option<Vec<f64>> {
-        let (given, held) = (self.entries_moved_only_by(held), marked_indices(held));
+        let (given, held) = (self.entries_moved_only_by_marked(held), indices_of_true_values(held));
         let mut far = None;
         let nearby = (0..=ASSEMBLIES).filter_map(|attempt| {
             let mut from = q.to_vec();
@@ -223,13 +223,18 @@ impl Assembly<'_, '_> {
 
     /// Returns the velocity with the held entries of `v` that satisfies the constraints; `None` if the held
     /// velocities contradict the constraints.
-    pub fn complete_held_velocity(&self, q: &[f64], v: &[f64], held: &[bool]) -> Option<Vec<f64>> {
-        let found = self.robot.complete_velocity(q, v, &marked_indices(held)).ok()?;
+    pub fn complete_velocity_from_fixed_entries(
+        &self,
+        q: &[f64],
+        v: &[f64],
+        held: &[bool],
+    ) -> Option<Vec<f64>> {
+        let found = self.robot.complete_velocity(q, v, &indices_of_true_values(held)).ok()?;
         Some(found.as_slice().to_vec())
     }
 
     /// Returns the assembly mode of a configuration, see [`Robot::assembly_mode`].
-    pub fn assembly_mode_of(&self, q: &[f64], held: &[bool]) -> Option<i8> {
-        self.robot.assembly_mode(q, &marked_indices(held)).ok().flatten()
+    pub fn assembly_mode_of_configuration(&self, q: &[f64], held: &[bool]) -> Option<i8> {
+        self.robot.assembly_mode(q, &indices_of_true_values(held)).ok().flatten()
     }
 }

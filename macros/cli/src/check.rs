@@ -47,6 +47,6 @@ fn error_as_json(error: &SourceError) -> Value {
         "column": error.at.map(|at| at.1),
         "message": error.message,
         "notes": error.notes,
-        "help": error.helps,
+        "help": error.help_lines,
     })
 }

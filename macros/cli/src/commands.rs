@@ -13,17 +13,19 @@ pub fn linkwork_command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(
-            add_input(Command::new("check").about("Lists every error with its position")).arg(json_switch()),
+            add_input_file_arguments(
+                Command::new("check").about("Lists every error with its position")).arg(json_switch(),
+            ),
         )
         .subcommand(
-            add_input(
+            add_input_file_arguments(
                 Command::new("show")
                     .about("Prints coordinates, units, structure, equations and operation counts"),
             )
             .arg(json_switch()),
         )
         .subcommand(
-            add_motion_options(add_input(Command::new("simulate").about(
+            add_motion_options(add_input_file_arguments(Command::new("simulate").about(
                 "Simulates a motion and prints it as comma-separated values: t, q.…, v.…, u.… (with `--out \
                  NAME.mcap` as a log for robotics tools)",
             )))
@@ -47,7 +49,7 @@ pub fn linkwork_command() -> Command {
                 ),
         )
         .subcommand(
-            add_input(
+            add_input_file_arguments(
                 Command::new("convert").about("Converts a robot file to a Rust struct"),
             )
             .arg(out_file_argument()),
@@ -81,7 +83,7 @@ pub fn linkwork_command() -> Command {
 
 /// Returns the definition of the subcommand `linkwork view`.
 pub fn view_command() -> Command {
-    add_motion_options(add_input(
+    add_motion_options(add_input_file_arguments(
         Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
     ))
     .arg(
@@ -129,23 +131,23 @@ fn export_command() -> Command {
         .about("Writes a mechanism's functions")
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommand(export_c())
-        .subcommand(export_kernels(
+        .subcommand(c_export_command())
+        .subcommand(kernel_export_command(
             "cuda",
             "CUDA: kernels of all functions for many states, and their launchers",
         ))
-        .subcommand(export_kernels("wgsl", "WGSL: compute shaders of the functions for many states"))
-        .subcommand(export_fmu())
-        .subcommand(export_library())
+        .subcommand(kernel_export_command("wgsl", "WGSL: compute shaders of the functions for many states"))
+        .subcommand(fmu_export_command())
+        .subcommand(library_export_command())
         .subcommand(
-            add_input(Command::new("rust").about("The generated Rust code, for reading"))
+            add_input_file_arguments(Command::new("rust").about("The generated Rust code, for reading"))
                 .arg(out_file_argument()),
         )
 }
 
-fn export_c() -> Command {
+fn c_export_command() -> Command {
     let command = Command::new("c").about("C99: a source file and a header that need only libm");
-    with_source_options(command, "Output folder of the two files")
+    add_source_options(command, "Output folder of the two files")
         .arg(switch_argument(
             "casadi",
             "Writes a third file: the functions in the form that CasADi and acados call",
@@ -157,13 +159,13 @@ fn export_c() -> Command {
         )
 }
 
-fn export_kernels(name: &'static str, about: &'static str) -> Command {
-    with_source_options(Command::new(name).about(about), "Output folder of the files")
+fn kernel_export_command(name: &'static str, about: &'static str) -> Command {
+    add_source_options(Command::new(name).about(about), "Output folder of the files")
 }
 
 /// Adds the options that all exports of source code share.
-fn with_source_options(command: Command, folder: &'static str) -> Command {
-    add_input(command)
+fn add_source_options(command: Command, folder: &'static str) -> Command {
+    add_input_file_arguments(command)
         .arg(
             text_argument("out", "FOLDER", folder)
                 .short('o')
@@ -178,10 +180,10 @@ fn with_source_options(command: Command, folder: &'static str) -> Command {
         .arg(switch_argument("no-derivatives", "Leaves out the derivatives of the dynamics"))
 }
 
-fn export_fmu() -> Command {
+fn fmu_export_command() -> Command {
     let command =
         Command::new("fmu").about("FMI 3.0: a model for simulation tools, with sources and a binary");
-    add_start_options(add_table_options(add_input(command)))
+    add_start_options(add_table_options(add_input_file_arguments(command)))
         .arg(
             text_argument("out", "FILE", "Output file [default: the mechanism's name with .fmu]")
                 .short('o')
@@ -205,8 +207,8 @@ fn export_fmu() -> Command {
         )
 }
 
-fn export_library() -> Command {
-    add_table_options(add_input(
+fn library_export_command() -> Command {
+    add_table_options(add_input_file_arguments(
         Command::new("library")
             .about("A crate and a header: all functions on plain arrays, as a shared and a static library"),
     ))
@@ -227,7 +229,7 @@ fn export_library() -> Command {
     ))
 }
 
-fn add_input(command: Command) -> Command {
+fn add_input_file_arguments(command: Command) -> Command {
     command
         .arg(
             Arg::new("file")
@@ -306,14 +308,14 @@ fn add_motion_options(command: Command) -> Command {
                 "Method of integration [default: automatic: Dormand–Prince, from where it is stiff RODAS, \
                  with contacts time stepping]",
             )
-            .value_parser(integration_method_names()),
+            .value_parser(integration_method_parser()),
         )
         .arg(number_argument("step", "SECONDS", "Step of methods with fixed steps [default: 1e-3]"))
         .arg(switch_argument("without-contacts", "Ignores contacts: bodies pass through each other"))
 }
 
 /// Parser of the option for the integration method, with the names of the methods.
-fn integration_method_names() -> PossibleValuesParser {
+fn integration_method_parser() -> PossibleValuesParser {
     let names = linkwork_jit::Method::NAMES.iter();
     PossibleValuesParser::new(names.map(|(name, ..)| -> &'static str { name.replace('_', "-").leak() }))
 }
@@ -337,6 +339,6 @@ fn out_file_argument() -> Arg {
 }
 
 /// Returns the value of an option that is a text, if the option is present.
-pub fn text_option<'a>(matches: &'a ArgMatches, name: &str) -> Option<&'a str> {
+pub fn text_option_value<'a>(matches: &'a ArgMatches, name: &str) -> Option<&'a str> {
     matches.get_one::<String>(name).map(String::as_str)
 }

@@ -4,15 +4,15 @@ use crate::Stop;
 use crate::export::write_output;
 use crate::input::Input;
 use crate::names::Names;
-use crate::written::{self, Role, format_number, format_vector};
+use crate::written::{self, NameRole, format_number, format_vector};
 use clap::ArgMatches;
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{
-    Body, ConstraintKind, Description, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, GROUND, Inertias,
-    Joint, JointKind, Key, Limit, Name, Requests, Wrench,
+    Body, ConstraintKind, Description, Drive, DriveLaw, DriveTarget, Endpoint, Expr, ExprKind, GROUND,
+    InertiaOption, Joint, JointKind, Key, Limit, Name, RequestedFunctions, Wrench,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -40,7 +40,7 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
     if !source.mechanism.shell.file_fields.is_empty() {
         return Err(Stop::Failure("`parameters` is for structs that refer to the file".to_string()));
     }
-    if source.mechanism.requests != Requests::default() {
+    if source.mechanism.requests != RequestedFunctions::default() {
         return Err(Stop::Failure(
             "`convert` takes the options for reading the file: write options that request functions in the \
              struct"
@@ -48,8 +48,8 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
         ));
     }
     let description = &source.mechanism.description;
-    let has_state = |drive: &&Drive| matches!(drive.law, DriveLaw::Expression { .. });
-    if let Some(drive) = description.drives.iter().find(has_state) {
+    let is_expression_drive = |drive: &&Drive| matches!(drive.law, DriveLaw::Expression { .. });
+    if let Some(drive) = description.drives.iter().find(is_expression_drive) {
         return Err(Stop::Failure(format!(
             "`convert` cannot write the actuator `{}`, whose force depends on a state or on its inputs: keep \
              the file, `#[mechanism(mjcf = \"…\")]`",
@@ -63,7 +63,7 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
     let mut struct_of = ConvertedStruct::new(description);
     let text = struct_of.convert_to_struct(&input);
     struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));
-    struct_of.print_renamed();
+    struct_of.print_renamed_elements();
     write_output(matches, &text)
 }
 
@@ -90,17 +90,17 @@ impl<'a> ConvertedStruct<'a> {
         let links = taken.add(description.bodies.iter().map(|body| &*body.name.text), "link");
         let joints = taken.add(description.joints.iter().map(|joint| &*joint.name.text), "joint");
         let (fields, notes, renamed) = (String::new(), Vec::new(), Vec::new());
-        let constant = constant_lengths(description);
+        let constant = drives_on_constant_lengths(description);
         let mut made =
             ConvertedStruct { description, links, joints, others: taken, constant, fields, notes, renamed };
         let links = description
             .bodies
             .iter()
-            .map(|body| ("link", &body.name.text, made.links.field_or_same(&body.name.text)));
+            .map(|body| ("link", &body.name.text, made.links.field_name_or_original(&body.name.text)));
         let joints = description
             .joints
             .iter()
-            .map(|joint| ("joint", &joint.name.text, made.joints.field_or_same(&joint.name.text)));
+            .map(|joint| ("joint", &joint.name.text, made.joints.field_name_or_original(&joint.name.text)));
         let all: Vec<_> = links.chain(joints).collect();
         all.into_iter().for_each(|(kind, name, field)| made.record_renamed_element(kind, name, &field));
         made
@@ -114,7 +114,7 @@ impl<'a> ConvertedStruct<'a> {
     }
 
     /// Prints the first elements whose names in the struct differ from those in the file.
-    fn print_renamed(&self) {
+    fn print_renamed_elements(&self) {
         let shown = self.renamed.iter().take(RENAMED_SHOWN);
         let shown: Vec<String> = shown.map(|(what, field)| format!("{what} is `{field}`")).collect();
         let more = match self.renamed.len().saturating_sub(RENAMED_SHOWN) {
@@ -130,8 +130,8 @@ impl<'a> ConvertedStruct<'a> {
         let d = self.description;
         d.bodies.iter().filter(|body| body.name.text != GROUND).for_each(|body| self.add_body(body));
         d.joints.iter().for_each(|joint| self.add_joint(joint));
-        d.joints.iter().for_each(|joint| self.add_elements_of_joint(joint));
-        self.add_inputs();
+        d.joints.iter().for_each(|joint| self.add_joint_elements(joint));
+        self.add_input_fields();
         d.drives.iter().for_each(|drive| self.add_drive(drive));
         for (name, e) in &d.dissipations {
             let e = self.format_expression(e);
@@ -161,9 +161,9 @@ impl<'a> ConvertedStruct<'a> {
             d.gravity.as_ref().map_or("0 * z".to_string(), written::format_gravity)
         )];
         match d.inertias {
-            Inertias::Check => {}
-            Inertias::Trust => options.push("inertia = trust".to_string()),
-            Inertias::None => options.push("inertia = none".to_string()),
+            InertiaOption::Check => {}
+            InertiaOption::Trust => options.push("inertia = trust".to_string()),
+            InertiaOption::None => options.push("inertia = none".to_string()),
         }
         let file = input.file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let mut text = format!("use linkwork::prelude::*;\n\n/// From `{file}`.\n");
@@ -221,7 +221,7 @@ impl<'a> ConvertedStruct<'a> {
         } else {
             format!("#[body({})]", figures.join(", "))
         };
-        let name = self.links.field_or_same(&body.name.text);
+        let name = self.links.field_name_or_original(&body.name.text);
         self.add_field(&attribute, &name, "Body");
     }
 
@@ -242,12 +242,12 @@ impl<'a> ConvertedStruct<'a> {
         for (word, e) in [("pitch", &joint.pitch), ("lead", &joint.lead)] {
             figures.extend(e.as_ref().map(|e| format!("{word} = {}", self.format_expression(e))));
         }
-        let name = self.joints.field_or_same(&joint.name.text);
+        let name = self.joints.field_name_or_original(&joint.name.text);
         self.add_field(&format!("#[joint({})]", figures.join(", ")), &name, &format!("{:?}", joint.kind));
     }
 
     fn format_endpoint(&self, end: &Endpoint) -> String {
-        let mut text = self.links.field_or_same(&end.body.text);
+        let mut text = self.links.field_name_or_original(&end.body.text);
         if let Some(at) = &end.at {
             let _ = write!(text, ".at({})", self.format_vector(at));
         }
@@ -259,8 +259,8 @@ impl<'a> ConvertedStruct<'a> {
     }
 
     /// Adds the elements that belong to a joint: damping, friction, and the constraint of a mimic joint.
-    fn add_elements_of_joint(&mut self, joint: &Joint) {
-        let on = self.joints.field_or_same(&joint.name.text);
+    fn add_joint_elements(&mut self, joint: &Joint) {
+        let on = self.joints.field_name_or_original(&joint.name.text);
         if let Some(damping) = &joint.damping {
             let e = self.format_expression(damping);
             self.add_unique_field(
@@ -278,7 +278,7 @@ impl<'a> ConvertedStruct<'a> {
             );
         }
         if let Some(mimic) = &joint.mimic {
-            let master = self.joints.field_or_same(&mimic.joint.text);
+            let master = self.joints.field_name_or_original(&mimic.joint.text);
             let mut rule = format!("{on} = {} * {master}", format_number(mimic.multiplier));
             if mimic.offset != 0.0 {
                 let _ = write!(rule, " + {}", format_number(mimic.offset));
@@ -291,9 +291,9 @@ impl<'a> ConvertedStruct<'a> {
     }
 
     /// Adds the input fields of the struct, in the order of the robot file.
-    fn add_inputs(&mut self) {
+    fn add_input_fields(&mut self) {
         for joint in self.description.joints.iter().filter(|joint| joint.driven && joint.mimic.is_none()) {
-            let on = self.joints.field_or_same(&joint.name.text);
+            let on = self.joints.field_name_or_original(&joint.name.text);
             let attribute = format!("#[acts(on = {on})]");
             let motor = self.add_unique_field(&attribute, &format!("{on}_motor"), motor_type(joint.kind));
             self.record_renamed_element("input", &joint.name.text, &motor);
@@ -301,7 +301,7 @@ impl<'a> ConvertedStruct<'a> {
         let is_driven_by_input = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
         for drive in self.description.drives.iter().filter(is_driven_by_input) {
             if let [(joint, 1.0)] = drive.on.weighted_joints() {
-                let on = self.joints.field_or_same(&joint.text);
+                let on = self.joints.field_name_or_original(&joint.text);
                 let kind = motor_type(self.kind_of_joint(&joint.text));
                 self.declare_named_element(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
             } else if let Some(on) = self.length(drive) {
@@ -314,7 +314,7 @@ impl<'a> ConvertedStruct<'a> {
                 let name = self.others.unused_field_name(&drive.name.text, "input");
                 self.record_renamed_element("input", &drive.name.text, &name);
                 let _ = writeln!(self.fields, "    {name}: Input,");
-                if let DriveOn::Wrench(wrench) = &drive.on {
+                if let DriveTarget::Wrench(wrench) = &drive.on {
                     self.add_wrench(wrench, &name, &name);
                 }
             }
@@ -325,23 +325,29 @@ impl<'a> ConvertedStruct<'a> {
     /// change with the motion, and for a drive at a point of a body.
     fn length(&self, drive: &Drive) -> Option<String> {
         match &drive.on {
-            DriveOn::Length(length) => {
+            DriveTarget::Length(length) => {
                 (!self.constant.contains(&drive.name.text)).then(|| self.format_expression(length))
             }
-            DriveOn::Sum(terms) => {
+            DriveTarget::Sum(terms) => {
                 let terms = terms.iter().filter(|(_, weight)| *weight != 0.0);
-                let term = |(joint, weight): &(Name, f64)| {
-                    format!("{} * {}", format_number(*weight), self.joints.field_or_same(&joint.text))
+                let weighted_joint_term = |(joint, weight): &(Name, f64)| {
+                    format!(
+                        "{} * {}",
+                        format_number(*weight),
+                        self.joints.field_name_or_original(&joint.text)
+                    )
                 };
-                terms.map(term).reduce(|sum, term| format!("{sum} + {term}"))
+                terms
+                    .map(weighted_joint_term)
+                    .reduce(|sum, weighted_joint_term| format!("{sum} + {weighted_joint_term}"))
             }
-            DriveOn::Wrench(_) => None,
+            DriveTarget::Wrench(_) => None,
         }
     }
 
     /// Adds forces and torques that are the components of a wrench times a factor.
     fn add_wrench(&mut self, wrench: &Wrench, name: &str, factor: &str) {
-        let Some((point, body)) = self.body_of_wrench(wrench, name) else { return };
+        let Some((point, body)) = self.point_and_body_of_wrench(wrench, name) else { return };
         for (kind, on, vector) in [("Force", &point, wrench.force), ("Torque", &body, wrench.torque)] {
             if vector != [0.0; 3] {
                 let value = vector_in_axes(vector, &body);
@@ -353,7 +359,7 @@ impl<'a> ConvertedStruct<'a> {
 
     /// Adds dashpots for the damping along the velocity of a wrench's point.
     fn add_wrench_damping(&mut self, wrench: &Wrench, name: &str, damping: f64) {
-        let Some((point, body)) = self.body_of_wrench(wrench, name) else { return };
+        let Some((point, body)) = self.point_and_body_of_wrench(wrench, name) else { return };
         let mut rates = Vec::new();
         if wrench.force != [0.0; 3] {
             rates.push(format!("dot(v({point} / ground / ground), {})", vector_in_axes(wrench.force, &body)));
@@ -370,7 +376,7 @@ impl<'a> ConvertedStruct<'a> {
 
     /// Returns the point of application of a wrench, and its body. A wrench with a reaction on another body,
     /// or on a body that is fixed to the ground, is omitted and noted.
-    fn body_of_wrench(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
+    fn point_and_body_of_wrench(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
         if wrench.against.is_some() {
             self.notes.push(format!("`{name}`, which acts between points of two bodies, has no effect here"));
             return None;
@@ -380,18 +386,18 @@ impl<'a> ConvertedStruct<'a> {
             _ => wrench.on.as_name(),
         };
         let body = body.filter(|body| *body != GROUND)?;
-        if self.is_fixed(body) {
+        if self.is_welded_to_ground(body) {
             let note =
                 format!("`{name}`, which acts on a body that is fixed to the ground, has no effect here");
             self.notes.push(note);
             return None;
         }
         let point = written::format_point(&wrench.on, &|name| self.links.field_name(name));
-        Some((point, self.links.field_or_same(body)))
+        Some((point, self.links.field_name_or_original(body)))
     }
 
     /// Whether welds alone lead from the ground to a body.
-    fn is_fixed(&self, body: &str) -> bool {
+    fn is_welded_to_ground(&self, body: &str) -> bool {
         let joints = &self.description.joints;
         let mut at = body;
         // A chain is no longer than the list of joints.
@@ -417,7 +423,7 @@ impl<'a> ConvertedStruct<'a> {
         if matches!(drive.law, DriveLaw::Input(_)) {
             return;
         }
-        if let DriveOn::Wrench(wrench) = &drive.on {
+        if let DriveTarget::Wrench(wrench) = &drive.on {
             match drive.law {
                 DriveLaw::Push(force) => self.add_wrench(wrench, name, &format_number(force)),
                 DriveLaw::Damper(damping) => self.add_wrench_damping(wrench, name, damping),
@@ -439,12 +445,13 @@ impl<'a> ConvertedStruct<'a> {
         if let [(joint, w)] = drive.on.weighted_joints()
             && (*w == 1.0 || !is_scaled || (*w == -1.0 && matches!(drive.law, DriveLaw::Friction(_))))
         {
-            let (on, w, kind) = (self.joints.field_or_same(&joint.text), *w, self.kind_of_joint(&joint.text));
+            let (on, w, kind) =
+                (self.joints.field_name_or_original(&joint.text), *w, self.kind_of_joint(&joint.text));
             let (figures, element) = match drive.law {
                 DriveLaw::Slack { stiffness, range } => {
                     let range = range.map(|end| end / w);
                     (
-                        slack_spring_energy(
+                        slack_spring_energy_source(
                             stiffness.map(|k| k * w * w),
                             if w < 0.0 { [range[1], range[0]] } else { range },
                         ),
@@ -460,7 +467,7 @@ impl<'a> ConvertedStruct<'a> {
                     };
                     (format!("stiffness = {}{free}", format_number(stiffness * w * w)), "Spring")
                 }
-                DriveLaw::Damper(damping) => (damper_law(damping * w * w), "Dashpot"),
+                DriveLaw::Damper(damping) => (damper_law_text(damping * w * w), "Dashpot"),
                 DriveLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
                 DriveLaw::Friction(force) => {
                     (format!("coulomb = {}", format_number((force * w).abs())), "Friction")
@@ -487,8 +494,8 @@ impl<'a> ConvertedStruct<'a> {
                 format!("stiffness = {}, free_length = {}", format_number(stiffness), format_number(free)),
                 "Spring",
             ),
-            DriveLaw::Slack { stiffness, range } => (slack_spring_energy(stiffness, range), "Spring"),
-            DriveLaw::Damper(damping) => (damper_law(damping), "Dashpot"),
+            DriveLaw::Slack { stiffness, range } => (slack_spring_energy_source(stiffness, range), "Spring"),
+            DriveLaw::Damper(damping) => (damper_law_text(damping), "Dashpot"),
             DriveLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
             DriveLaw::Friction(force) => (format!("coulomb = {}", format_number(force)), "Friction"),
             DriveLaw::Inerter(inertance) => (format!("inertance = {}", format_number(inertance)), "Inerter"),
@@ -518,8 +525,8 @@ impl<'a> ConvertedStruct<'a> {
 
     fn format_expression(&self, e: &Expr) -> String {
         written::format_expression(e, &|name, role| match role {
-            Role::Body => self.links.field_name(name),
-            Role::Coordinate => self.joints.field_name(name).or_else(|| self.links.field_name(name)),
+            NameRole::Body => self.links.field_name(name),
+            NameRole::Coordinate => self.joints.field_name(name).or_else(|| self.links.field_name(name)),
         })
     }
 }
@@ -536,7 +543,7 @@ fn vector_in_axes(vector: [f64; 3], body: &str) -> String {
 }
 
 /// Returns the law of a damper; one with a negative coefficient, which adds energy, is written as a force.
-fn damper_law(damping: f64) -> String {
+fn damper_law_text(damping: f64) -> String {
     match damping < 0.0 {
         true => format!("force = {} * speed", format_number(damping)),
         false => format!("damping = {}", format_number(damping)),
@@ -545,9 +552,9 @@ fn damper_law(damping: f64) -> String {
 
 /// Returns the names of drives on lengths that do not change with the motion, so that the drives have no
 /// effect.
-fn constant_lengths(description: &Description) -> BTreeSet<String> {
-    let is_length = |drive: &&Drive| matches!(drive.on, DriveOn::Length(_));
-    let lengths: Vec<&Drive> = description.drives.iter().filter(is_length).collect();
+fn drives_on_constant_lengths(description: &Description) -> BTreeSet<String> {
+    let acts_on_length = |drive: &&Drive| matches!(drive.on, DriveTarget::Length(_));
+    let lengths: Vec<&Drive> = description.drives.iter().filter(acts_on_length).collect();
     // The forces on the lengths have different magnitudes, so that the model shows which of them it has.
     let numbered_push =
         |(k, drive): (usize, &&Drive)| Drive { law: DriveLaw::Push(k as f64 + 1.0), ..(*drive).clone() };
@@ -558,8 +565,8 @@ fn constant_lengths(description: &Description) -> BTreeSet<String> {
     let graph = Graph::new();
     let Some(model) = build_model(&probe, &graph, &mut Diagnostics::new()) else { return BTreeSet::new() };
     let forces: Vec<f64> = model.loads.iter().filter_map(|load| load.force.constant_value()).collect();
-    let is_constant = |k: usize| !forces.contains(&(k as f64 + 1.0));
-    let names = lengths.iter().enumerate().filter(|(k, _)| is_constant(*k));
+    let has_constant_length = |k: usize| !forces.contains(&(k as f64 + 1.0));
+    let names = lengths.iter().enumerate().filter(|(k, _)| has_constant_length(*k));
     names.map(|(_, drive)| drive.name.text.clone()).collect()
 }
 
@@ -571,15 +578,15 @@ fn polynomial_damper_law(damping: [f64; 3]) -> String {
 
 /// Returns the energy of a spring that is slack within a range, and whose force is a polynomial of the excess
 /// beyond it, with these coefficients of its first three powers.
-fn slack_spring_energy(stiffness: [f64; 3], [low, high]: [f64; 2]) -> String {
+fn slack_spring_energy_source(stiffness: [f64; 3], [low, high]: [f64; 2]) -> String {
     let (from, to) = (format_number(low), format_number(high));
-    let power_of_excess = |n: u8| match low == high {
+    let power_of_excess_text = |n: u8| match low == high {
         true => format!("pow(stretch - {from}, {n})"),
         false => format!("(pow(min(stretch - {from}, 0), {n}) + pow(max(stretch - {to}, 0), {n}))"),
     };
     let terms = [(stiffness[0] / 2.0, 2), (stiffness[1] / 3.0, 3), (stiffness[2] / 4.0, 4)];
     let terms = terms.into_iter().filter(|(k, _)| *k != 0.0);
     let terms: Vec<String> =
-        terms.map(|(k, n)| format!("{} * {}", format_number(k), power_of_excess(n))).collect();
+        terms.map(|(k, n)| format!("{} * {}", format_number(k), power_of_excess_text(n))).collect();
     format!("energy = {}", terms.join(" + "))
 }

@@ -2,14 +2,14 @@
 //! readable Rust.
 
 use crate::Stop;
-use crate::commands::text_option;
+use crate::commands::text_option_value;
 use crate::input::Input;
 use crate::library;
 use crate::motion::named_option_values;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::export::{Options, identifier_from_name, prefix_identifier, snake_case_prefix};
-use linkwork_compiler::syntax::{Inertias, ScalarType};
+use linkwork_compiler::export::{Options, c_name_prefix, identifier_from_name, snake_case_prefix};
+use linkwork_compiler::syntax::{InertiaOption, ScalarType};
 use linkwork_compiler::{Source, expand, export_c, export_cuda, export_wgsl};
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
-    let single = prepare_source(&mut source, matches);
+    let single = request_export_derivatives(&mut source, matches);
     let prefix = checked_prefix(matches, "C")?;
     let fixed = named_option_values("set", matches)?;
     let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
@@ -28,7 +28,7 @@ pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
     let files = input.result_without_errors(files, cx)?;
     let texts = [(".h", &files.header), (".c", &files.source)];
     let casadi = files.casadi.as_ref().map(|text| ("_casadi.c", text));
-    write_all(matches, &files.prefix, &texts.into_iter().chain(casadi).collect::<Vec<_>>())?;
+    write_files_with_prefix(matches, &files.prefix, &texts.into_iter().chain(casadi).collect::<Vec<_>>())?;
     for line in &files.left_out {
         crate::note!("linkwork: not in C: {line}");
     }
@@ -41,12 +41,12 @@ pub fn export_cuda_files(matches: &ArgMatches) -> Result<(), Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
-    let single = prepare_source(&mut source, matches);
+    let single = request_export_derivatives(&mut source, matches);
     let prefix = checked_prefix(matches, "CUDA")?;
     let files = export_cuda(&source, &Options { prefix, single, ..Options::default() }, cx);
     let files = input.result_without_errors(files, cx)?;
     let texts = [(".cu", &files.kernels), (".cuh", &files.host), ("_cuda.py", &files.python)];
-    write_all(matches, &files.prefix, &texts)?;
+    write_files_with_prefix(matches, &files.prefix, &texts)?;
     for line in &files.left_out {
         crate::note!("linkwork: not in CUDA: {line}");
     }
@@ -55,7 +55,7 @@ pub fn export_cuda_files(matches: &ArgMatches) -> Result<(), Stop> {
 
 /// Writes compute shaders in WGSL, and a module for Python that runs them.
 pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
-    if text_option(matches, "scalar") == Some("double") {
+    if text_option_value(matches, "scalar") == Some("double") {
         let why = "WGSL has no double precision: remove `--scalar double`, or use `linkwork export cuda`";
         return Err(Stop::Failure(why.to_string()));
     }
@@ -63,11 +63,15 @@ pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
-    prepare_source(&mut source, matches);
+    request_export_derivatives(&mut source, matches);
     let prefix = checked_prefix(matches, "WGSL")?;
     let files = export_wgsl(&source, &prefix, cx);
     let files = input.result_without_errors(files, cx)?;
-    write_all(matches, &files.prefix, &[(".wgsl", &files.shaders), ("_wgpu.py", &files.python)])?;
+    write_files_with_prefix(
+        matches,
+        &files.prefix,
+        &[(".wgsl", &files.shaders), ("_wgpu.py", &files.python)],
+    )?;
     for line in &files.left_out {
         crate::note!("linkwork: not in WGSL: {line}");
     }
@@ -75,21 +79,21 @@ pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Requests the derivatives unless an option excludes them. Returns true for single precision.
-fn prepare_source(source: &mut Source, matches: &ArgMatches) -> bool {
+fn request_export_derivatives(source: &mut Source, matches: &ArgMatches) -> bool {
     let description = &source.mechanism.description;
-    let single = match text_option(matches, "scalar") {
+    let single = match text_option_value(matches, "scalar") {
         Some(scalar) => scalar == "float",
         None => description.scalar == ScalarType::F32,
     };
-    let kinematic = description.inertias == Inertias::None;
+    let kinematic = description.inertias == InertiaOption::None;
     source.mechanism.requests.derivatives |= !(matches.get_flag("no-derivatives") || kinematic);
     single
 }
 
 /// Returns the prefix of names. Rejects a prefix that is not an identifier of the target.
 pub fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop> {
-    let prefix = text_option(matches, "prefix").unwrap_or_default().to_string();
-    let usable = prefix_identifier(&prefix);
+    let prefix = text_option_value(matches, "prefix").unwrap_or_default().to_string();
+    let usable = c_name_prefix(&prefix);
     if prefix.is_empty() || usable == prefix {
         return Ok(prefix);
     }
@@ -99,13 +103,17 @@ pub fn checked_prefix(matches: &ArgMatches, target: &str) -> Result<String, Stop
 }
 
 /// Writes files with a common prefix to the output folder, and prints their paths.
-fn write_all(matches: &ArgMatches, prefix: &str, texts: &[(&str, &String)]) -> Result<(), Stop> {
+fn write_files_with_prefix(
+    matches: &ArgMatches,
+    prefix: &str,
+    texts: &[(&str, &String)],
+) -> Result<(), Stop> {
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     std::fs::create_dir_all(&folder)
         .map_err(|error| Stop::Failure(format!("cannot create the folder {}: {error}", folder.display())))?;
     for (end, text) in texts {
         let path = folder.join(format!("{prefix}{end}"));
-        write_file(&path, text)?;
+        write_exported_file(&path, text)?;
         crate::say!("{}", path.display());
     }
     Ok(())
@@ -114,7 +122,7 @@ fn write_all(matches: &ArgMatches, prefix: &str, texts: &[(&str, &String)]) -> R
 /// Writes a crate whose functions have an interface of plain arrays.
 pub fn export_library_crate(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
-    let given_prefix = text_option(matches, "prefix").map(ToString::to_string);
+    let given_prefix = text_option_value(matches, "prefix").map(ToString::to_string);
     let prefix =
         identifier_from_name(&given_prefix.unwrap_or_else(|| snake_case_prefix(&input.declaration.name)));
     let made = library::generate_crate(&input, &prefix, matches)?;
@@ -125,7 +133,7 @@ pub fn export_library_crate(matches: &ArgMatches) -> Result<(), Stop> {
         std::fs::create_dir_all(parent).map_err(|error| {
             Stop::Failure(format!("cannot create the folder {}: {error}", parent.display()))
         })?;
-        write_file(&path, text)?;
+        write_exported_file(&path, text)?;
         crate::say!("{}", path.display());
     }
     for name in &made.left_out {
@@ -151,7 +159,7 @@ pub fn export_rust_code(matches: &ArgMatches) -> Result<(), Stop> {
 /// Writes a text to the file of `--out`, or to standard output.
 pub fn write_output(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     match matches.get_one::<PathBuf>("out") {
-        Some(path) => write_file(path, text),
+        Some(path) => write_exported_file(path, text),
         None => {
             crate::print_or_exit(format_args!("{text}"));
             Ok(())
@@ -159,7 +167,7 @@ pub fn write_output(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     }
 }
 
-fn write_file(path: &Path, text: &str) -> Result<(), Stop> {
+fn write_exported_file(path: &Path, text: &str) -> Result<(), Stop> {
     std::fs::write(path, text)
         .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
 }

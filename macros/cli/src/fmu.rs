@@ -1,7 +1,7 @@
 //! `linkwork export fmu`: an FMU of the Functional Mock-up Interface 3.0.
 
 use crate::Stop;
-use crate::commands::text_option;
+use crate::commands::text_option_value;
 use crate::export::checked_prefix;
 use crate::grid;
 use crate::input::Input;
@@ -11,8 +11,8 @@ use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::fmu::{FmuFiles, StartValues, TableValues};
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::syntax::Inertias;
-use linkwork_compiler::{export_fmu, export_library_fmu};
+use linkwork_compiler::syntax::InertiaOption;
+use linkwork_compiler::{export_fmu, export_fmu_for_runtime_library};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -24,9 +24,9 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
     let graph = Graph::new();
-    let values = start_values(&input, &graph, matches)?;
+    let values = fmu_start_values(&input, &graph, matches)?;
     let requests = &mut source.mechanism.requests;
-    let is_kinematic = source.mechanism.description.inertias == Inertias::None;
+    let is_kinematic = source.mechanism.description.inertias == InertiaOption::None;
     let has_derivatives = !is_kinematic && !matches.get_flag("no-derivatives");
     if has_derivatives && values.has_generated_derivatives {
         requests.derivatives = true;
@@ -37,7 +37,7 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
         None => export_fmu(&source, &prefix, &values.start, has_derivatives, cx),
         Some(_) => {
             let declaration = declaration_text(&input);
-            let made = export_library_fmu(&source, &declaration, &prefix, &values.start, cx);
+            let made = export_fmu_for_runtime_library(&source, &declaration, &prefix, &values.start, cx);
             made.map(|(files, left_out)| {
                 for name in left_out {
                     crate::note!(
@@ -56,7 +56,7 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
         archive.add(path, text.as_bytes())?;
     }
     if !matches.get_flag("no-binary") {
-        add_binary(&mut archive, &files, text_option(matches, "compiler"), library)?;
+        compile_and_add_binary(&mut archive, &files, text_option_value(matches, "compiler"), library)?;
     }
     let path = matches.get_one::<PathBuf>("out").cloned();
     let path = path.unwrap_or_else(|| PathBuf::from(format!("{}.fmu", files.identifier)));
@@ -68,7 +68,7 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
 
 /// Compiles the binary for this machine and adds it to the archive, with the run-time library if that is
 /// shared.
-fn add_binary(
+fn compile_and_add_binary(
     archive: &mut Archive,
     files: &FmuFiles,
     compiler: Option<&str>,
@@ -92,7 +92,7 @@ fn add_binary(
 }
 
 /// Start values of the variables, and generated functions that derivatives need.
-struct VariableValues {
+struct FmuVariableData {
     start: StartValues,
     /// Whether functions are generated for derivatives of the accelerations by state and inputs.
     has_generated_derivatives: bool,
@@ -101,27 +101,26 @@ struct VariableValues {
 }
 
 /// Returns the start values of all variables; the initial state satisfies the constraints.
-fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<VariableValues, Stop> {
+fn fmu_start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<FmuVariableData, Stop> {
     let loaded = input.load_mechanism(graph)?;
     let start = Start::new(&loaded, matches)?;
     if let Some(why) = start.reason_without_motion() {
         return Err(Stop::Failure(format!("`{}` cannot be an FMU: {why}", loaded.model.name)));
     }
     let (q, v) = start.initial_state()?;
-    let tables =
-        grid::table_options(matches, &loaded.source.tables_with_variable_counts())?.into_iter().map(|grid| {
-            TableValues {
-                axes: grid.axes,
-                values: grid.values,
-                smooth: grid.smooth,
-                extrapolated: grid.extrapolated,
-            }
+    let tables = grid::tables_from_options(matches, &loaded.source.tables_with_variable_counts())?
+        .into_iter()
+        .map(|grid| TableValues {
+            axes: grid.axes,
+            values: grid.values,
+            smooth: grid.smooth,
+            extrapolated: grid.extrapolated,
         });
     let mut parameters = start.robot.parameter_values().to_vec();
     let states: Vec<usize> =
         loaded.source.mechanism.description.states.iter().map(|(_, index)| *index).collect();
     states.iter().zip(&start.x).for_each(|(k, x)| parameters[*k] = *x);
-    Ok(VariableValues {
+    Ok(FmuVariableData {
         start: StartValues {
             parameters,
             q,

@@ -51,7 +51,7 @@ fn page_of_line(list: &Path, line: &str) -> Result<(String, Page), Stop> {
     let matches = commands::view_command()
         .try_get_matches_from(all)
         .map_err(|error| Stop::Failure(error.to_string().trim_end().to_string()))?;
-    view::mechanism_page(&matches)
+    view::mechanism_name_and_page(&matches)
 }
 
 /// Makes the paths of a line relative to the folder of the list: the file, and the values of `--table` and

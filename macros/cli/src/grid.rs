@@ -2,7 +2,7 @@
 //! variables, then the value.
 
 use crate::Stop;
-use crate::table::text_of;
+use crate::table::read_spreadsheet_text;
 use clap::ArgMatches;
 use linkwork::TableError;
 use linkwork_jit::AnyTable;
@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Values of an interpolation table on a rectangular grid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct TableGrid {
     /// Grid points along each axis of the table.
     pub axes: Vec<Vec<f64>>,
     /// Values in the order of the grid points, with the last axis varying fastest.
@@ -22,8 +22,8 @@ pub struct Grid {
     pub extrapolated: bool,
 }
 
-impl Grid {
-    fn parse_grid(text: &str, variables: usize) -> Result<Grid, String> {
+impl TableGrid {
+    fn parse_grid(text: &str, variables: usize) -> Result<TableGrid, String> {
         let mut points: BTreeMap<Vec<u64>, f64> = BTreeMap::new();
         let mut axes: Vec<Vec<f64>> = vec![Vec::new(); variables];
         let mut is_first = true;
@@ -73,7 +73,7 @@ impl Grid {
             let value = points.get(&at.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
             values.push(*value.ok_or_else(|| format!("the grid has no value at {at:?}"))?);
         }
-        let grid = Grid { axes, values, smooth: false, extrapolated: false };
+        let grid = TableGrid { axes, values, smooth: false, extrapolated: false };
         grid.interpolation_table().map_err(|error| error.to_string())?;
         Ok(grid)
     }
@@ -88,8 +88,8 @@ impl Grid {
 
 /// Returns the tables of the `--table` options, in the order of the mechanism's tables, which are given with
 /// the number of their variables.
-pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Grid>, Stop> {
-    let mut found: Vec<Option<Grid>> = vec![None; tables.len()];
+pub fn tables_from_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<TableGrid>, Stop> {
+    let mut found: Vec<Option<TableGrid>> = vec![None; tables.len()];
     for given in matches.get_many::<String>("table").into_iter().flatten() {
         let invalid_table_option = |why: String| Stop::Failure(format!("`--table {given}`: {why}"));
         let (name, rest) =
@@ -112,10 +112,10 @@ pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result
             }
             file = before;
         }
-        let text = text_of(Path::new(file.trim())).map_err(invalid_table_option)?;
-        let grid = Grid::parse_grid(&text, tables[at].1)
+        let text = read_spreadsheet_text(Path::new(file.trim())).map_err(invalid_table_option)?;
+        let grid = TableGrid::parse_grid(&text, tables[at].1)
             .map_err(|why| invalid_table_option(format!("{file}: {why}")))?;
-        if found[at].replace(Grid { smooth, extrapolated, ..grid }).is_some() {
+        if found[at].replace(TableGrid { smooth, extrapolated, ..grid }).is_some() {
             return Err(invalid_table_option(format!("the table `{}` is given twice", name.trim())));
         }
     }
@@ -131,11 +131,11 @@ pub fn table_options(matches: &ArgMatches, tables: &[(String, usize)]) -> Result
 
 #[cfg(test)]
 mod tests {
-    use super::Grid;
+    use super::TableGrid;
 
     #[test]
     fn grid_points_are_accepted_in_any_order() {
-        let grid = Grid::parse_grid("x, y, f\n1,0,3\n0,0,1\n0,5,2\n1,5,4\n", 2)
+        let grid = TableGrid::parse_grid("x, y, f\n1,0,3\n0,0,1\n0,5,2\n1,5,4\n", 2)
             .unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(
             (grid.axes, grid.values),
@@ -155,13 +155,14 @@ mod tests {
             ("0,1\n1,inf\n", "line 2: expected numbers"),
         ] {
             assert!(
-                Grid::parse_grid(text, 1).is_err_and(|why| why.contains(part)),
+                TableGrid::parse_grid(text, 1).is_err_and(|why| why.contains(part)),
                 "{text}: {:?}",
-                Grid::parse_grid(text, 1)
+                TableGrid::parse_grid(text, 1)
             );
         }
         assert!(
-            Grid::parse_grid("0,0,1\n1,1,2\n", 2).is_err_and(|why| why.contains("no value at [0.0, 1.0]"))
+            TableGrid::parse_grid("0,0,1\n1,1,2\n", 2)
+                .is_err_and(|why| why.contains("no value at [0.0, 1.0]"))
         );
     }
 }

@@ -1,6 +1,6 @@
 //! Input files, converted to the arguments and the struct of the attribute.
 
-use crate::commands::text_option;
+use crate::commands::text_option_value;
 use crate::{Stop, syntax};
 use clap::ArgMatches;
 use linkwork_compiler::derive::Output;
@@ -10,8 +10,8 @@ use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::{
-    DeclaredStruct, Source, compile, compile_with, derive_above, mechanism_declarations, read_source,
-    reject_reproducible,
+    DeclaredStruct, Source, compile, compile_with_passes, derive_above_attribute_error,
+    mechanism_declarations, read_source, reject_reproducible_arithmetic,
 };
 use linkwork_jit::Robot;
 use proc_macro2::{Span, TokenStream};
@@ -72,14 +72,14 @@ impl Input {
     pub fn select_mechanisms(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
         let file: &PathBuf =
             matches.get_one("file").ok_or_else(|| Stop::Failure("expected a file".to_string()))?;
-        let more: TokenStream = text_option(matches, "with")
+        let more: TokenStream = text_option_value(matches, "with")
             .unwrap_or_default()
             .parse()
             .map_err(|error| Stop::Failure(format!("`--with`: {error}")))?;
         let is_rust = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"));
         let mut found =
             if is_rust { mechanisms_of_rust_file(file)? } else { vec![struct_of_robot_file(file)?] };
-        if let Some(name) = text_option(matches, "struct") {
+        if let Some(name) = text_option_value(matches, "struct") {
             let names: Vec<String> = found.iter().map(|input| input.declaration.name.clone()).collect();
             found.retain(|input| input.declaration.name == name);
             if found.is_empty() {
@@ -99,8 +99,8 @@ impl Input {
     /// Parses the arguments and the struct. Errors are added to `cx`.
     pub fn parse_source(&self, cx: &mut Diagnostics) -> Option<Source> {
         let DeclaredStruct { arguments, item, .. } = &self.declaration;
-        if let Some(attribute) = self.declaration.derive_above {
-            cx.add(derive_above(attribute));
+        if let Some(attribute) = self.declaration.derive_above_attribute_error {
+            cx.add(derive_above_attribute_error(attribute));
         }
         read_source(arguments.clone(), item.clone(), &self.folder, cx)
     }
@@ -133,10 +133,10 @@ impl Input {
     pub fn load_mechanism<'g>(&self, graph: &'g Graph) -> Result<LoadedMechanism<'g>, Stop> {
         let cx = &mut Diagnostics::new();
         let mut source = self.result_without_errors(self.parse_source(cx), cx)?;
-        linkwork_jit::without_rust(&mut source);
+        linkwork_jit::remove_rust_only_options(&mut source);
         let passes = Passes { lanes: false, ..Passes::default() };
-        let allowed = reject_reproducible(&source, "loaded mechanisms", cx);
-        let compiled = allowed.and_then(|()| compile_with(&source, graph, passes, cx));
+        let allowed = reject_reproducible_arithmetic(&source, "loaded mechanisms", cx);
+        let compiled = allowed.and_then(|()| compile_with_passes(&source, graph, passes, cx));
         let (model, output) = self.result_without_errors(compiled, cx)?;
         let equations = output.equations.mathml.clone();
         let robot = linkwork_jit::compiled(&source, &model, output);
@@ -160,7 +160,7 @@ impl Input {
             at,
             message: reword_for_command(&one.message().to_string()),
             notes: one.notes().iter().map(reword_for_command).collect(),
-            helps: one.helps().iter().map(reword_for_command).collect(),
+            help_lines: one.help_lines().iter().map(reword_for_command).collect(),
         }
     }
 }
@@ -212,7 +212,7 @@ pub struct SourceError {
     /// Notes that follow the error message.
     pub notes: Vec<String>,
     /// Suggested corrections of the error.
-    pub helps: Vec<String>,
+    pub help_lines: Vec<String>,
 }
 
 /// Formats the error with its position in the style of compilers.
@@ -223,7 +223,7 @@ impl std::fmt::Display for SourceError {
             None => write!(f, "{}: error: {}", self.file, self.message)?,
         }
         let lines = self.notes.iter().map(|line| ("note", line));
-        for (word, line) in lines.chain(self.helps.iter().map(|line| ("help", line))) {
+        for (word, line) in lines.chain(self.help_lines.iter().map(|line| ("help", line))) {
             write!(f, "\n  = {word}: {line}")?;
         }
         Ok(())

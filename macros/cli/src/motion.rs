@@ -1,7 +1,7 @@
 //! Initial state of a motion, and the simulation from this state.
 
 use crate::Stop;
-use crate::assemble::Assembly;
+use crate::assemble::MechanismAssembler;
 use crate::grid;
 use crate::input::LoadedMechanism;
 use crate::table::Table;
@@ -66,10 +66,10 @@ const MAX_SAMPLES: f64 = 1e7;
 /// Normalises the quaternions of a configuration; a zero quaternion is an error.
 pub fn normalise_quaternions(model: &Model<'_>, q: &mut [f64]) -> Result<(), Stop> {
     for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
-        let quaternion = &mut q[first.and_next(4)];
+        let quaternion = &mut q[first.range_of_entries(4)];
         let size = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
         if size < 1e-9 || !size.is_finite() {
-            let names = model.configuration[first.and_next(4)].join(", ");
+            let names = model.configuration[first.range_of_entries(4)].join(", ");
             return Err(Stop::Failure(format!("the quaternion {names} is zero")));
         }
         quaternion.iter_mut().for_each(|x| *x /= size);
@@ -144,7 +144,7 @@ impl<'a, 'g> Start<'a, 'g> {
         for ((name, _), grid) in source
             .tables_with_variable_counts()
             .iter()
-            .zip(grid::table_options(matches, &source.tables_with_variable_counts())?)
+            .zip(grid::tables_from_options(matches, &source.tables_with_variable_counts())?)
         {
             robot.set_table(name, grid.interpolation_table()?)?;
         }
@@ -298,8 +298,8 @@ impl<'a, 'g> Start<'a, 'g> {
     /// Returns the message of a motion that cannot be continued.
     fn motion_failure(&self, error: &Error, q: Option<Vec<f64>>) -> Stop {
         let Some(t) = time_of_failure(error) else { return Stop::Failure(error.to_string()) };
-        let is_singular = q.is_some_and(|q| self.robot.regularity_of_speeds(&q) <= NEARLY_SINGULAR);
-        let why = match is_singular {
+        let has_singular_speeds = q.is_some_and(|q| self.robot.regularity_of_speeds(&q) <= NEARLY_SINGULAR);
+        let why = match has_singular_speeds {
             true => "declared speeds are singular there",
             false => "it is singular there, or too stiff",
         };
@@ -326,10 +326,10 @@ impl<'a, 'g> Start<'a, 'g> {
     /// Returns an initial state that satisfies the constraints: with the specified entries unchanged if
     /// possible, otherwise the nearest one. Prints the changes.
     fn consistent_initial_state(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
-        let m = Assembly { robot: &self.robot, model: self.model };
+        let m = MechanismAssembler { robot: &self.robot, model: self.model };
         let (name, [in_q, in_v]) = (&self.model.name, &self.given);
-        let is_singular = |q: &[f64]| self.robot.regularity_of_speeds(q) <= SINGULAR;
-        if !is_singular(&self.q) && !m.has_inertia(&self.q)? {
+        let has_singular_speeds = |q: &[f64]| self.robot.regularity_of_speeds(q) <= SINGULAR;
+        if !has_singular_speeds(&self.q) && !m.has_inertia(&self.q)? {
             return Err(Stop::Failure(format!(
                 "the mass matrix of `{name}` is singular at the beginning: with these parameters a moving \
                  body has no inertia"
@@ -357,7 +357,7 @@ impl<'a, 'g> Start<'a, 'g> {
                  constraints; give another by `--set` or `--guess q.NAME=VALUE`"
             ))
         })?;
-        if is_singular(&q) {
+        if has_singular_speeds(&q) {
             let names: Vec<String> =
                 self.model.configuration.iter().map(|name| format!("q.{name}")).collect();
             return Err(Stop::Failure(format!(
@@ -366,9 +366,9 @@ impl<'a, 'g> Start<'a, 'g> {
                 names.join(", ")
             )));
         }
-        let v = m.complete_held_velocity(&q, &self.v, &in_v).or_else(|| {
+        let v = m.complete_velocity_from_fixed_entries(&q, &self.v, &in_v).or_else(|| {
             kept = false;
-            m.complete_held_velocity(&q, &self.v, &still)
+            m.complete_velocity_from_fixed_entries(&q, &self.v, &still)
         });
         let v =
             v.ok_or_else(|| Stop::Failure(format!("`{name}` has constraints that contradict each other")))?;
@@ -390,7 +390,7 @@ impl<'a, 'g> Start<'a, 'g> {
         };
         if !moves.is_empty() {
             let held = if kept { &moving } else { &apart };
-            let mode = m.assembly_mode_of(&q, held).map_or(String::new(), |mode| {
+            let mode = m.assembly_mode_of_configuration(&q, held).map_or(String::new(), |mode| {
                 format!(
                     "; this is assembly mode {mode}, and `--guess q.NAME=VALUE` near another mode selects it"
                 )
@@ -442,8 +442,10 @@ impl<'a, 'g> Start<'a, 'g> {
             return Err(Stop::Failure(format!("{}: {expected}", path.display())));
         }
         let index_pairs_of_row = |k: usize| (0..columns.len()).map(move |i| (i, k));
-        let input_value_at = |(i, k): (usize, usize)| columns[i].map_or(self.u[i], |column| column[k]);
-        let values = (0..table.times.len()).flat_map(index_pairs_of_row).map(input_value_at).collect();
+        let input_value_in_table_row =
+            |(i, k): (usize, usize)| columns[i].map_or(self.u[i], |column| column[k]);
+        let values =
+            (0..table.times.len()).flat_map(index_pairs_of_row).map(input_value_in_table_row).collect();
         Ok((table.times.clone(), values))
     }
 }

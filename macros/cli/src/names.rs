@@ -49,7 +49,7 @@ impl Names {
     }
 
     /// Returns the field name of a name in the file, or the name itself.
-    pub fn field_or_same(&self, name: &str) -> String {
+    pub fn field_name_or_original(&self, name: &str) -> String {
         self.field_name(name).unwrap_or_else(|| name.to_string())
     }
 
@@ -69,7 +69,7 @@ mod tests {
         let links = taken.add(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
         let joints = taken.add(["Hand-left", "é"].into_iter(), "joint");
         let field_names_of = |names: &Names, list: &[&str]| {
-            list.iter().map(|name| names.field_or_same(name)).collect::<Vec<_>>()
+            list.iter().map(|name| names.field_name_or_original(name)).collect::<Vec<_>>()
         };
         let of_links = field_names_of(&links, &["ground", "Hand-left", "x", "2nd", "fn", "hand left"]);
         assert_eq!(of_links, ["ground", "hand_left", "x_link", "link_2nd", "fn_link", "hand_left_link"]);

@@ -22,7 +22,7 @@ pub fn create_package(matches: &ArgMatches) -> Result<(), Stop> {
         |path: &str, text: &str| std::fs::write(folder.join(Path::new(path)), text).map_err(creation_failure);
     let sources = matches.get_one::<PathBuf>("linkwork").map(std::fs::canonicalize).transpose();
     let sources = sources.map_err(|error| Stop::Failure(format!("`--linkwork`: {error}")))?;
-    let sources = sources.or_else(sources::repository_of_command);
+    let sources = sources.or_else(sources::source_repository_of_binary);
     write_project_file("Cargo.toml", &manifest_text(&name, sources.as_deref()))?;
     write_project_file("src/main.rs", MAIN)?;
     write_project_file(".gitignore", "/target\n/motion.html\n")?;

@@ -18,7 +18,7 @@ pub fn run_show(matches: &ArgMatches) -> Result<(), Stop> {
             ShownMechanism { model: &model, output: &output, structure: source.joint_structure_lines() };
         match as_json {
             true => all.push(shown.summary_as_json()),
-            false => crate::print_or_exit(format_args!("{}", shown.summary_text())),
+            false => crate::print_or_exit(format_args!("{}", shown.mechanism_summary_text())),
         }
     }
     if as_json {
@@ -34,10 +34,10 @@ struct ShownMechanism<'a, 'g> {
 }
 
 /// Printed list: its title, its JSON key, and the names with their units.
-type List<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
+type PrintedList<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
 
 impl ShownMechanism<'_, '_> {
-    fn lists_of_names(&self) -> Vec<List<'_>> {
+    fn lists_of_names(&self) -> Vec<PrintedList<'_>> {
         let m = self.model;
         fn names_as_str(list: &[String]) -> Vec<&str> {
             list.iter().map(String::as_str).collect()
@@ -61,7 +61,7 @@ impl ShownMechanism<'_, '_> {
         ]
     }
 
-    fn summary_text(&self) -> String {
+    fn mechanism_summary_text(&self) -> String {
         let m = self.model;
         let mut text = format!("{}: NQ = {}, NV = {}, NU = {}\n", m.name, m.nq(), m.nv(), m.nu());
         for (title, _, names, units) in self.lists_of_names() {

@@ -17,16 +17,16 @@ pub fn run_simulate(matches: &ArgMatches) -> Result<(), Stop> {
     let samples = start.simulate_motion(matches)?;
     match matches.get_one::<PathBuf>("out") {
         Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) => {
-            let log = mcap_log(&start, samples)?;
+            let log = mcap_log_bytes(&start, samples)?;
             std::fs::write(path, log)
                 .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
         }
-        _ => write_output(matches, &csv_log(&start, &samples)),
+        _ => write_output(matches, &csv_log_text(&start, &samples)),
     }
 }
 
 /// Returns the MCAP log of a motion with the placements of all frames.
-fn mcap_log(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
+fn mcap_log_bytes(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
     let model = start.model;
     let frames: Vec<&str> = model.frames.iter().map(|frame| frame.name.as_str()).collect();
     let configuration: Vec<&str> = model.configuration.iter().map(String::as_str).collect();
@@ -45,7 +45,7 @@ fn mcap_log(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop
     Ok(mcap_of(&names, instants)?)
 }
 
-fn csv_log(start: &Start<'_, '_>, samples: &[Sample]) -> String {
+fn csv_log_text(start: &Start<'_, '_>, samples: &[Sample]) -> String {
     let model = start.model;
     let mut head = vec!["t".to_string()];
     head.extend(model.configuration.iter().map(|name| format!("q.{name}")));

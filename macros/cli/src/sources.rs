@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 /// Returns the folder of the repository that the command was built from, if it still exists: for
 /// `cargo install --path`, or within the repository itself. A command installed from a registry has no such
 /// folder.
-pub fn repository_of_command() -> Option<PathBuf> {
+pub fn source_repository_of_binary() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?.parent()?;
     let has_manifest = |crate_: &str| folder.join(crate_).join("Cargo.toml").is_file();
     ["runtime", "runtime/view", "runtime/library"]

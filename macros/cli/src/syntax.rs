@@ -40,7 +40,7 @@ fn describe_unbalanced_text(text: &str, at: LineColumn) -> (LineColumn, String, 
                     at,
                     format!(
                         "mismatched closing delimiter: expected `{}`, found `{closing}`",
-                        closing_bracket(bracket)
+                        matching_closing_bracket(bracket)
                     ),
                     vec![note],
                 )
@@ -48,7 +48,11 @@ fn describe_unbalanced_text(text: &str, at: LineColumn) -> (LineColumn, String, 
         },
         Some(opening @ ('(' | '[' | '{')) => {
             let (at, opening) = find_misaligned_brace(text).map_or((at, opening), |at| (at, '{'));
-            (at, format!("this is never closed: `{}` is missing", closing_bracket(opening)), Vec::new())
+            (
+                at,
+                format!("this is never closed: `{}` is missing", matching_closing_bracket(opening)),
+                Vec::new(),
+            )
         }
         _ => (at, "this is not a Rust token, or a string that is never closed".to_string(), Vec::new()),
     }
@@ -68,7 +72,7 @@ fn find_misaligned_brace(text: &str) -> Option<LineColumn> {
                     return None;
                 }
                 whole.push('\n');
-                whole.push(closing_bracket(bracket));
+                whole.push(matching_closing_bracket(bracket));
             }
         }
     };
@@ -122,7 +126,7 @@ fn tokens_around_position(tokens: &TokenStream, at: LineColumn) -> (Option<LineC
 }
 
 /// Returns the closing bracket that belongs to an opening one.
-fn closing_bracket(opening: char) -> char {
+fn matching_closing_bracket(opening: char) -> char {
     match opening {
         '(' => ')',
         '[' => ']',

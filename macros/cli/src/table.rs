@@ -1,7 +1,7 @@
 //! Comma-separated values with a header line: inputs over time, and motions.
 
 use crate::Stop;
-use linkwork_compiler::import::with_plain_blanks;
+use linkwork_compiler::import::with_standard_whitespace;
 use std::path::Path;
 
 /// Named columns of numbers, for times that do not decrease.
@@ -15,7 +15,7 @@ pub struct Table {
 impl Table {
     /// Reads a CSV file, one column of which must be `t`.
     pub fn read_table(path: &Path) -> Result<Table, Stop> {
-        let text = text_of(path).map_err(Stop::Failure)?;
+        let text = read_spreadsheet_text(path).map_err(Stop::Failure)?;
         Table::parse_csv(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
     }
 
@@ -63,10 +63,10 @@ impl Table {
 }
 
 /// Reads a text file. Byte order marks, which spreadsheets write, and no-break spaces count as blanks.
-pub fn text_of(path: &Path) -> Result<String, String> {
+pub fn read_spreadsheet_text(path: &Path) -> Result<String, String> {
     let text =
         std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    Ok(with_plain_blanks(&text).into_owned())
+    Ok(with_standard_whitespace(&text).into_owned())
 }
 
 /// Splits a line into fields. Quoted fields may contain commas and doubled quotes.

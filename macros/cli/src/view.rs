@@ -7,7 +7,7 @@ use crate::live;
 use crate::motion::{Start, normalise_quaternions};
 use crate::table::Table;
 use clap::ArgMatches;
-use linkwork_compiler::export::without_links;
+use linkwork_compiler::export::without_doc_links;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism;
 use linkwork_view::{Figure, Motion, Page};
@@ -20,7 +20,7 @@ type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 const PLOTTED: usize = 12;
 
 pub fn run_view(matches: &ArgMatches) -> Result<(), Stop> {
-    let (name, page) = mechanism_page(matches)?;
+    let (name, page) = mechanism_name_and_page(matches)?;
     let out = matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{name}.html")));
     match matches.get_flag("fragment") {
         true => std::fs::write(&out, page.embedded())?,
@@ -31,7 +31,7 @@ pub fn run_view(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Returns the name of the mechanism and the HTML page that shows it.
-pub fn mechanism_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
+pub fn mechanism_name_and_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
     let mut input = Input::one(matches)?;
     if !input.declaration.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
         input.declaration.add(quote::quote!(drawing));
@@ -40,18 +40,22 @@ pub fn mechanism_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
     let loaded = input.load_mechanism(&graph)?;
     let LoadedMechanism { source, model, .. } = &loaded;
     let start = Start::new(&loaded, matches)?;
-    let about = without_links(&doc_paragraphs(&source.mechanism.shell.attributes).join("\n\n"));
+    let about = without_doc_links(&doc_paragraphs(&source.mechanism.shell.attributes).join("\n\n"));
     let page = Page::new(&input.declaration.name).text(&about);
-    let figure = add_meshes(declared_figure(&start, model), &input, matches)?;
+    let figure = add_meshes(declared_drawing(&start, model), &input, matches)?;
     let page = match matches.get_flag("live") {
         true => page.equations(&loaded.equations).motion(live::live_motion(&start, figure)?),
-        false => page.motion(recorded_motion(&start, figure, matches)?),
+        false => page.motion(recorded_or_simulated_motion(&start, figure, matches)?),
     };
     Ok((input.declaration.name, page))
 }
 
 /// Returns the recorded motion of a log file, or the motion of a simulation.
-fn recorded_motion(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) -> Result<Motion, Stop> {
+fn recorded_or_simulated_motion(
+    start: &Start<'_, '_>,
+    figure: Figure,
+    matches: &ArgMatches,
+) -> Result<Motion, Stop> {
     let model = start.model;
     let states = match matches.get_one::<PathBuf>("motion") {
         Some(path) => states_of_log(path, start)?,
@@ -129,7 +133,7 @@ fn states_of_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop>
     };
     let columns = start.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
     // Inputs, and states, are used if the log has all of them; some of them alone are an error.
-    let all_or_none = |names: Vec<String>| {
+    let columns_if_all_present = |names: Vec<String>| {
         let found: Vec<Option<&[f64]>> = names.iter().map(|name| table.column_by_name(name)).collect();
         match found.iter().position(Option::is_none).filter(|_| found.iter().any(Option::is_some)) {
             Some(k) => Err(Stop::Failure(format!("{}: there is no column `{}`", path.display(), names[k]))),
@@ -137,8 +141,8 @@ fn states_of_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop>
         }
     };
     let inputs = start.model.inputs.iter().map(|(name, _)| format!("u.{name}"));
-    let inputs = all_or_none(inputs.collect())?.unwrap_or_default();
-    let states = all_or_none(start.states.iter().map(|name| format!("x.{name}")).collect())?;
+    let inputs = columns_if_all_present(inputs.collect())?.unwrap_or_default();
+    let states = columns_if_all_present(start.states.iter().map(|name| format!("x.{name}")).collect())?;
     let state_of_log_row = |(k, t): (usize, &f64)| {
         let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
         normalise_quaternions(start.model, &mut q)?;
@@ -162,7 +166,7 @@ fn named_curves<'n>(
 }
 
 /// Returns the declared drawing with the values of the parameters.
-fn declared_figure(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
+fn declared_drawing(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
     let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
     for piece in &model.drawing {
         pieces.push(linkwork_jit::drawn(piece, numbers.len()));

@@ -18,7 +18,7 @@ pub fn format_angle(text: &str) -> String {
 
 /// Role of a name in an expression, since a link and a joint of a file may share one name.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum NameRole {
     /// Body: in arguments of functions, and before a point or an axis.
     Body,
     /// Name of the coordinate of a joint.
@@ -26,30 +26,34 @@ pub enum Role {
 }
 
 /// Returns an expression of coordinates as text; `rename` returns the field names.
-pub fn format_expression(e: &Expr, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
-    spell_expression(e, Role::Coordinate, rename)
+pub fn format_expression(e: &Expr, rename: &dyn Fn(&str, NameRole) -> Option<String>) -> String {
+    renamed_expression_text(e, NameRole::Coordinate, rename)
 }
 
 /// Returns a point of a body as text; `rename` returns the field names of bodies.
 pub fn format_point(e: &Expr, rename: &dyn Fn(&str) -> Option<String>) -> String {
-    spell_expression(e, Role::Body, &|name, _| rename(name))
+    renamed_expression_text(e, NameRole::Body, &|name, _| rename(name))
 }
 
-fn spell_expression(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
-    let spell_subexpression = |e: &Expr| spell_expression(e, role, rename);
-    let spell_in_body_role = |e: &Expr| spell_expression(e, Role::Body, rename);
+fn renamed_expression_text(
+    e: &Expr,
+    role: NameRole,
+    rename: &dyn Fn(&str, NameRole) -> Option<String>,
+) -> String {
+    let renamed_subexpression_text = |e: &Expr| renamed_expression_text(e, role, rename);
+    let renamed_text_in_body_role = |e: &Expr| renamed_expression_text(e, NameRole::Body, rename);
     let spell_comma_separated =
-        |all: &[Expr]| all.iter().map(spell_in_body_role).collect::<Vec<_>>().join(", ");
+        |all: &[Expr]| all.iter().map(renamed_text_in_body_role).collect::<Vec<_>>().join(", ");
     match &e.kind {
         ExprKind::Number(x) => format_number(*x),
         ExprKind::Text(text) => format!("{text:?}"),
         ExprKind::Name(name) => rename(name, role).unwrap_or_else(|| name.clone()),
-        ExprKind::Field(of, name) => format!("{}.{}", spell_in_body_role(of), name.text),
+        ExprKind::Field(of, name) => format!("{}.{}", renamed_text_in_body_role(of), name.text),
         ExprKind::Method(of, name, arguments) => {
-            format!("{}.{}({})", spell_in_body_role(of), name.text, spell_comma_separated(arguments))
+            format!("{}.{}({})", renamed_text_in_body_role(of), name.text, spell_comma_separated(arguments))
         }
         ExprKind::Call(name, arguments) => format!("{}({})", name.text, spell_comma_separated(arguments)),
-        ExprKind::Neg(of) => format!("-({})", spell_subexpression(of)),
+        ExprKind::Neg(of) => format!("-({})", renamed_subexpression_text(of)),
         ExprKind::Binary(op, a, b, _) => {
             let sign = match op {
                 BinaryOp::Add => "+",
@@ -57,11 +61,11 @@ fn spell_expression(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<
                 BinaryOp::Mul => "*",
                 BinaryOp::Div => "/",
             };
-            let spell_binary_operand = |e: &Expr| match e.kind {
-                ExprKind::Binary(..) => format!("({})", spell_subexpression(e)),
-                _ => spell_subexpression(e),
+            let parenthesised_if_binary = |e: &Expr| match e.kind {
+                ExprKind::Binary(..) => format!("({})", renamed_subexpression_text(e)),
+                _ => renamed_subexpression_text(e),
             };
-            format!("{} {sign} {}", spell_binary_operand(a), spell_binary_operand(b))
+            format!("{} {sign} {}", parenthesised_if_binary(a), parenthesised_if_binary(b))
         }
         ExprKind::Tuple(all) => format!("({})", spell_comma_separated(all)),
         ExprKind::Array(all) => format!("[{}]", spell_comma_separated(all)),

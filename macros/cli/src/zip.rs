@@ -25,10 +25,10 @@ impl Archive {
     /// # Errors
     /// The file or the archive is too large for the format.
     pub fn add(&mut self, path: &str, bytes: &[u8]) -> Result<(), Stop> {
-        let too_large = |_| Stop::Failure(format!("`{path}` is too large for an archive"));
-        let size = u32::try_from(bytes.len()).map_err(too_large)?;
-        let offset = u32::try_from(self.contents.len()).map_err(too_large)?;
-        let length = u16::try_from(path.len()).map_err(too_large)?;
+        let archive_size_error = |_| Stop::Failure(format!("`{path}` is too large for an archive"));
+        let size = u32::try_from(bytes.len()).map_err(archive_size_error)?;
+        let offset = u32::try_from(self.contents.len()).map_err(archive_size_error)?;
+        let length = u16::try_from(path.len()).map_err(archive_size_error)?;
         // Both headers have version, flags, method, time, date, checksum and sizes.
         let mut shared = Vec::new();
         [VERSION, UTF_8, 0, 0, DATE].iter().for_each(|x| shared.extend(x.to_le_bytes()));

@@ -78,10 +78,15 @@ fn concatenate_results(parts: &[&[f64]]) -> Vec<f64> {
 fn exported_functions() -> (Vec<ExportedEntry>, String) {
     let m = Juggler { axial: 0.7 };
     const N: usize = Juggler::NV;
-    let sample_vector = |seed: f64| SVector::<f64, N>::from_fn(|k, _| 0.6 * (seed + 1.7 * k as f64).sin());
-    let q = m.integrate(&m.neutral(), &sample_vector(0.3));
-    let (v, a, tau, dv): (_, _, _, SVector<f64, N>) =
-        (sample_vector(1.1), sample_vector(2.3), sample_vector(4.0), sample_vector(0.9) * 0.3);
+    let sine_sample_vector =
+        |seed: f64| SVector::<f64, N>::from_fn(|k, _| 0.6 * (seed + 1.7 * k as f64).sin());
+    let q = m.integrate(&m.neutral(), &sine_sample_vector(0.3));
+    let (v, a, tau, dv): (_, _, _, SVector<f64, N>) = (
+        sine_sample_vector(1.1),
+        sine_sample_vector(2.3),
+        sine_sample_vector(4.0),
+        sine_sample_vector(0.9) * 0.3,
+    );
     let u = SVector::from([0.8]);
     let there = m.integrate(&q, &dv);
     let (f, h) = (frame!(Juggler, "hand"), 0.02);
@@ -187,7 +192,7 @@ fn exported_functions() -> (Vec<ExportedEntry>, String) {
 }
 
 /// Checks results with a tolerance relative to the largest entry.
-fn check_results(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+fn check_entries_with_tolerance(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
     assert_eq!(found.len(), expected.len(), "{name}");
     for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
@@ -201,7 +206,7 @@ fn declared_speeds_in_c_agree_with_rust() {
     let found = compile_and_run(&entries, &given, "fast", &["-std=c99", "-O1"]);
     assert_eq!(found.len(), entries.len());
     for ((name, _, expected), found) in entries.iter().zip(found) {
-        check_results(name, &found, expected, 1e-11);
+        check_entries_with_tolerance(name, &found, expected, 1e-11);
     }
 }
 
@@ -217,7 +222,7 @@ fn reproducible_c_code_has_the_bits_of_rust() {
     let same_operations = cfg!(all(target_arch = "x86_64", not(target_feature = "fma"), debug_assertions));
     let mut others = Vec::new();
     for ((name, _, expected), found) in entries.iter().zip(found) {
-        check_results(name, &found, expected, 1e-11);
+        check_entries_with_tolerance(name, &found, expected, 1e-11);
         if found != *expected {
             others.push(*name);
         }

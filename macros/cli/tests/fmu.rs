@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Returns the C compiler of the system, if there is one.
-fn c_compiler() -> Option<&'static str> {
+fn find_c_compiler() -> Option<&'static str> {
     let found = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
     if !found {
         println!("skipped: there is no C compiler");
@@ -65,7 +65,7 @@ impl Fmu {
 
     /// Exports a mechanism, and compiles it with an importer and with more options of the compiler.
     fn with_importer(name: &str, arguments: &[&str], importer: &str, more: &[&str]) -> Option<Fmu> {
-        let compiler = c_compiler()?;
+        let compiler = find_c_compiler()?;
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join(name);
         fs::create_dir_all(folder.join("sources")).expect("a folder of the tests");
         let archive = folder.join("model.fmu");
@@ -94,19 +94,19 @@ impl Fmu {
     }
 
     /// Runs the compiled importer, and returns the lines that it prints.
-    fn importer_lines(&self, kind: &str, numbers: [f64; 3]) -> Vec<String> {
+    fn output_lines_of_importer(&self, kind: &str, numbers: [f64; 3]) -> Vec<String> {
         let numbers = numbers.map(|x| x.to_string());
         let [a, b, c] = numbers.each_ref().map(String::as_str);
-        self.program_lines(&[kind, self.token(), a, b, c])
+        self.program_lines(&[kind, self.read_instantiation_token(), a, b, c])
     }
 
     /// Runs the compiled importer that calls functions at random, and returns the lines that it prints.
-    fn attack_lines(&self, variables: usize, rounds: usize) -> Vec<String> {
-        self.program_lines(&[self.token(), &variables.to_string(), &rounds.to_string()])
+    fn random_call_output_lines(&self, variables: usize, rounds: usize) -> Vec<String> {
+        self.program_lines(&[self.read_instantiation_token(), &variables.to_string(), &rounds.to_string()])
     }
 
     /// Returns the instantiation token of the model.
-    fn token(&self) -> &str {
+    fn read_instantiation_token(&self) -> &str {
         let (_, rest) = self.description.split_once("instantiationToken=\"").expect("a token");
         rest.split('"').next().unwrap_or_default()
     }
@@ -122,7 +122,7 @@ impl Fmu {
     fn importer_rows(&self, kind: &str, numbers: [f64; 3]) -> Vec<Vec<f64>> {
         let parse_number = |word: &str| word.parse().unwrap_or_else(|_| panic!("expected a number: {word}"));
         let parse_numbers_of_line = |line: &String| line.split_whitespace().map(parse_number).collect();
-        self.importer_lines(kind, numbers).iter().map(parse_numbers_of_line).collect()
+        self.output_lines_of_importer(kind, numbers).iter().map(parse_numbers_of_line).collect()
     }
 }
 
@@ -151,7 +151,7 @@ fn compare_states(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], toleran
 }
 
 /// Simulates a mechanism in both modes, and compares the motions with that of the library.
-fn check_both_modes(name: &str, arguments: &[&str], stop: f64, steps: f64) -> Option<Fmu> {
+fn check_both_fmi_modes(name: &str, arguments: &[&str], stop: f64, steps: f64) -> Option<Fmu> {
     let fmu = Fmu::new(name, arguments)?;
     let expected = simulate_states(arguments, stop, 10);
     compare_states(name, &fmu.importer_rows("co-simulation", [stop, 10.0, 0.0]), &expected, 1e-8);
@@ -168,7 +168,7 @@ const TOP: &[&str] =
     &["g=9.81", "mass=1", "height=0.2", "axial=0.02", "transverse=0.03", "q.tip.qx=0.2", "v.tip.wz=20"];
 
 /// Joins names and values to options of the command.
-fn set_options(values: &'static [&'static str]) -> Vec<&'static str> {
+fn set_option_arguments(values: &'static [&'static str]) -> Vec<&'static str> {
     values.iter().flat_map(|value| ["--set", value]).collect()
 }
 
@@ -185,24 +185,24 @@ fn cart_pole_fmu_agrees_with_rust_including_derivatives() {
     ];
     let values: Vec<&str> = values.iter().flat_map(|value| ["--set", value]).collect();
     let arguments = [&["../../models/src/cart_pole.rs"], &values[..]].concat();
-    let Some(fmu) = check_both_modes("cart_pole", &arguments, 2.0, 100.0) else { return };
+    let Some(fmu) = check_both_fmi_modes("cart_pole", &arguments, 2.0, 100.0) else { return };
     // Rates of four states and two energies, by four states, one input and four parameters.
     derivatives::check_derivatives(&fmu, [1.0, 4.0, 2.0], 6 * 9);
     let begin = r#"name="v.hinge" valueReference="4" causality="output" variability="continuous""#;
     let variable = format!(r#"{begin} initial="exact" start="0.0" unit="rad/s""#);
     assert!(fmu.description.contains(&variable), "{}", fmu.description);
     assert!(fmu.description.contains("<Unit name=\"rad/s\"><BaseUnit s=\"-1\" rad=\"1\"/></Unit>"));
-    let restored = fmu.importer_lines("states", [0.0; 3]);
+    let restored = fmu.output_lines_of_importer("states", [0.0; 3]);
     assert_eq!((&restored[0], &restored[0]), (&restored[1], &restored[2]), "after restoring the state");
     assert_eq!(restored[3..], ["3 fmi3DeserializeFMUState: the bytes are no state of this model", "3"]);
 }
 
 #[test]
 fn arm_and_top_fmus_agree_with_rust() {
-    check_both_modes("ur5", &["../../models/urdf/ur5.urdf", "--set", "q.elbow_joint=0.4"], 0.5, 200.0);
-    let values = set_options(TOP);
+    check_both_fmi_modes("ur5", &["../../models/urdf/ur5.urdf", "--set", "q.elbow_joint=0.4"], 0.5, 200.0);
+    let values = set_option_arguments(TOP);
     let top =
-        check_both_modes("top", &[&["../../models/src/heavy_top.rs"], &values[..]].concat(), 1.0, 400.0);
+        check_both_fmi_modes("top", &[&["../../models/src/heavy_top.rs"], &values[..]].concat(), 1.0, 400.0);
     // A ball joint: four entries of a quaternion, three velocities, five parameters, two energies.
     top.iter().for_each(|fmu| derivatives::check_derivatives(fmu, [0.0, 5.0, 2.0], 9 * 12));
 }
@@ -215,10 +215,10 @@ fn fmu_sources_contain_first_order_states_and_tables() {
     // Linear: 2 N s/m.
     fs::write(&folder, "-5,-10\n0,0\n5,10\n").expect("a file of the tests");
     let table = format!("drag={},extrapolated", folder.display());
-    let values = set_options(&["mass=4", "lag=0.5", "x.thrust=1", "u.throttle=3"]);
+    let values = set_option_arguments(&["mass=4", "lag=0.5", "x.thrust=1", "u.throttle=3"]);
     let arguments =
         [&["tests/fmu/mechanisms.rs", "--struct", "Boat", "--table", &table], &values[..]].concat();
-    let Some(fmu) = check_both_modes("boat", &arguments, 1.0, 50.0) else { return };
+    let Some(fmu) = check_both_fmi_modes("boat", &arguments, 1.0, 50.0) else { return };
     derivatives::check_derivatives(&fmu, [1.0, 2.0, 3.0], 6 * 6);
     // m v' = f - 2 v and f' = (3 - f) / lag, whose rates -1/2 and -2 differ.
     let last = fmu.importer_rows("co-simulation", [1.0, 10.0, 0.0]).pop().expect("rows");
@@ -231,14 +231,14 @@ fn fmu_sources_contain_first_order_states_and_tables() {
 
 #[test]
 fn four_bar_fmu_keeps_its_loop_closed() {
-    let values = set_options(FOUR_BAR);
-    check_both_modes("four_bar", &[&["../../models/src/four_bar.rs"], &values[..]].concat(), 1.0, 100.0);
+    let values = set_option_arguments(FOUR_BAR);
+    check_both_fmi_modes("four_bar", &[&["../../models/src/four_bar.rs"], &values[..]].concat(), 1.0, 100.0);
 }
 
 /// A ball that falls from 1 m bounces with 0.7 of its speed, and comes to rest.
 #[test]
 fn ball_fmu_bounces_by_its_closed_form() {
-    let values = set_options(&["bounce=0.7", "q.height=1.1"]);
+    let values = set_option_arguments(&["bounce=0.7", "q.height=1.1"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"], &values[..]].concat();
     let Some(fmu) = Fmu::new("ball", &arguments) else { return };
     let height_of_bouncing_ball = |t: f64| {
@@ -275,7 +275,7 @@ fn ball_fmu_bounces_by_its_closed_form() {
 /// that exchange their velocities.
 #[test]
 fn stop_and_ball_contacts_of_fmus_have_closed_forms() {
-    let values = set_options(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
+    let values = set_option_arguments(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "Door"], &values[..]].concat();
     let Some(fmu) = Fmu::new("door", &arguments) else { return };
     let start = std::f64::consts::FRAC_PI_4;
@@ -296,9 +296,10 @@ fn stop_and_ball_contacts_of_fmus_have_closed_forms() {
 /// Checks that names that C cannot have are those of the declaration in the description.
 #[test]
 fn names_need_not_be_identifiers_of_c() {
-    let values = set_options(&["double=1", "int=2", "θ=0.5", "struct=1", "q=0.5", "m=0", "q.register=0.3"]);
+    let values =
+        set_option_arguments(&["double=1", "int=2", "θ=0.5", "struct=1", "q=0.5", "m=0", "q.register=0.3"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "Kernel"], &values[..]].concat();
-    let Some(fmu) = check_both_modes("kernel", &arguments, 0.5, 100.0) else { return };
+    let Some(fmu) = check_both_fmi_modes("kernel", &arguments, 0.5, 100.0) else { return };
     for name in ["double", "θ", "struct", "q.register", "der(v.register)", "u.switch", "main"] {
         assert!(fmu.description.contains(&format!("name=\"{name}\"")), "{name}");
     }

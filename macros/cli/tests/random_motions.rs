@@ -45,7 +45,7 @@ struct MotionLog {
 }
 
 impl MotionLog {
-    fn last_value(&self, name: &str) -> f64 {
+    fn last_logged_value(&self, name: &str) -> f64 {
         let column = self.names.iter().position(|known| known == name);
         self.rows[self.rows.len() - 1][column.unwrap_or_else(|| panic!("no `{name}` in {:?}", self.names))]
     }
@@ -147,7 +147,7 @@ fn declared_speeds_leave_random_motions_unchanged() {
         });
         for joint in &joints {
             let name = format!("q.{joint}");
-            let (a, b) = (a.last_value(&name), b.last_value(&name));
+            let (a, b) = (a.last_logged_value(&name), b.last_logged_value(&name));
             assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "case {case}: {name} is {a}, not {b}");
         }
     }
@@ -223,7 +223,7 @@ fn first_order_states_integrate_like_velocities() {
         );
         let names = joints.iter().map(|joint| (format!("q.{joint}"), format!("q.{joint}")));
         for (name, other) in names.chain([("x.level".to_string(), "v.rail".to_string())]) {
-            let (a, b) = (a.last_value(&name), b.last_value(&other));
+            let (a, b) = (a.last_logged_value(&name), b.last_logged_value(&other));
             assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "case {case}: {name} is {a}, not {b}");
         }
     }
@@ -263,7 +263,7 @@ fn piecewise_linear_inputs_are_applied_exactly() {
         }
         let more = ["--inputs", "push.csv", "--duration", &end.to_string()];
         let log = simulate_to_log(&here, "inputs", &cart, &[], &more);
-        let (is, goes) = (log.last_value("q.rail"), log.last_value("v.rail"));
+        let (is, goes) = (log.last_logged_value("q.rail"), log.last_logged_value("v.rail"));
         assert!((is - x).abs() < 1e-8 * (1.0 + x.abs()), "case {case}: {is}, not {x}");
         assert!((goes - v).abs() < 1e-8 * (1.0 + v.abs()), "case {case}: {goes}, not {v}");
     }

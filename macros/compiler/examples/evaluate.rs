@@ -67,13 +67,13 @@ fn evaluate_mechanism() -> Result<(), Failure> {
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
-        let number_or_nan = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
+        let number_at_index_or_nan = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
         let function_values = |name: &str, passive: &[f64]| {
             let value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
-                Quantity::Configuration(k) => number_or_nan(k),
-                Quantity::Velocity(k) => number_or_nan(nq + k),
-                Quantity::Input(k) => number_or_nan(nq + nv + k),
-                Quantity::Force(k) => number_or_nan(nq + nv + nu + k),
+                Quantity::Configuration(k) => number_at_index_or_nan(k),
+                Quantity::Velocity(k) => number_at_index_or_nan(nq + k),
+                Quantity::Input(k) => number_at_index_or_nan(nq + nv + k),
+                Quantity::Force(k) => number_at_index_or_nan(nq + nv + nu + k),
                 Quantity::PassiveForce(k) => passive.get(k).copied().unwrap_or(f64::NAN),
                 _ => f64::NAN,
             };

@@ -97,7 +97,7 @@ fn struct_of_rust_file(path: &Path, name: Option<&str>) -> Result<MechanismInput
     split_attribute(path, named.next().ok_or("the file has no such struct with `#[mechanism]`")?)
 }
 
-fn is_mechanism(attribute: &syn::Attribute) -> bool {
+fn is_mechanism_attribute(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
 }
 
@@ -108,7 +108,7 @@ fn mechanism_structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
     while !todo.is_empty() {
         for item in std::mem::take(&mut todo) {
             match item {
-                syn::Item::Struct(item) if item.attrs.iter().any(is_mechanism) => found.push(item),
+                syn::Item::Struct(item) if item.attrs.iter().any(is_mechanism_attribute) => found.push(item),
                 syn::Item::Mod(module) => {
                     todo.extend(module.content.into_iter().flat_map(|(_, items)| items))
                 }
@@ -123,12 +123,12 @@ fn mechanism_structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
 fn split_attribute(path: &Path, mut item: syn::ItemStruct) -> Result<MechanismInput, Failure> {
     let mut arguments = TokenStream::new();
     item.attrs.retain(|attribute| {
-        if is_mechanism(attribute)
+        if is_mechanism_attribute(attribute)
             && let syn::Meta::List(list) = &attribute.meta
         {
             arguments = list.tokens.clone();
         }
-        !is_mechanism(attribute)
+        !is_mechanism_attribute(attribute)
     });
     let path = path.canonicalize()?;
     let package = path.ancestors().find(|folder| folder.join("Cargo.toml").is_file());
@@ -152,7 +152,7 @@ fn struct_of_urdf(path: &Path, options: &[(&str, &str)]) -> Result<MechanismInpu
 }
 
 impl MechanismInput {
-    fn expand_input(&self) -> linkwork_compiler::emit::Emitted {
+    fn expand_input(&self) -> linkwork_compiler::emit::GeneratedCode {
         expand(self.arguments.clone(), self.item.clone(), &self.folder)
     }
 }
@@ -212,25 +212,25 @@ fn print_operation_counts(input: &MechanismInput) -> Result<(), Failure> {
         "function", "total", "mul", "add", "div", "fused", "calls"
     );
     for f in &output.functions {
-        print_count_row(&f.name, [&f.program]);
+        print_operation_count_row(&f.name, [&f.program]);
         if let Some(program) = &f.program.simd {
-            print_count_row("  in lanes", [&**program]);
+            print_operation_count_row("  in lanes", [&**program]);
         }
     }
     let links = &output.links;
-    print_count_row("links: placement", links.iter().map(|l| &l.placement));
-    print_count_row("links: twist", links.iter().map(|l| &l.twist));
-    print_count_row("links: acceleration", links.iter().map(|l| &l.acceleration));
-    print_count_row("links: columns", links.iter().map(|l| &l.columns));
+    print_operation_count_row("links: placement", links.iter().map(|l| &l.placement));
+    print_operation_count_row("links: twist", links.iter().map(|l| &l.twist));
+    print_operation_count_row("links: acceleration", links.iter().map(|l| &l.acceleration));
+    print_operation_count_row("links: columns", links.iter().map(|l| &l.columns));
     let frames = &output.frames;
-    print_count_row("frames: placement", frames.iter().map(|f| &f.placement));
-    print_count_row("frames: twist", frames.iter().map(|f| &f.twist));
-    print_count_row("frames: acceleration", frames.iter().map(|f| &f.acceleration));
+    print_operation_count_row("frames: placement", frames.iter().map(|f| &f.placement));
+    print_operation_count_row("frames: twist", frames.iter().map(|f| &f.twist));
+    print_operation_count_row("frames: acceleration", frames.iter().map(|f| &f.acceleration));
     println!("\ntotal = mul + add + div; fused: the same with a product and its sum as one instruction");
     Ok(())
 }
 
-fn print_count_row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
+fn print_operation_count_row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
     let (mut sum, mut instructions) = (Counts::default(), 0);
     for program in programs {
         let c = program.counts;
@@ -272,7 +272,8 @@ fn print_after_pass(input: &MechanismInput, pass: &str, function: &str) -> Resul
     let source = read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx);
     let source = result_or_errors(source, cx)?;
     let graph = Graph::new();
-    let output = pipeline::with_observer(Box::new(print_after_pass), || compile(&source, &graph, cx));
+    let output =
+        pipeline::run_with_pass_observer(Box::new(print_after_pass), || compile(&source, &graph, cx));
     result_or_errors(output, cx).map(|_| ())
 }
 
@@ -293,11 +294,11 @@ fn symbol_name(symbol: Symbol) -> String {
 
 /// Measured durations of compiler stages by name, each the minimum of several runs.
 #[derive(Default)]
-struct Stopwatch {
+struct StageDurations {
     stages: Vec<(String, Duration)>,
 }
 
-impl Stopwatch {
+impl StageDurations {
     /// Records the duration of a compiler stage in one run; the minimum over all runs is stored.
     fn record_least_duration(&mut self, stage: &str, elapsed: Duration) {
         match self.stages.iter_mut().find(|(name, _)| name == stage) {
@@ -322,9 +323,9 @@ impl Stopwatch {
 /// Prints the time of every stage, and within `derive` that of every pass of lowering, over all functions and
 /// all their candidate programs.
 fn print_stage_times(input: &MechanismInput) -> Result<(), Failure> {
-    let (mut watch, mut passes) = (Stopwatch::default(), Stopwatch::default());
+    let (mut watch, mut passes) = (StageDurations::default(), StageDurations::default());
     for _ in 0..REPEATS {
-        run_once(input, &mut watch, &mut passes)?;
+        expand_once_with_timing(input, &mut watch, &mut passes)?;
     }
     let lowered: Duration = passes.stages.iter().map(|(_, time)| *time).sum();
     let known = ["read", "model", "derive"].map(|stage| watch.duration_of_stage(stage)).into_iter().sum();
@@ -344,7 +345,11 @@ fn print_stage_times(input: &MechanismInput) -> Result<(), Failure> {
     Ok(())
 }
 
-fn run_once(input: &MechanismInput, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Result<(), Failure> {
+fn expand_once_with_timing(
+    input: &MechanismInput,
+    watch: &mut StageDurations,
+    passes: &mut StageDurations,
+) -> Result<(), Failure> {
     let cx = &mut Diagnostics::new();
     watch.measure_stage("whole expansion", || input.expand_input());
     let source = watch.measure_stage("read", || {
@@ -363,7 +368,7 @@ fn run_once(input: &MechanismInput, watch: &mut Stopwatch, passes: &mut Stopwatc
             None => sums.push((pass.to_string(), time)),
         }
     };
-    let output = pipeline::with_observer(Box::new(record_pass_time), || {
+    let output = pipeline::run_with_pass_observer(Box::new(record_pass_time), || {
         let derive_all_functions =
             || derive_with_options(&model, source.mechanism.requests, Passes::default(), cx);
         watch.measure_stage("derive", derive_all_functions)

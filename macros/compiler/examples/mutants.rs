@@ -54,7 +54,7 @@ struct Mutator<'a> {
 impl Mutator<'_> {
     /// Returns an expression that selects `original` or `instead` by the mutant's number; `None` if this
     /// mutant is omitted.
-    fn mutant_choice(
+    fn mutant_selection_expression(
         &mut self,
         at: Span,
         shown: &dyn ToTokens,
@@ -184,7 +184,7 @@ impl VisitMut for Mutator<'_> {
             _ => visit_mut::visit_expr_mut(self, expr),
         }
         if let Some(instead) = instead
-            && let Some(both) = self.mutant_choice(original.span(), &original, expr, &instead)
+            && let Some(both) = self.mutant_selection_expression(original.span(), &original, expr, &instead)
         {
             *expr = both;
         }
@@ -203,7 +203,7 @@ impl VisitMut for Mutator<'_> {
             let next =
                 bodies.get(k + 1).filter(|next| shortened_tokens(*next) != shortened_tokens(&bodies[k]));
             if let Some(next) = next
-                && let Some(both) = self.mutant_choice(pat.span(), &quote!(#pat =>), body, next)
+                && let Some(both) = self.mutant_selection_expression(pat.span(), &quote!(#pat =>), body, next)
             {
                 **body = both;
             }

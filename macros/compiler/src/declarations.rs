@@ -15,33 +15,33 @@ pub struct DeclaredStruct {
     /// The struct without the attribute `#[mechanism]`.
     pub item: TokenStream,
     /// Position of the attribute, if a `#[derive(…)]` precedes it.
-    pub derive_above: Option<Span>,
+    pub derive_above_attribute_error: Option<Span>,
 }
 
-fn is_mechanism(attribute: &syn::Attribute) -> bool {
+fn is_mechanism_attribute(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
 }
 
-fn is_derive(attribute: &syn::Attribute) -> bool {
+fn is_derive_attribute(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "derive")
 }
 
 impl DeclaredStruct {
     /// Reads a struct; `None` if it has no `#[mechanism]` attribute.
-    fn read_struct(mut item: syn::ItemStruct) -> Option<DeclaredStruct> {
-        let attribute = item.attrs.iter().position(is_mechanism)?;
-        let derive = item.attrs.iter().position(is_derive).filter(|derive| *derive < attribute);
-        let derive_above = derive.map(|_| item.attrs[attribute].span());
+    fn read_mechanism_struct(mut item: syn::ItemStruct) -> Option<DeclaredStruct> {
+        let attribute = item.attrs.iter().position(is_mechanism_attribute)?;
+        let derive = item.attrs.iter().position(is_derive_attribute).filter(|derive| *derive < attribute);
+        let derive_above_attribute_error = derive.map(|_| item.attrs[attribute].span());
         let arguments = match &item.attrs[attribute].meta {
             syn::Meta::List(list) => list.tokens.clone(),
             _ => TokenStream::new(),
         };
-        item.attrs.retain(|attribute| !is_mechanism(attribute));
+        item.attrs.retain(|attribute| !is_mechanism_attribute(attribute));
         Some(DeclaredStruct {
             name: item.ident.to_string(),
             arguments,
             item: item.to_token_stream(),
-            derive_above,
+            derive_above_attribute_error,
         })
     }
 
@@ -51,12 +51,12 @@ impl DeclaredStruct {
         let name = type_name(path);
         let ident = syn::Ident::new(&name, Span::call_site());
         let written = path.to_string_lossy().into_owned();
-        let format = syn::Ident::new(robot_file_format(path, text).format_option(), Span::call_site());
+        let format = syn::Ident::new(robot_file_format(path, text).import_option_name(), Span::call_site());
         DeclaredStruct {
             name,
             arguments: quote::quote!(#format = #written),
             item: quote::quote!(pub struct #ident;),
-            derive_above: None,
+            derive_above_attribute_error: None,
         }
     }
 
@@ -84,7 +84,7 @@ pub fn mechanism_declarations(text: &str) -> syn::Result<Vec<DeclaredStruct>> {
     while !todo.is_empty() {
         for item in std::mem::take(&mut todo) {
             match item {
-                syn::Item::Struct(item) => found.extend(DeclaredStruct::read_struct(item)),
+                syn::Item::Struct(item) => found.extend(DeclaredStruct::read_mechanism_struct(item)),
                 syn::Item::Mod(module) => {
                     todo.extend(module.content.into_iter().flat_map(|(_, items)| items));
                 }

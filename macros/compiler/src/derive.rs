@@ -2,18 +2,18 @@
 
 use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
-use crate::equations::{self, Limits, Written, kane, linear, reduced};
+use crate::equations::{self, Limits, PrintedEquations, kane, linear, reduced};
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, pipeline};
-use crate::mechanics::conserved::{self, Conserved};
+use crate::mechanics::conserved::{self, ConservedQuantity};
 use crate::mechanics::hamilton::{self, Hamilton};
 use crate::mechanics::routh::{self, Routh};
-use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{self, crba, frames};
 use crate::mechanism::Model;
 use crate::passes::Passes;
-use crate::syntax::{Printed, Requests, Skipped};
+use crate::syntax::{EquationsOption, RequestedFunctions, SkippedPasses};
 use std::rc::Rc;
 
 mod constraints;
@@ -34,10 +34,12 @@ mod speeds;
 
 use derivation::Derivation;
 use derivatives::Derivatives;
-use regressor::Identification;
-use specialisation::Specialisation;
+use regressor::IdentificationFunctions;
+use specialisation::ParameterSpecialisation;
 
-pub use output::{Constant, FrameSteps, Function, LinkSteps, Output, PLACEMENT, Prepared, TWIST};
+pub use output::{
+    AssociatedConstant, FrameSteps, Function, LinkRecursionPrograms, Output, PLACEMENT, Prepared, TWIST,
+};
 
 /// Maximum number of products in the elimination of constraints.
 const MOST_PRODUCTS: usize = 100_000;
@@ -45,21 +47,23 @@ const MOST_PRODUCTS: usize = 100_000;
 /// Derives all functions except the optional ones. Returns `None` with the error in `cx` if the mass matrix
 /// is singular.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
-    derive_with_options(model, Requests::default(), Passes::default(), cx)
+    derive_with_options(model, RequestedFunctions::default(), Passes::default(), cx)
 }
 
 /// Like [`derive()`], with optional functions and a choice of optimisation passes.
 pub fn derive_with_options<'g>(
     model: &Model<'g>,
-    requests: Requests,
+    requests: RequestedFunctions,
     passes: Passes,
     cx: &mut Diagnostics,
 ) -> Option<Output> {
-    let passes = remaining_passes(passes, requests.skipped);
-    let speeds = InSpeeds::new(model).map(Rc::new);
+    let passes = enabled_passes(passes, requests.skipped);
+    let speeds = SpeedTransformation::new(model).map(Rc::new);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints_of_model(model);
-    if let Some((what, help)) = speeds.as_ref().and_then(|s| self::speeds::unsupported_option(s, requests)) {
+    if let Some((what, help)) =
+        speeds.as_ref().and_then(|s| self::speeds::unsupported_option_message(s, requests))
+    {
         cx.report_error(model.place.clone(), what).add_help(help);
         return None;
     }
@@ -67,7 +71,7 @@ pub fn derive_with_options<'g>(
         return derive_kinematic((model, speeds.as_ref()), requests, passes, &joints, cx);
     }
     let mass = crba::mass_matrix(model, &joints);
-    if !singular::check_mass_matrix(model, &joints, &mass, cx)
+    if !singular::report_singular_mass_matrix(model, &joints, &mass, cx)
         || !singular::check_effective_mass(model, &joints, &mass, cx)
     {
         return None;
@@ -75,9 +79,9 @@ pub fn derive_with_options<'g>(
     if !check_requests(model, requests, cx) {
         return None;
     }
-    let cyclic = requested_cyclic_coordinates(model, requests, &joints, cx)?;
-    let extras = OptionalData {
-        identification: requests.regressor.then(|| Identification::new(model, &joints)),
+    let cyclic = cyclic_coordinates_for_routh(model, requests, &joints, cx)?;
+    let extras = OptionalFunctionData {
+        identification: requests.regressor.then(|| IdentificationFunctions::new(model, &joints)),
         entries: requests.packed.then(|| match &speeds {
             Some(speeds) => nonzero_mass_entries(&speeds.transform_mass_matrix(&mass)),
             None => nonzero_mass_entries(&mass),
@@ -91,7 +95,7 @@ pub fn derive_with_options<'g>(
     };
     let own = (model, speeds.as_ref());
     let functions_with_specialisation =
-        |specialisation| derive_functions(own, requests, passes, &joints, &extras, specialisation);
+        |specialisation| derive_and_lower_functions(own, requests, passes, &joints, &extras, specialisation);
     let constrained = !model.constraints.is_empty();
     if constrained && mechanics::constraints::elimination_product_count(model, &mass) > MOST_PRODUCTS {
         cx.report_error(model.place.clone(), "too many constraints of this mechanism are coupled").add_help(
@@ -100,26 +104,28 @@ pub fn derive_with_options<'g>(
         );
         return None;
     }
-    let functions = functions_with_specialisation(Specialisation::None);
+    let functions = functions_with_specialisation(ParameterSpecialisation::None);
     let prepared = requests.prepare.then(|| {
         prepared::extract_prepared_values(
             model.graph,
-            functions_with_specialisation(Specialisation::ByParameters),
+            functions_with_specialisation(ParameterSpecialisation::ByParameters),
         )
     });
-    let mut constants = extras.identification.map_or_else(Vec::new, |i| i.name_constants());
-    constants.extend(extras.entries.map(|entries| Constant::packed_entry_constant(&entries)));
+    let mut constants = extras.identification.map_or_else(Vec::new, |i| i.identification_name_constants());
+    constants.extend(extras.entries.map(|entries| AssociatedConstant::packed_entries_constant(&entries)));
     if let Some(kept) = &extras.conserved {
         let names: Vec<String> = kept.iter().map(|c| c.name.clone()).collect();
-        constants.push(Constant::conserved_name_constant(&names));
+        constants.push(AssociatedConstant::conserved_names_constant(&names));
     }
-    constants.extend(extras.routh.as_ref().map(|routh| Constant::cyclic_coordinate_constant(&routh.cyclic)));
+    constants.extend(
+        extras.routh.as_ref().map(|routh| AssociatedConstant::cyclic_coordinate_constant(&routh.cyclic)),
+    );
     if requests.sensitivities {
-        constants.push(Constant::parameter_name_constant(&model.parameters));
+        constants.push(AssociatedConstant::parameter_names_constant(&model.parameters));
     }
     constants.extend(drawing_constants(model, requests));
     let linear = linear_equations(model, &joints, &mass, cx)?;
-    constants.extend(Constant::linear_equations(&linear));
+    constants.extend(AssociatedConstant::linear_equations(&linear));
     let equations =
         printed_equations((model, speeds.as_deref()), &joints, &mass, (requests.equations, cyclic), cx)?;
     let output = Output {
@@ -127,7 +133,7 @@ pub fn derive_with_options<'g>(
         linear_equations: linear.into_iter().map(|(_, written)| written).collect(),
         prepared,
         constants,
-        ..output_with_steps(model, &joints, functions)
+        ..output_with_recursion_steps(model, &joints, functions)
     };
     check_derived_output(model, output, cx)
 }
@@ -135,28 +141,38 @@ pub fn derive_with_options<'g>(
 /// Derives the functions of a mechanism without dynamics: the configuration space, frames, constraints, the
 /// forces of inputs, and outputs.
 fn derive_kinematic<'g>(
-    (model, speeds): (&Model<'g>, Option<&Rc<InSpeeds<'g>>>),
-    requests: Requests,
+    (model, speeds): (&Model<'g>, Option<&Rc<SpeedTransformation<'g>>>),
+    requests: RequestedFunctions,
     passes: Passes,
     joints: &[Joint<'g>],
     cx: &mut Diagnostics,
 ) -> Option<Output> {
-    if !matches!(requests.equations, Printed::Readable | Printed::Structure) {
+    if !matches!(requests.equations, EquationsOption::Readable | EquationsOption::Structure) {
         cx.report_error(model.place.clone(), "without inertia there are no equations of motion to print")
             .add_help("remove `equations` or `inertia = none`");
         return None;
     }
-    let asked = Requests { drawing: requests.drawing, ..Requests::default() };
+    let asked = RequestedFunctions { drawing: requests.drawing, ..RequestedFunctions::default() };
     let own = (model, speeds);
-    let functions =
-        derive_functions(own, asked, passes, joints, &OptionalData::default(), Specialisation::None);
+    let functions = derive_and_lower_functions(
+        own,
+        asked,
+        passes,
+        joints,
+        &OptionalFunctionData::default(),
+        ParameterSpecialisation::None,
+    );
     let constants = drawing_constants(model, requests);
-    check_derived_output(model, Output { constants, ..output_with_steps(model, joints, functions) }, cx)
+    check_derived_output(
+        model,
+        Output { constants, ..output_with_recursion_steps(model, joints, functions) },
+        cx,
+    )
 }
 
 /// Checks that the requested functions exist for a mechanism and are not too long; reports an error and
 /// returns false otherwise.
-fn check_requests(model: &Model<'_>, requests: Requests, cx: &mut Diagnostics) -> bool {
+fn check_requests(model: &Model<'_>, requests: RequestedFunctions, cx: &mut Diagnostics) -> bool {
     if let ([force, ..], Some(what)) =
         (model.acceleration_forces.as_slice(), request_excluded_without_momentum(requests))
     {
@@ -167,7 +183,7 @@ fn check_requests(model: &Model<'_>, requests: Requests, cx: &mut Diagnostics) -
         .add_help("remove the option that requests them, or these terms of the force");
         return false;
     }
-    if let Some(what) = overlong_request(model, requests) {
+    if let Some(what) = request_exceeding_code_limit(model, requests) {
         cx.report_error(model.place.clone(), format!("{what} would be too long")).add_help(
             "the generated code has no loops, and a line for each of them: request it for a smaller \
              mechanism",
@@ -179,9 +195,9 @@ fn check_requests(model: &Model<'_>, requests: Requests, cx: &mut Diagnostics) -
 
 /// Writes the values of conserved quantities in generalized speeds, if the mechanism defines any.
 fn conserved_in_speeds<'g>(
-    mut kept: Vec<Conserved<'g>>,
-    speeds: Option<&InSpeeds<'g>>,
-) -> Vec<Conserved<'g>> {
+    mut kept: Vec<ConservedQuantity<'g>>,
+    speeds: Option<&SpeedTransformation<'g>>,
+) -> Vec<ConservedQuantity<'g>> {
     if let Some(speeds) = speeds {
         kept.iter_mut().for_each(|c| c.value = speeds.express_in_speeds(&[c.value])[0]);
     }
@@ -189,18 +205,26 @@ fn conserved_in_speeds<'g>(
 }
 
 /// Returns the associated constant that the option `drawing` adds, if the option is set.
-fn drawing_constants(model: &Model<'_>, requests: Requests) -> Vec<Constant> {
-    requests.drawing.then(|| Constant::drawing_constant(&model.drawing)).into_iter().collect()
+fn drawing_constants(model: &Model<'_>, requests: RequestedFunctions) -> Vec<AssociatedConstant> {
+    requests
+        .drawing
+        .then(|| AssociatedConstant::drawing_pieces_constant(&model.drawing))
+        .into_iter()
+        .collect()
 }
 
 /// Builds the output from the functions, and adds the steps that compute link and frame placements.
-fn output_with_steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) -> Output {
+fn output_with_recursion_steps<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    functions: Vec<Function>,
+) -> Output {
     Output {
         functions,
-        links: joints.iter().map(|joint| link_steps(model, joint)).collect(),
-        frames: model.frames.iter().map(|frame| frame_steps(model, frame)).collect(),
+        links: joints.iter().map(|joint| link_recursion_steps(model, joint)).collect(),
+        frames: model.frames.iter().map(|frame| frame_placement_steps(model, frame)).collect(),
         charts: model.charts.clone(),
-        equations: Written::default(),
+        equations: PrintedEquations::default(),
         linear_equations: Vec::new(),
         prepared: None,
         constants: Vec::new(),
@@ -215,7 +239,7 @@ fn check_derived_output(model: &Model<'_>, output: Output, cx: &mut Diagnostics)
             .add_help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;
     }
-    if let Some(what) = output.undefined_operation() {
+    if let Some(what) = output.non_finite_constant_operation() {
         cx.report_error(
             model.place.clone(),
             format!("the equations of this mechanism contain `{what}`, which is not a number"),
@@ -225,7 +249,7 @@ fn check_derived_output(model: &Model<'_>, output: Output, cx: &mut Diagnostics)
         );
         return None;
     }
-    if let Some(name) = output.misfitting_function() {
+    if let Some(name) = output.function_with_mismatched_program() {
         cx.report_error(
             model.place.clone(),
             format!("internal error: the program of `{name}` does not match its arguments or its result"),
@@ -237,7 +261,7 @@ fn check_derived_output(model: &Model<'_>, output: Output, cx: &mut Diagnostics)
 }
 
 /// Returns the passes that the user has not switched off.
-fn remaining_passes(passes: Passes, skipped: Skipped) -> Passes {
+fn enabled_passes(passes: Passes, skipped: SkippedPasses) -> Passes {
     Passes {
         frames: passes.frames && !skipped.frames,
         regroup: passes.regroup && !skipped.regroup,
@@ -249,9 +273,9 @@ fn remaining_passes(passes: Passes, skipped: Skipped) -> Passes {
 
 /// Returns the first requested quantity that exists only if forces do not depend on accelerations: canonical
 /// momenta or second derivatives. Returns `None` if no such quantity is requested.
-fn request_excluded_without_momentum(requests: Requests) -> Option<&'static str> {
-    let canonical = requests.hamilton || requests.equations == Printed::Hamilton;
-    let reduced = requests.routh || requests.equations == Printed::Routh;
+fn request_excluded_without_momentum(requests: RequestedFunctions) -> Option<&'static str> {
+    let canonical = requests.hamilton || requests.equations == EquationsOption::Hamilton;
+    let reduced = requests.routh || requests.equations == EquationsOption::Routh;
     let asked = [
         (canonical, "Hamilton's equations"),
         (reduced, "Routh's equations"),
@@ -266,7 +290,7 @@ fn request_excluded_without_momentum(requests: Requests) -> Option<&'static str>
 const MOST_DERIVATIVES: usize = 300_000;
 
 /// Returns the requested derivatives whose code would be too long for rustc, if there are any.
-fn overlong_request(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
+fn request_exceeding_code_limit(model: &Model<'_>, requests: RequestedFunctions) -> Option<&'static str> {
     let squared = model.nv() * model.nv();
     let elements = model.potentials.len()
         + model.loads.len()
@@ -282,9 +306,9 @@ fn overlong_request(model: &Model<'_>, requests: Requests) -> Option<&'static st
 
 /// Data that optional functions need in addition to the model.
 #[derive(Default)]
-struct OptionalData<'a, 'g> {
+struct OptionalFunctionData<'a, 'g> {
     /// Base parameters; present if the option `regressor` is set.
-    identification: Option<Identification<'a, 'g>>,
+    identification: Option<IdentificationFunctions<'a, 'g>>,
     /// Row and column of each nonzero entry; present if the option `packed` is set.
     entries: Option<Vec<(usize, usize)>>,
     /// Hamilton's equations; present if the option `hamilton` is set.
@@ -292,18 +316,18 @@ struct OptionalData<'a, 'g> {
     /// Routh's equations; present if the option `routh` is set.
     routh: Option<Routh<'g>>,
     /// Conserved quantities; present if the option `conserved` is set.
-    conserved: Option<Vec<Conserved<'g>>>,
+    conserved: Option<Vec<ConservedQuantity<'g>>>,
 }
 
 /// Returns the cyclic coordinates if Routh's equations are requested. The outer `None` means that there are
 /// none, or that the mechanism has constraints, with the error in `cx`.
-fn requested_cyclic_coordinates<'g>(
+fn cyclic_coordinates_for_routh<'g>(
     model: &Model<'g>,
-    requests: Requests,
+    requests: RequestedFunctions,
     joints: &[Joint<'g>],
     cx: &mut Diagnostics,
 ) -> Option<Option<Vec<usize>>> {
-    if !requests.routh && requests.equations != Printed::Routh {
+    if !requests.routh && requests.equations != EquationsOption::Routh {
         return Some(None);
     }
     let (what, help) = match routh::cyclic_coordinates(model, joints) {
@@ -328,10 +352,13 @@ fn has_massless_coordinates(model: &Model<'_>) -> bool {
     model.constraints.iter().any(|c| c.determines)
 }
 
-impl<'g> OptionalData<'_, 'g> {
-    fn facts_of_model(&self, model: &Model<'g>, requests: Requests) -> Facts {
-        let [bodies, base] =
-            self.identification.as_ref().map(Identification::body_and_parameter_counts).unwrap_or_default();
+impl<'g> OptionalFunctionData<'_, 'g> {
+    fn facts_of_model(&self, model: &Model<'g>, requests: RequestedFunctions) -> Facts {
+        let [bodies, base] = self
+            .identification
+            .as_ref()
+            .map(IdentificationFunctions::body_and_parameter_counts)
+            .unwrap_or_default();
         let entries = self.entries.clone().unwrap_or_default();
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
         let conserved = self.conserved.as_ref().map(Vec::len).unwrap_or_default();
@@ -348,42 +375,46 @@ fn nonzero_mass_entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
 }
 
 /// Derives all functions of a mechanism and lowers them to programs.
-fn derive_functions<'g>(
-    (model, speeds): (&Model<'g>, Option<&Rc<InSpeeds<'g>>>),
-    requests: Requests,
+fn derive_and_lower_functions<'g>(
+    (model, speeds): (&Model<'g>, Option<&Rc<SpeedTransformation<'g>>>),
+    requests: RequestedFunctions,
     passes: Passes,
     joints: &[Joint<'g>],
-    extras: &OptionalData<'_, 'g>,
-    specialisation: Specialisation,
+    extras: &OptionalFunctionData<'_, 'g>,
+    specialisation: ParameterSpecialisation,
 ) -> Vec<Function> {
     let given = match speeds {
         Some(_) => None,
-        None => passive::with_given_forces(model, requests.derivatives),
+        None => passive::with_passive_force_arguments(model, requests.derivatives),
     };
     let model = speeds.map_or(given.as_ref().unwrap_or(model), |speeds| &speeds.model);
     let facts = extras.facts_of_model(model, requests);
-    let passes = Passes { free_parameters: specialisation == Specialisation::ByParameters, ..passes };
+    let passes =
+        Passes { free_parameters: specialisation == ParameterSpecialisation::ByParameters, ..passes };
     let derivation = Derivation::new(model, joints, speeds, passes, specialisation, &facts);
-    let functions = derivation.derive_declared(catalogue::functions_before_outputs(&facts), Vec::new());
-    let functions = derivation.derive_declared(outputs::signatures_of_outputs(model, &facts), functions);
+    let functions =
+        derivation.derive_declared_functions(catalogue::functions_derived_before_outputs(&facts), Vec::new());
+    let functions =
+        derivation.derive_declared_functions(outputs::declared_output_functions(model, &facts), functions);
     let by_variants = facts.requests.derivatives && speeds.is_none();
     let variants = if by_variants { derivatives::model_variants(model, passes) } else { Vec::new() };
     let derivatives = Derivatives::new(model, &variants, passes, specialisation);
     // The structure of the derivatives of a large mechanism is known only at this point.
-    let calls = derivatives.as_ref().is_some_and(Derivatives::calls_other_functions);
+    let calls = derivatives.as_ref().is_some_and(Derivatives::forward_derivatives_call_functions);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::linearization_calls_functions);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
     let derivation = derivation.with_option_data(&facts, extras, derivatives.as_ref());
-    let mut functions = derivation.derive_declared(catalogue::functions_after_outputs(&facts), functions);
-    finish_lowering(&mut functions, requests.reproducible);
+    let mut functions =
+        derivation.derive_declared_functions(catalogue::functions_derived_after_outputs(&facts), functions);
+    run_final_lowering_passes(&mut functions, requests.reproducible);
     functions
 }
 
 /// Applies the last passes of lowering, which consider whole programs. In reproducible arithmetic, a program
 /// computes the same bits as its variant with lanes.
-fn finish_lowering(functions: &mut [Function], reproducible: bool) {
+fn run_final_lowering_passes(functions: &mut [Function], reproducible: bool) {
     for f in functions {
-        pipeline::begin_function(&f.name);
+        pipeline::set_observed_function_name(&f.name);
         f.program = std::mem::take(&mut f.program).run_passes(pipeline::FINISH);
         if let Some(simd) = f.program.simd.take_if(|_| reproducible) {
             let program = simd.expand_lanes().run_passes(&[pipeline::SCHEDULE]);
@@ -395,45 +426,45 @@ fn finish_lowering(functions: &mut [Function], reproducible: bool) {
 /// Returns the equations of motion as plain text, one line per equation. The text is empty if the equations
 /// are too long to be readable.
 pub fn equations_as_text(model: &Model<'_>) -> String {
-    equations_without_speeds(model).plain
+    equations_in_joint_velocities(model).plain
 }
 
 /// Returns the equations of motion as LaTeX: an `aligned` environment for math mode, with `amsmath`.
 pub fn equations_latex(model: &Model<'_>) -> String {
-    equations_without_speeds(model).latex
+    equations_in_joint_velocities(model).latex
 }
 
-fn equations_without_speeds(model: &Model<'_>) -> Written {
-    let speeds = InSpeeds::new(model);
+fn equations_in_joint_velocities(model: &Model<'_>) -> PrintedEquations {
+    let speeds = SpeedTransformation::new(model);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
     let joints = kinematics::joints_of_model(model);
-    written_equations((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
+    format_readable_equations((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
 }
 
 /// Returns the requested form of the equations of motion. Readable equations are empty if they would be too
 /// long; other forms return `None` with the error in `cx`.
 fn printed_equations<'g>(
-    (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
+    (model, speeds): (&Model<'g>, Option<&SpeedTransformation<'g>>),
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
-    (printed, cyclic): (Printed, Option<Vec<usize>>),
+    (printed, cyclic): (EquationsOption, Option<Vec<usize>>),
     cx: &mut Diagnostics,
-) -> Option<Written> {
+) -> Option<PrintedEquations> {
     let mut refuse = |what: &str, help: &str| {
         cx.report_error(model.place.clone(), what.to_string()).add_help(help);
         None
     };
     match printed {
-        Printed::Readable => Some(written_equations((model, speeds), joints, mass)),
-        Printed::Structure => Some(Written::default()),
-        Printed::Kane if model.constraints.iter().any(|c| !c.friction.is_empty()) => refuse(
+        EquationsOption::Readable => Some(format_readable_equations((model, speeds), joints, mass)),
+        EquationsOption::Structure => Some(PrintedEquations::default()),
+        EquationsOption::Kane if model.constraints.iter().any(|c| !c.friction.is_empty()) => refuse(
             "the equations of a slipping contact contain its normal force, which is a multiplier",
             "write `equations = lagrange`",
         ),
-        Printed::Kane if !model.constraints.is_empty() => {
+        EquationsOption::Kane if !model.constraints.is_empty() => {
             let named = speeds.map_or(model, |speeds| &speeds.model);
             match kane::kane_equations(model, joints, speeds) {
-                Ok(found) => Some(kane::written_kane(named, &found)),
+                Ok(found) => Some(kane::format_kane_equations(named, &found)),
                 Err(kane::KaneFailure::Choice) => refuse(
                     "no velocities of this mechanism are determined by the others through its constraints in \
                      every configuration",
@@ -447,7 +478,7 @@ fn printed_equations<'g>(
             }
         }
         // Without constraints all velocities are independent, and Kane's equations equal Lagrange's.
-        Printed::Lagrange | Printed::Kane => {
+        EquationsOption::Lagrange | EquationsOption::Kane => {
             let equations = equations::derive(model, joints, mass, speeds, &Limits::ASKED);
             let named = speeds.map_or(model, |speeds| &speeds.model);
             equations.map(|e| equations::format_equations(named, &e)).or_else(|| {
@@ -459,9 +490,9 @@ fn printed_equations<'g>(
                 )
             })
         }
-        Printed::Routh => {
+        EquationsOption::Routh => {
             let reduced = cyclic.and_then(|cyclic| reduced::routh_equations(model, joints, mass, cyclic));
-            reduced.map(|r| reduced::written_reduced(model, &r)).or_else(|| {
+            reduced.map(|r| reduced::format_routh_equations(model, &r)).or_else(|| {
                 refuse(
                     "Routh's equations of this mechanism are too long: more than three cyclic coordinates \
                      are coupled by inertia, or thousands of terms",
@@ -470,19 +501,19 @@ fn printed_equations<'g>(
                 )
             })
         }
-        Printed::Hamilton if !model.constraints.is_empty() => refuse(
+        EquationsOption::Hamilton if !model.constraints.is_empty() => refuse(
             "Hamilton's equations are printed only for mechanisms without constraints",
             "write `equations = lagrange`; the option `hamilton` generates the functions with constraints as \
              well",
         ),
-        Printed::Hamilton if speeds.is_some() => refuse(
+        EquationsOption::Hamilton if speeds.is_some() => refuse(
             "Hamilton's equations are printed in the momenta of coordinates, not of declared speeds",
             "write `equations = lagrange`, which prints Kane's equations in speeds; the option `hamilton` \
              generates the functions in speeds as well",
         ),
-        Printed::Hamilton => {
+        EquationsOption::Hamilton => {
             let canonical = equations::canonical_equations(model, joints, mass);
-            canonical.map(|c| equations::written_canonical(model, &c)).or_else(|| {
+            canonical.map(|c| equations::format_canonical_equations(model, &c)).or_else(|| {
                 refuse(
                     "Hamilton's equations of this mechanism are too long: more than three velocities are \
                      coupled by inertia, or thousands of terms",
@@ -501,28 +532,28 @@ fn linear_equations<'g>(
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
     cx: &mut Diagnostics,
-) -> Option<Vec<(String, Written)>> {
+) -> Option<Vec<(String, PrintedEquations)>> {
     let mut all = Vec::new();
     for at in &model.equilibria {
         let found = linear::derive_linear_equations(model, joints, mass, at, cx);
-        all.extend(found.map(|found| (at.name.clone(), linear::written_linear(model, at, &found))));
+        all.extend(found.map(|found| (at.name.clone(), linear::format_linear_equations(model, at, &found))));
     }
     (all.len() == model.equilibria.len()).then_some(all)
 }
 
-fn written_equations<'g>(
-    (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
+fn format_readable_equations<'g>(
+    (model, speeds): (&Model<'g>, Option<&SpeedTransformation<'g>>),
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
-) -> Written {
+) -> PrintedEquations {
     let limits = if speeds.is_some() { Limits::READABLE_IN_SPEEDS } else { Limits::READABLE };
     let equations = equations::derive(model, joints, mass, speeds, &limits);
     let named = speeds.map_or(model, |speeds| &speeds.model);
     let inertia_equations =
-        || equations::derive_inertia(model, joints, mass, &limits).filter(|_| speeds.is_none());
+        || equations::derive_inertial_terms(model, joints, mass, &limits).filter(|_| speeds.is_none());
     equations
         .or_else(inertia_equations)
-        .map_or_else(Written::default, |e| equations::format_equations(named, &e))
+        .map_or_else(PrintedEquations::default, |e| equations::format_equations(named, &e))
 }
 
 /// Lowers the outputs of one step of the kinematic recursion from link to link.
@@ -530,12 +561,12 @@ fn lower_recursion_step(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).run_passes(pipeline::PART)
 }
 
-fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
+fn link_recursion_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkRecursionPrograms {
     let v = mechanics::velocity_symbols(model);
     let a = mechanics::acceleration_symbols(model);
     let columns: Vec<Expr<'g>> =
-        frames::jacobian_columns(model, joint).iter().flat_map(frames::spatial_components).collect();
-    LinkSteps {
+        frames::frame_jacobian_columns(model, joint).iter().flat_map(frames::spatial_components).collect();
+    LinkRecursionPrograms {
         parent: joint.parent.map(|p| p.0),
         velocities: joint.dofs.iter().map(|d| d.index).collect(),
         driven: joint.drift.is_some(),
@@ -548,7 +579,7 @@ fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
     }
 }
 
-fn frame_steps<'g>(model: &Model<'g>, frame: &crate::mechanism::NamedFrame<'g>) -> FrameSteps {
+fn frame_placement_steps<'g>(model: &Model<'g>, frame: &crate::mechanism::NamedFrame<'g>) -> FrameSteps {
     FrameSteps {
         name: frame.name.clone(),
         link: frame.link.map(|l| l.0),

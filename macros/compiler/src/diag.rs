@@ -18,7 +18,7 @@ pub struct Place {
 
 impl Place {
     /// Returns the range from the start of `self` to the end of `end`.
-    pub fn extend_to(&self, end: &Place) -> Place {
+    pub fn extend_to_end_of(&self, end: &Place) -> Place {
         Place { end: end.end, ..self.clone() }
     }
 }
@@ -62,7 +62,7 @@ impl Diagnostic {
     }
 
     /// Returns true if the error has no help line.
-    pub fn is_bare(&self) -> bool {
+    pub fn has_no_help(&self) -> bool {
         self.help.is_empty()
     }
 
@@ -85,7 +85,7 @@ impl Diagnostic {
         }
         if !candidates.is_empty() && candidates.len() <= 8 {
             let list: Vec<String> = candidates.iter().map(|c| format!("`{c}`")).collect();
-            return self.add_help(format!("expected {}", one_of(&list)));
+            return self.add_help(format!("expected {}", join_with_or(&list)));
         }
         self
     }
@@ -106,17 +106,17 @@ impl Diagnostic {
     }
 
     /// Returns the help lines.
-    pub fn helps(&self) -> &[String] {
+    pub fn help_lines(&self) -> &[String] {
         &self.help
     }
 
     /// Returns a `compile_error!` at the tokens of the error.
     pub fn compile_error_tokens(&self) -> TokenStream {
-        compile_error(&self.place, &self.complete_message())
+        compile_error(&self.place, &self.full_message_text())
     }
 
     /// Returns the complete text for the user: position in the imported file, message, notes and help.
-    pub fn complete_message(&self) -> String {
+    pub fn full_message_text(&self) -> String {
         let mut text = match &self.place.file {
             Some(at) => format!("{}:{}:{}: {}", at.file, at.line, at.column, self.message),
             None => self.message.clone(),
@@ -134,7 +134,7 @@ impl Diagnostic {
 const HELP: &str = "\n\n= help: ";
 
 /// Creates a [`syn::Error`] with a help line, for parsers that return errors of `syn`.
-pub fn syn_error(span: Span, message: &str, help: &str) -> syn::Error {
+pub fn syn_error_with_help(span: Span, message: &str, help: &str) -> syn::Error {
     syn::Error::new(span, format!("{message}{HELP}{help}"))
 }
 
@@ -158,7 +158,7 @@ impl Diagnostics {
     }
 
     /// Returns true if the errors of this list will be printed.
-    pub fn is_read(&self) -> bool {
+    pub fn will_print_errors(&self) -> bool {
         !self.unread
     }
 
@@ -174,7 +174,7 @@ impl Diagnostics {
         self.errors.last_mut().unwrap_or_else(|| unreachable!())
     }
 
-    /// Reports the errors of a [`syn::Error`], with the help of [`syn_error`].
+    /// Reports the errors of a [`syn::Error`], with the help of [`syn_error_with_help`].
     pub fn report_syn_error(&mut self, error: syn::Error) {
         for one in error {
             let text = one.to_string();
@@ -204,7 +204,7 @@ impl Diagnostics {
     /// Sets the names of lists of elements. Errors that differ only in the index of an element, for example
     /// `leg_0` and `leg_1` of the list `leg`, are then printed once, because both refer to the same source
     /// text.
-    pub fn set_list_names(&mut self, lists: Vec<String>) {
+    pub fn set_element_list_names(&mut self, lists: Vec<String>) {
         self.lists = lists;
     }
 
@@ -233,7 +233,7 @@ impl Diagnostics {
 
     /// Returns the complete texts of the errors in order.
     pub fn messages(&self) -> Vec<String> {
-        self.distinct_errors().map(Diagnostic::complete_message).collect()
+        self.distinct_errors().map(Diagnostic::full_message_text).collect()
     }
 
     /// Returns the `compile_error!` invocations of all errors, at their tokens.
@@ -244,23 +244,23 @@ impl Diagnostics {
 
 /// Returns `::core::compile_error! { "message" }`, shown from the first to the last token of `place`.
 fn compile_error(place: &Place, message: &str) -> TokenStream {
-    let with_span = |mut token: TokenTree, span: Span| {
+    let token_with_span = |mut token: TokenTree, span: Span| {
         token.set_span(span);
         token
     };
     let path = "::core::compile_error!".parse::<TokenStream>().unwrap_or_default();
-    let message = with_span(Literal::string(message).into(), place.end);
-    let braces = with_span(Group::new(Delimiter::Brace, message.into()).into(), place.end);
-    path.into_iter().map(|token| with_span(token, place.span)).chain([braces]).collect()
+    let message = token_with_span(Literal::string(message).into(), place.end);
+    let braces = token_with_span(Group::new(Delimiter::Brace, message.into()).into(), place.end);
+    path.into_iter().map(|token| token_with_span(token, place.span)).chain([braces]).collect()
 }
 
 /// Joins the items as `a`, `a or b`, `a, b or c`.
-pub fn one_of(list: &[String]) -> String {
+pub fn join_with_or(list: &[String]) -> String {
     join_with_word(list, "or")
 }
 
 /// Joins the items as `a`, `a and b`, `a, b and c`.
-pub fn all_of(list: &[String]) -> String {
+pub fn join_names_with_and(list: &[String]) -> String {
     join_with_word(list, "and")
 }
 

@@ -79,13 +79,13 @@ impl Hull {
         outside.sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
         outside.dedup();
         let size = largest_extent(&outside);
-        let mut vertices = first_vertices(&outside, size)?;
+        let mut vertices = initial_tetrahedron_vertices(&outside, size)?;
         let maximum = maximum.clamp(4, MAX_VERTICES);
         // After superfluous vertices are removed, others may take their place.
         for _ in 0..3 {
             add_farthest_points(&mut vertices, &mut outside, maximum, size);
             let before = vertices.len();
-            remove_superfluous(&mut vertices, size);
+            remove_vertices_within_hull(&mut vertices, size);
             if vertices.len() == before || outside.is_empty() {
                 break;
             }
@@ -120,7 +120,7 @@ fn largest_extent(points: &[Point]) -> f64 {
 }
 
 /// Returns four points that are not coplanar, each as far as possible from the hull of the previous ones.
-fn first_vertices(points: &[Point], size: f64) -> Result<Vec<Point>, HullError> {
+fn initial_tetrahedron_vertices(points: &[Point], size: f64) -> Result<Vec<Point>, HullError> {
     let [a, _, _, _, ..] = points else { return Err(HullError::TooFew(points.len())) };
     let farthest_point = |distance: &dyn Fn(Point) -> f64| {
         let found = points.iter().copied().max_by(|p, q| distance(*p).total_cmp(&distance(*q)));
@@ -156,7 +156,7 @@ fn add_farthest_points(vertices: &mut Vec<Point>, outside: &mut Vec<Point>, maxi
 }
 
 /// Removes vertices that are within the hull of the others, as points on an edge or a face are.
-fn remove_superfluous(vertices: &mut Vec<Point>, size: f64) {
+fn remove_vertices_within_hull(vertices: &mut Vec<Point>, size: f64) {
     let mut k = 0;
     while k < vertices.len() && vertices.len() > 4 {
         let p = vertices.remove(k);

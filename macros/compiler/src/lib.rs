@@ -25,27 +25,27 @@ pub mod vectorise;
 
 use catalogue::{BY_PARAMETERS, DERIVATIVES, Facts, JACOBIAN};
 use diag::{Diagnostic, Diagnostics};
-use emit::Emitted;
+use emit::GeneratedCode;
 use expr::Graph;
 use proc_macro2::TokenStream;
-use source::can_be_a_function;
+use source::is_unreserved_identifier;
 use std::path::Path;
 use syntax::{Description, Mechanism};
 
 pub use declarations::{DeclaredStruct, mechanism_declarations};
 pub use derive::{derive, derive_with_options, equations_as_text, equations_latex};
 pub use source::{Source, read_source};
-pub use syntax::second_definition;
+pub use syntax::duplicate_struct_without_fields;
 
 /// Compiles `#[mechanism(arguments)] item` to the generated code. Each error is reported as one
 /// `compile_error!`; the code of an invalid mechanism contains only its interface. Paths of files are
 /// relative to `folder`.
-pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
+pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> GeneratedCode {
     let mut cx = Diagnostics::new();
     // rustc already reports missing and wrong commas of the struct.
     let item = syntax::insert_missing_commas(&item).map_or(item, |(separated, _)| separated);
     let Some(source) = read_source(arguments, item, folder, &mut cx) else {
-        return Emitted { tokens: cx.into_tokens(), text: String::new() };
+        return GeneratedCode { tokens: cx.into_tokens(), text: String::new() };
     };
     let graph = Graph::new();
     let output = compile(&source, &graph, &mut cx);
@@ -55,36 +55,36 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     // If an imported file could not be read, even the sizes of the mechanism are unknown. An interface with
     // guessed sizes would only cause errors that follow from the first one.
     if !source.imported {
-        return emit_error_type(&source, cx.distinct_errors().map(Diagnostic::compile_error_tokens));
+        return errors_with_struct_stub(&source, cx.distinct_errors().map(Diagnostic::compile_error_tokens));
     }
-    let mut emitted = source.emit_failed();
+    let mut emitted = source.emit_error_stubs();
     emitted.tokens.extend(cx.into_tokens());
     emitted
 }
 
 /// Returns the errors as `compile_error!`. The first replaces the struct's definition, so that rustc reports
 /// no further errors where the type is used.
-fn emit_error_type(source: &Source, mut errors: impl Iterator<Item = TokenStream>) -> Emitted {
+fn errors_with_struct_stub(source: &Source, mut errors: impl Iterator<Item = TokenStream>) -> GeneratedCode {
     let first = errors.next().unwrap_or_default();
-    let mut tokens = emit::error_type(&source.mechanism.shell, &first);
+    let mut tokens = emit::struct_alias_with_error(&source.mechanism.shell, &first);
     tokens.extend(errors);
-    Emitted { tokens, text: String::new() }
+    GeneratedCode { tokens, text: String::new() }
 }
 
 /// Compiles a struct whose derives stand above the attribute, so that they have already processed the
 /// elements. Returns one `compile_error!` for the derive in place of the struct, and the errors of the
 /// struct's grammar.
-pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
+pub fn expand_with_derive_above(arguments: TokenStream, item: TokenStream, folder: &Path) -> GeneratedCode {
     let mut cx = Diagnostics::new();
     let Some(source) = read_source(arguments, item, folder, &mut cx) else {
-        return Emitted { tokens: cx.into_tokens(), text: String::new() };
+        return GeneratedCode { tokens: cx.into_tokens(), text: String::new() };
     };
-    let error = derive_above(proc_macro2::Span::call_site());
-    emit_error_type(&source, [error.compile_error_tokens(), cx.into_tokens()].into_iter())
+    let error = derive_above_attribute_error(proc_macro2::Span::call_site());
+    errors_with_struct_stub(&source, [error.compile_error_tokens(), cx.into_tokens()].into_iter())
 }
 
 /// Returns the error for a `#[derive(…)]` above the attribute; `attribute` is the span of `#[mechanism]`.
-pub fn derive_above(attribute: proc_macro2::Span) -> Diagnostic {
+pub fn derive_above_attribute_error(attribute: proc_macro2::Span) -> Diagnostic {
     let mut error = Diagnostic::new(attribute, "`#[derive(…)]` is above `#[mechanism]`");
     error.add_help("write it below, where it sees the struct without the elements");
     error
@@ -96,12 +96,12 @@ pub fn export_c(
     source: &Source,
     options: &export::Options,
     cx: &mut Diagnostics,
-) -> Option<export::c::Files> {
+) -> Option<export::c::CSourceFiles> {
     let graph = Graph::new();
     // Reproducible programs without lanes compute the same bits as those with lanes.
     let reproducible = source.mechanism.requests.reproducible;
     let passes = passes::Passes { lanes: reproducible, ..passes::Passes::default() };
-    let (model, output) = compile_with(source, &graph, passes, cx)?;
+    let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
     let options = &export::Options { left_out: rust_only_functions(source), reproducible, ..options.clone() };
     export::c::export_c_source(&model, &output, &tables, options)
@@ -117,7 +117,7 @@ pub fn export_cuda(
     cx: &mut Diagnostics,
 ) -> Option<export::cuda::KernelFiles> {
     let graph = Graph::new();
-    let (model, output) = compile_for_registers(source, &graph, cx)?;
+    let (model, output) = compile_for_gpu_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
     let options = &export::Options { left_out: rust_only_functions(source), ..options.clone() };
     export::cuda::export_cuda_kernels(&model, &output, &tables, options)
@@ -129,7 +129,7 @@ pub fn export_cuda(
 /// mechanism is not supported.
 pub fn export_wgsl(source: &Source, prefix: &str, cx: &mut Diagnostics) -> Option<export::wgsl::ShaderFiles> {
     let graph = Graph::new();
-    let (model, output) = compile_for_registers(source, &graph, cx)?;
+    let (model, output) = compile_for_gpu_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
     let prefix = prefix.to_string();
     let options = export::Options { prefix, left_out: rust_only_functions(source), ..Default::default() };
@@ -147,10 +147,10 @@ pub fn export_fmu(
     has_derivatives: bool,
     cx: &mut Diagnostics,
 ) -> Option<export::fmu::FmuFiles> {
-    reject_reproducible(source, "FMUs", cx)?;
+    reject_reproducible_arithmetic(source, "FMUs", cx)?;
     let graph = Graph::new();
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
-    let (model, output) = compile_with(source, &graph, passes, cx)?;
+    let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     if let Some((what, help)) = export::fmu::export_obstacle(&model, &output) {
         cx.report_error(model.place.clone(), what).add_help(help);
         return None;
@@ -165,42 +165,45 @@ pub fn export_fmu(
 /// Compiles a mechanism to the description of an FMU whose binary contains the run-time library, which reads
 /// the `declaration`. Returns the files, and the names of outputs that the FMU does not have. Returns `None`
 /// with the errors in `cx` if the mechanism is not supported.
-pub fn export_library_fmu(
+pub fn export_fmu_for_runtime_library(
     source: &Source,
     declaration: &str,
     prefix: &str,
     start: &export::fmu::StartValues,
     cx: &mut Diagnostics,
 ) -> Option<(export::fmu::FmuFiles, Vec<String>)> {
-    reject_reproducible(source, "FMUs", cx)?;
+    reject_reproducible_arithmetic(source, "FMUs", cx)?;
     let graph = Graph::new();
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
-    let (model, output) = compile_with(source, &graph, passes, cx)?;
+    let (model, output) = compile_with_passes(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let files = |what: &str| format!("FMUs with the run-time library have no {what}");
+    let no_library_fmu_message = |what: &str| format!("FMUs with the run-time library have no {what}");
     let what = match (&source.mechanism.file, tables.is_empty()) {
-        (Some(_), _) => Some((files("mechanisms of robot files"), "`linkwork convert` writes a declaration")),
-        (None, false) => Some((files("tables"), "remove them, or `--library`")),
+        (Some(_), _) => Some((
+            no_library_fmu_message("mechanisms of robot files"),
+            "`linkwork convert` writes a declaration",
+        )),
+        (None, false) => Some((no_library_fmu_message("tables"), "remove them, or `--library`")),
         (None, true) => None,
     };
     if let Some((what, help)) = what {
         cx.report_error(model.place.clone(), what).add_help(help);
         return None;
     }
-    Some(export::fmu::export_library_fmu(&model, &output, declaration, prefix, start))
+    Some(export::fmu::export_fmu_for_runtime_library(&model, &output, declaration, prefix, start))
 }
 
 /// Derives the functions of a tree mechanism, with instructions in an order for processors that keep all values
 /// in registers.
-fn compile_for_registers<'g>(
+fn compile_for_gpu_registers<'g>(
     source: &Source,
     graph: &'g Graph,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::Output)> {
-    reject_reproducible(source, "kernels", cx)?;
+    reject_reproducible_arithmetic(source, "kernels", cx)?;
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
-    let (model, mut output) = compile_with(source, graph, passes, cx)?;
-    check_tree(&model, &output, cx)?;
+    let (model, mut output) = compile_with_passes(source, graph, passes, cx)?;
+    reject_constraints_and_contacts(&model, &output, cx)?;
     for function in &mut output.functions {
         let arrays = function.shape.result_arrays();
         let lengths: Vec<usize> = arrays.iter().map(|(_, rows, columns)| rows * columns).collect();
@@ -210,7 +213,7 @@ fn compile_for_registers<'g>(
 }
 
 /// Rejects mechanisms with reproducible arithmetic, which the target, a plural, does not have.
-pub fn reject_reproducible(source: &Source, target: &str, cx: &mut Diagnostics) -> Option<()> {
+pub fn reject_reproducible_arithmetic(source: &Source, target: &str, cx: &mut Diagnostics) -> Option<()> {
     if !source.mechanism.requests.reproducible {
         return Some(());
     }
@@ -223,7 +226,11 @@ pub fn reject_reproducible(source: &Source, target: &str, cx: &mut Diagnostics) 
 }
 
 /// Rejects mechanisms with constraints or contacts, whose functions need solvers.
-fn check_tree(model: &mechanism::Model<'_>, output: &derive::Output, cx: &mut Diagnostics) -> Option<()> {
+fn reject_constraints_and_contacts(
+    model: &mechanism::Model<'_>,
+    output: &derive::Output,
+    cx: &mut Diagnostics,
+) -> Option<()> {
     let has_function = |id: catalogue::Id| output.functions.iter().any(|f| f.id == id);
     let what = match (has_function(catalogue::Id::ConstraintJacobian), model.contacts.is_empty()) {
         (true, _) => "constraints",
@@ -253,34 +260,38 @@ fn rust_only_functions(source: &Source) -> Vec<String> {
 }
 
 /// Reports why a mechanism or the options of an export are not supported.
-fn report_unsupported_export(model: &mechanism::Model<'_>, unfit: export::Unfit, cx: &mut Diagnostics) {
+fn report_unsupported_export(
+    model: &mechanism::Model<'_>,
+    unfit: export::CExportObstacle,
+    cx: &mut Diagnostics,
+) {
     let (what, help) = match unfit {
-        export::Unfit::NoParameter(name) => (
+        export::CExportObstacle::NoParameter(name) => (
             format!("there is no parameter `{name}` to be fixed"),
             match model.parameters.is_empty() {
                 true => "the mechanism has no parameters".to_string(),
                 false => format!("there are {}", model.parameters.join(", ")),
             },
         ),
-        export::Unfit::SingleCasadi => (
+        export::CExportObstacle::SingleCasadi => (
             "CasADi has no functions of single precision".to_string(),
             "export them in double precision".to_string(),
         ),
-        export::Unfit::Irreproducible(what) => (
+        export::CExportObstacle::Irreproducible(what) => (
             format!("{what} has no reproducible arithmetic in C"),
             "remove it or `arithmetic = reproducible`; functions in Rust are reproducible".to_string(),
         ),
-        export::Unfit::CasadiSpeeds => (
+        export::CExportObstacle::CasadiSpeeds => (
             "functions for CasADi have no declared speeds".to_string(),
             "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the \
              rates of coordinates: remove `#[speed(…)]`, or export plain C"
                 .to_string(),
         ),
-        export::Unfit::Missing => (
+        export::CExportObstacle::Missing => (
             "internal error: a value of the functions in C is missing".to_string(),
             "please report this with the declaration of the mechanism".to_string(),
         ),
-        export::Unfit::Lanes(of) => (
+        export::CExportObstacle::Lanes(of) => (
             format!("internal error: `{of}` was derived with lanes"),
             "please report this with the declaration of the mechanism".to_string(),
         ),
@@ -303,21 +314,21 @@ pub fn compile<'g>(
     graph: &'g Graph,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::Output)> {
-    compile_with(source, graph, passes::Passes::default(), cx)
+    compile_with_passes(source, graph, passes::Passes::default(), cx)
 }
 
 /// Like [`compile`], with a choice of optimisation passes.
-pub fn compile_with<'g>(
+pub fn compile_with_passes<'g>(
     source: &Source,
     graph: &'g Graph,
     passes: passes::Passes,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::Output)> {
     if !cx.is_empty() {
-        check_valid_elements(source, graph, cx);
+        check_elements_without_syntax_errors(source, graph, cx);
         return None;
     }
-    let compiled = model_and_functions(source, graph, passes, cx);
+    let compiled = compile_model_and_functions(source, graph, passes, cx);
     if graph.is_full() {
         // The other errors result from truncated expressions.
         *cx = Diagnostics::new();
@@ -334,7 +345,7 @@ pub fn compile_with<'g>(
     compiled
 }
 
-fn model_and_functions<'g>(
+fn compile_model_and_functions<'g>(
     source: &Source,
     graph: &'g Graph,
     passes: passes::Passes,
@@ -353,9 +364,9 @@ fn model_and_functions<'g>(
 
 /// Checks the elements of a mechanism that syntax errors do not affect. Elements that depend on wrong ones
 /// are not checked, because their errors would only follow from the syntax errors.
-pub fn check_valid_elements(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
+pub fn check_elements_without_syntax_errors(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
-    if let Some(rest) = reading.readable_part(description).filter(|_| source.imported) {
+    if let Some(rest) = reading.readable_description(description).filter(|_| source.imported) {
         resolve::build_model(&rest, graph, cx);
     }
 }
@@ -412,12 +423,12 @@ fn check_output_names(
         (DERIVATIVES, "gives the derivatives", facts.requests.derivatives),
         (BY_PARAMETERS, "gives the derivatives by parameters", facts.requests.sensitivities),
     ];
-    let names_of_derivatives = |name: &str| {
+    let names_of_derivative_functions = |name: &str| {
         let asked = suffixes.iter().filter(|(.., asked)| *asked);
         let names: Vec<String> = asked.map(|(suffix, ..)| format!("{name}{suffix}")).collect();
         names.into_iter()
     };
-    let find_origin_output = |name: &str| {
+    let find_suffixed_output = |name: &str| {
         let asked = suffixes.iter().filter(|(.., asked)| *asked);
         asked
             .flat_map(|suffix| outputs.iter().map(move |output| (suffix, &output.name.text)))
@@ -430,18 +441,19 @@ fn check_output_names(
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
-        if let Some(((suffix, what, _), other)) = find_origin_output(text) {
+        if let Some(((suffix, what, _), other)) = find_suffixed_output(text) {
             cx.report_error(name.place.clone(), format!("`{text}` {what} of the output `{other}`")).add_help(
                 format!("each output has a function of its name and one of its name with `{suffix}`"),
             );
-        } else if description.inertias == syntax::Inertias::None && functions.iter().all(|f| f.name != *text)
+        } else if description.inertias == syntax::InertiaOption::None
+            && functions.iter().all(|f| f.name != *text)
         {
             cx.report_error(
                 name.place.clone(),
                 format!("the output `{text}` names a reaction, which needs inertia"),
             )
             .add_help("remove it, or `inertia = none`: without inertia there are no dynamics");
-        } else if !can_be_a_function(text) {
+        } else if !is_unreserved_identifier(text) {
             cx.report_error(
                 name.place.clone(),
                 format!("a function of a mechanism cannot be called `{text}`"),
@@ -455,7 +467,9 @@ fn check_output_names(
                 format!("the name `{text}` is taken: every mechanism has this function"),
             )
             .add_help("choose another name for the output");
-        } else if let Some(other) = names_of_derivatives(text).find(|other| is_function_name_taken(other)) {
+        } else if let Some(other) =
+            names_of_derivative_functions(text).find(|other| is_function_name_taken(other))
+        {
             cx.report_error(
                 name.place.clone(),
                 format!("the name `{text}` is taken: every mechanism has `{other}`"),

@@ -1,8 +1,8 @@
 //! A mechanism as read from the struct and its imported file, and its public interface.
 
-use crate::catalogue::{self, ConstraintFacts, ContactSizes, Facts};
+use crate::catalogue::{self, ConstraintFacts, ContactCounts, Facts};
 use crate::diag::Diagnostics;
-use crate::emit::{self, Constraints, Emitted, Interface, emit_failed};
+use crate::emit::{self, Constraints, GeneratedCode, Interface, emit_error_stubs};
 use crate::syntax::{self, Mechanism};
 use crate::{derive, import, mechanism, resolve};
 use proc_macro2::TokenStream;
@@ -34,7 +34,7 @@ pub fn read_source(
             || mechanism.description.contacts.iter().any(syntax::Contact::uses_file_collisions);
         options.visuals = mechanism.requests.drawing;
         let path = folder.join(&options.path.text);
-        let text = import::read_file(&path, options, cx);
+        let text = import::read_imported_file(&path, options, cx);
         files.extend(text.is_some().then_some(path));
         if let Some(imported) = text.and_then(|text| import::import_file(&text, folder, options, cx)) {
             files.extend(imported.files.iter().cloned());
@@ -47,10 +47,10 @@ pub fn read_source(
 
 /// Merges the mechanism of an imported file into the description. Elements of the file precede those of the
 /// struct.
-fn merge_imported_file(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
+fn merge_imported_file(mechanism: &mut Mechanism, imported: import::ImportedMechanism, cx: &mut Diagnostics) {
     let Mechanism { description, shell, requests, .. } = mechanism;
     // All of it: a part that is not named here does not compile.
-    let import::Imported {
+    let import::ImportedMechanism {
         bodies,
         joints,
         drives,
@@ -87,7 +87,7 @@ fn merge_imported_file(mechanism: &mut Mechanism, imported: import::Imported, cx
                 resolved_in: None,
             });
         }
-        description.parameters.extend(field.member_accesses().into_iter().map(name_at_place));
+        description.parameters.extend(field.value_access_paths().into_iter().map(name_at_place));
         description.file_units.extend(&field.units);
     }
     requests.file_parameters |= !rates.is_empty();
@@ -146,7 +146,7 @@ impl Source {
     }
 
     /// Emits the Rust code of the compiled mechanism.
-    pub fn emit_mechanism(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Emitted {
+    pub fn emit_mechanism(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> GeneratedCode {
         emit::emit_mechanism(&self.public_interface(m, output), output)
     }
 
@@ -170,9 +170,9 @@ impl Source {
             constraints: Constraints::from_model(m),
             contacts: emit::UnilateralContact::from_model(m),
             polytopes: emit::ContactPolytopes::from_model(m),
-            limits: emit::CoordinateLimits::from_model(m),
+            limits: emit::CoordinateLimitIndices::from_model(m),
             figures: emit::ParameterCondition::from_model(m),
-            absent: emit::absent_items(&facts, &output.functions, &bare.outputs),
+            absent: emit::items_that_mechanism_lacks(&facts, &output.functions, &bare.outputs),
             facts,
             ..bare
         }
@@ -208,11 +208,11 @@ impl Source {
     }
 
     /// Emits the interface of a mechanism that failed to compile, as far as it can be guessed.
-    pub(crate) fn emit_failed(&self) -> Emitted {
+    pub(crate) fn emit_error_stubs(&self) -> GeneratedCode {
         let outline = resolve::outline_of_description(&self.mechanism.description);
-        let facts = self.guess_facts(&outline);
-        let mut functions = catalogue::functions_before_outputs(&facts);
-        for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
+        let facts = self.guess_signature_facts(&outline);
+        let mut functions = catalogue::functions_derived_before_outputs(&facts);
+        for output in outline.outputs.iter().filter(|output| is_unreserved_identifier(&output.name)) {
             if output.has_contact_forces && !catalogue::has_function(&output.name, &facts) {
                 functions.push(catalogue::contact_force_function(&output.name, output.size, &facts));
                 continue;
@@ -226,12 +226,12 @@ impl Source {
                 }
             }
         }
-        functions.extend(catalogue::functions_after_outputs(&facts));
+        functions.extend(catalogue::functions_derived_after_outputs(&facts));
         let functions: Vec<derive::Function> =
             functions.into_iter().map(derive::Function::empty_function).collect();
         let mut constants = Vec::new();
         if facts.requests.regressor {
-            constants.extend(derive::Constant::regressor_name_constants(
+            constants.extend(derive::AssociatedConstant::regressor_name_constants(
                 &outline.bodies,
                 &vec![String::new(); facts.base],
             ));
@@ -239,26 +239,29 @@ impl Source {
         if facts.requests.sensitivities {
             let parameters: Vec<String> =
                 self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
-            constants.push(derive::Constant::parameter_name_constant(&parameters));
+            constants.push(derive::AssociatedConstant::parameter_names_constant(&parameters));
         }
         if facts.requests.conserved {
-            constants.push(derive::Constant::conserved_name_constant(&vec![String::new(); facts.conserved]));
+            constants.push(derive::AssociatedConstant::conserved_names_constant(&vec![
+                String::new();
+                facts.conserved
+            ]));
         }
         if facts.requests.routh {
-            constants.push(derive::Constant::cyclic_coordinate_constant(&[]));
+            constants.push(derive::AssociatedConstant::cyclic_coordinate_constant(&[]));
         }
         let equilibria = self.mechanism.description.equilibria.iter();
         let unknown: Vec<_> = equilibria.map(|e| (e.name.text.clone(), Default::default())).collect();
-        constants.extend(derive::Constant::linear_equations(&unknown));
+        constants.extend(derive::AssociatedConstant::linear_equations(&unknown));
         if facts.requests.drawing {
-            constants.push(derive::Constant::drawing_constant(&[]));
+            constants.push(derive::AssociatedConstant::drawing_pieces_constant(&[]));
         }
         if facts.requests.packed {
-            constants.push(derive::Constant::packed_entry_constant(&facts.entries));
+            constants.push(derive::AssociatedConstant::packed_entries_constant(&facts.entries));
         }
         let bare = self.model_independent_interface();
         let interface = Interface {
-            absent: emit::absent_items(&facts, &functions, &bare.outputs),
+            absent: emit::items_that_mechanism_lacks(&facts, &functions, &bare.outputs),
             configuration: outline.configuration,
             velocities: outline.velocities,
             inputs: outline.inputs,
@@ -266,29 +269,29 @@ impl Source {
             diagrams: outline
                 .diagrams
                 .into_iter()
-                .filter(|(name, _)| can_be_a_function(name) && !catalogue::has_function(name, &facts))
+                .filter(|(name, _)| is_unreserved_identifier(name) && !catalogue::has_function(name, &facts))
                 .collect(),
             constraints: if outline.constrained {
-                Constraints::unknown_constraints(outline.slipping)
+                Constraints::placeholder_constraints(outline.slipping)
             } else {
                 Constraints::default()
             },
             contacts: if facts.contacts.count > 0 {
-                vec![emit::UnilateralContact::unknown_contact()]
+                vec![emit::UnilateralContact::placeholder_contact()]
             } else {
                 Vec::new()
             },
             facts,
             ..bare
         };
-        emit_failed(&interface, &functions, &constants)
+        emit_error_stubs(&interface, &functions, &constants)
     }
 
     /// Guesses the properties of a mechanism that failed to compile on which the signatures of its functions
     /// depend.
-    fn guess_facts(&self, outline: &resolve::Outline) -> Facts {
+    fn guess_signature_facts(&self, outline: &resolve::Outline) -> Facts {
         let (description, requests) = (&self.mechanism.description, self.mechanism.requests);
-        let kinematic = description.inertias == syntax::Inertias::None;
+        let kinematic = description.inertias == syntax::InertiaOption::None;
         let nv = outline.velocities.len();
         let constraints = outline.constrained.then(|| ConstraintFacts {
             all: 1,
@@ -307,15 +310,15 @@ impl Source {
             requests: match kinematic {
                 true => {
                     let (batch, drawing) = (requests.batch, requests.drawing);
-                    syntax::Requests { batch, drawing, ..syntax::Requests::default() }
+                    syntax::RequestedFunctions { batch, drawing, ..syntax::RequestedFunctions::default() }
                 }
                 false => requests,
             },
             constraints,
             contacts: if description.contacts.iter().all(syntax::Contact::is_compliant) {
-                ContactSizes::default()
+                ContactCounts::default()
             } else {
-                ContactSizes { count: 1, rates: 1 }
+                ContactCounts { count: 1, rates: 1 }
             },
             bodies: outline.bodies.len(),
             // Only the equations determine the number of base parameters.
@@ -329,7 +332,7 @@ impl Source {
 }
 
 /// Returns true for valid identifiers that are not reserved for generated items.
-pub(crate) fn can_be_a_function(name: &str) -> bool {
+pub(crate) fn is_unreserved_identifier(name: &str) -> bool {
     syn::parse_str::<syn::Ident>(name).is_ok() && !catalogue::is_constant(name) && !name.starts_with("__")
 }
 

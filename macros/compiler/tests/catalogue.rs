@@ -65,8 +65,8 @@ fn public_function_names(text: &str, name: &str) -> BTreeSet<String> {
 /// Returns the functions that the catalogue declares for a mechanism with these facts, and the functions of
 /// its outputs.
 fn expected_function_names(facts: &Facts, outputs: &[String]) -> BTreeSet<String> {
-    let rows =
-        catalogue::catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none() && !row.is_hidden());
+    let rows = catalogue::function_catalogue_rows()
+        .filter(|row| row.first_unmet_need(facts).is_none() && !row.is_hidden());
     let mut names: BTreeSet<String> = BTreeSet::new();
     for row in rows {
         names.insert(row.name.to_string());
@@ -99,7 +99,7 @@ fn catalogue_rows_and_functions_correspond() {
         assert_eq!(names, expected_function_names(&facts, &outputs), "{}", mechanism.1);
         seen.extend(names);
     }
-    let never: Vec<&str> = catalogue::catalogue_rows()
+    let never: Vec<&str> = catalogue::function_catalogue_rows()
         .filter(|row| !row.is_hidden() && !seen.contains(row.name))
         .map(|row| row.name)
         .collect();
@@ -111,7 +111,7 @@ fn catalogue_rows_and_functions_correspond() {
 fn absent_functions_have_one_reason_each() {
     for mechanism in MECHANISMS {
         with_compiled_mechanism(mechanism, |_, facts, _| {
-            let present: BTreeSet<&str> = catalogue::catalogue_rows()
+            let present: BTreeSet<&str> = catalogue::function_catalogue_rows()
                 .filter(|row| row.first_unmet_need(&facts).is_none())
                 .map(|row| row.name)
                 .collect();
@@ -123,8 +123,10 @@ fn absent_functions_have_one_reason_each() {
             let names: BTreeSet<&str> = absent.iter().copied().collect();
             assert_eq!(names.len(), absent.len(), "{}: {absent:?}", mechanism.1);
             assert!(present.is_disjoint(&names), "{}", mechanism.1);
-            let all: BTreeSet<&str> =
-                catalogue::catalogue_rows().filter(|row| !row.is_hidden()).map(|row| row.name).collect();
+            let all: BTreeSet<&str> = catalogue::function_catalogue_rows()
+                .filter(|row| !row.is_hidden())
+                .map(|row| row.name)
+                .collect();
             let hidden: Vec<&&str> =
                 all.iter().filter(|n| !present.contains(*n) && !names.contains(*n)).collect();
             assert_eq!(hidden, Vec::<&&str>::new(), "{}", mechanism.1);
@@ -150,23 +152,28 @@ fn programs_with_wrong_result_counts_are_detected() {
     let alike = ("gravity = -9.81 * y", "Alike", limbs.as_str());
     for mechanism in MECHANISMS.into_iter().chain([alike]) {
         with_compiled_mechanism(mechanism, |_, _, mut output| {
-            assert_eq!(output.misfitting_function(), None, "{}", mechanism.1);
+            assert_eq!(output.function_with_mismatched_program(), None, "{}", mechanism.1);
             for k in 0..output.functions.len() {
                 let Some(last) = output.functions[k].program.outputs.pop() else { continue };
                 let name = output.functions[k].name.clone();
-                assert_eq!(output.misfitting_function(), Some(name.as_str()), "{}", mechanism.1);
+                assert_eq!(output.function_with_mismatched_program(), Some(name.as_str()), "{}", mechanism.1);
                 output.functions[k].program.outputs.push(last);
                 let Some(lanes) = &mut output.functions[k].program.simd else { continue };
                 let last = lanes.outputs.pop().unwrap();
-                assert_eq!(output.misfitting_function(), Some(name.as_str()), "lanes of {}", mechanism.1);
+                assert_eq!(
+                    output.function_with_mismatched_program(),
+                    Some(name.as_str()),
+                    "lanes of {}",
+                    mechanism.1
+                );
                 output.functions[k].program.simd.as_mut().unwrap().outputs.push(last);
                 in_lanes += 1;
             }
             let last = output.links[0].columns.outputs.pop().unwrap();
-            assert!(output.misfitting_function().is_some(), "{}", mechanism.1);
+            assert!(output.function_with_mismatched_program().is_some(), "{}", mechanism.1);
             output.links[0].columns.outputs.push(last);
             output.frames[0].twist.outputs.pop();
-            assert!(output.misfitting_function().is_some(), "{}", mechanism.1);
+            assert!(output.function_with_mismatched_program().is_some(), "{}", mechanism.1);
         });
     }
     assert!(in_lanes > 0, "programs in lanes are looked at: {in_lanes}");

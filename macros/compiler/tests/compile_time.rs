@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Returns the code generated for a chain of revolute joints, with derivatives.
-fn chain_code(pins: usize) -> String {
+fn generated_chain_code(pins: usize) -> String {
     let mut item = "struct S {\n".to_string();
     let mut parent = "ground".to_string();
     for k in 0..pins {
@@ -26,7 +26,7 @@ fn chain_code(pins: usize) -> String {
 
 #[test]
 fn generated_code_of_chains_grows_linearly() {
-    let (short, long) = (chain_code(16), chain_code(32));
+    let (short, long) = (generated_chain_code(16), generated_chain_code(32));
 
     // Jacobians of frames grow linearly with the number of links.
     let count_jacobians = |code: &str| code.matches("_columns(").count();
@@ -46,7 +46,7 @@ fn generated_code_of_chains_grows_linearly() {
     assert!(long.contains("\n{\n"), "large bodies have blocks");
 
     // The lanes of a vector are stored to a column, or to adjacent columns, by one call.
-    let each = long.matches("Ops::store_two").count();
+    let each = long.matches("Ops::store_two_lanes").count();
     let together = long.matches("Ops::store_rows").count() + long.matches("Ops::store_columns").count();
     assert!(together > 4 * each, "{each} pairs and {together} vectors are stored");
 }
@@ -59,7 +59,7 @@ fn identifiers_in_text(text: &str) -> impl Iterator<Item = &str> {
 /// rustc searches all definitions of a crate for each unused variable.
 #[test]
 fn unused_inputs_are_not_bound() {
-    let code = chain_code(6);
+    let code = generated_chain_code(6);
     let mut bound = 0;
     for function in code.split("fn ") {
         for line in function.lines().filter(|line| line.starts_with("let [")) {
@@ -85,8 +85,10 @@ fn statements_of_long_functions_are_generated_once() {
     let head = "fn inverse_dynamics_derivatives(";
     let body_of_function =
         |code: &str| code.split(head).nth(1).and_then(|rest| rest.split("fn ").next()).map(str::to_string);
-    let (short, long) =
-        (body_of_function(&chain_code(3)).unwrap(), body_of_function(&chain_code(18)).unwrap());
+    let (short, long) = (
+        body_of_function(&generated_chain_code(3)).unwrap(),
+        body_of_function(&generated_chain_code(18)).unwrap(),
+    );
     assert!(long.contains("self.inverse_dynamics_derivatives_into("), "{long}");
     assert!(!short.contains("self.inverse_dynamics_derivatives_into("), "{short}");
 }

@@ -48,7 +48,7 @@ mod tables;
 type ErrorRow = (&'static str, &'static str, &'static str);
 
 /// Function that inserts a source text into the arguments of the attribute or the fields.
-type Setting = fn(&str) -> (String, String);
+type SourceInserter = fn(&str) -> (String, String);
 
 /// Test mechanism: a single arm on a hinge.
 const ARM: &str = "#[body(mass = 1, com = -y, inertia = sphere(1, 0.1))] arm: Body,
@@ -67,7 +67,7 @@ fn compiler_messages(attribute: &str, fields: &str) -> Vec<String> {
 }
 
 /// Checks that the mechanism of each table row causes exactly the expected error.
-fn check_error_rows(setting: Setting, rows: &[ErrorRow]) {
+fn check_error_rows(setting: SourceInserter, rows: &[ErrorRow]) {
     let mut wrong = Vec::new();
     for (said, message, help) in rows {
         let (attribute, fields) = setting(said);

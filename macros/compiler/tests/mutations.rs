@@ -6,7 +6,7 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{check_valid_elements, read_source};
+use linkwork_compiler::{check_elements_without_syntax_errors, read_source};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
@@ -41,9 +41,9 @@ fn gallery_mechanisms() -> Vec<MutatedMechanism> {
         let text = std::fs::read_to_string(file).unwrap();
         for item in syn::parse_file(&text).unwrap().items {
             let syn::Item::Struct(mut item) = item else { continue };
-            let is_mechanism =
+            let is_mechanism_attribute =
                 |a: &syn::Attribute| a.path().segments.last().is_some_and(|s| s.ident == "mechanism");
-            let Some(at) = item.attrs.iter().position(is_mechanism) else { continue };
+            let Some(at) = item.attrs.iter().position(is_mechanism_attribute) else { continue };
             let arguments = match item.attrs.remove(at).meta {
                 syn::Meta::List(list) => list.tokens,
                 _ => TokenStream::new(),
@@ -170,14 +170,14 @@ fn parser_and_model_messages(arguments: &TokenStream, item: TokenStream) -> Vec<
     if let Some(source) = read_source(arguments.clone(), item, Path::new(""), &mut cx) {
         match cx.is_empty() {
             true => drop(build_model(&source.mechanism.description, &Graph::new(), &mut cx)),
-            false => check_valid_elements(&source, &Graph::new(), &mut cx),
+            false => check_elements_without_syntax_errors(&source, &Graph::new(), &mut cx),
         }
     }
     cx.messages()
 }
 
 /// Returns the first line of a message without its names: the class of the message.
-fn message_class(message: &str) -> String {
+fn message_without_names(message: &str) -> String {
     let first = message.lines().next().unwrap_or_default();
     first.split('`').step_by(2).collect::<Vec<_>>().join("`…`")
 }
@@ -218,7 +218,7 @@ fn single_token_mutations_get_short_errors() {
                     blame(format!("{} errors:\n{}", found.len(), found.join("\n")));
                 }
                 for message in found.iter().filter(|m| !m.contains("= help: ")) {
-                    blame(format!("no help: {}", message_class(message)));
+                    blame(format!("no help: {}", message_without_names(message)));
                 }
             }
         }
@@ -229,7 +229,7 @@ fn single_token_mutations_get_short_errors() {
 }
 
 /// Returns the error messages of the parser alone, before the model is built.
-fn messages_of_grammar(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
+fn parser_messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
     read_source(arguments.clone(), item, Path::new(""), &mut cx);
     cx.messages()
@@ -237,7 +237,7 @@ fn messages_of_grammar(arguments: &TokenStream, item: TokenStream) -> Vec<String
 
 /// Returns the mechanism with a syntax error in one field: an unknown argument, or an invalid type of a
 /// parameter.
-fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
+fn with_syntax_error(item: &TokenStream, at: usize) -> Option<TokenStream> {
     let mut item: syn::ItemStruct = syn::parse2(item.clone()).unwrap();
     let field = item.fields.iter_mut().nth(at)?;
     match field.attrs.iter_mut().find(|a| !a.path().is_ident("doc")) {
@@ -256,9 +256,9 @@ fn unreadable_field_causes_no_other_errors() {
     let mut tried = 0;
     for subject in gallery_mechanisms() {
         let fields = syn::parse2::<syn::ItemStruct>(subject.item.clone()).unwrap().fields.len();
-        for item in (0..fields).filter_map(|at| with_a_mistake(&subject.item, at)) {
+        for item in (0..fields).filter_map(|at| with_syntax_error(&subject.item, at)) {
             tried += 1;
-            let grammar = messages_of_grammar(&subject.arguments, item.clone());
+            let grammar = parser_messages(&subject.arguments, item.clone());
             let all = parser_and_model_messages(&subject.arguments, item);
             if grammar.is_empty() || all.len() > grammar.len() {
                 wrong.push(format!("{}: {}", subject.name, all.join("\n  and ")));

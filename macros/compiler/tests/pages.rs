@@ -2,7 +2,7 @@
 //! all passes of programs.
 
 use linkwork_compiler::lower::pipeline::{DRAFT, FINISH};
-use linkwork_compiler::syntax::{ElementKind, ForceKind, JointKind, Word};
+use linkwork_compiler::syntax::{ElementKind, ForceKind, JointKind, RequestOption};
 use std::path::Path;
 
 /// Files by their paths in the repository, each with the form in which `NAME` appears.
@@ -46,7 +46,7 @@ fn joints_are_listed_in_all_pages() {
 #[test]
 fn elements_are_listed_in_all_pages() {
     let names: Vec<String> = ElementKind::element_names().map(ToString::to_string).collect();
-    assert!(names.iter().all(|name| ElementKind::of_name(name).is_some()));
+    assert!(names.iter().all(|name| ElementKind::find_by_name(name).is_some()));
     check_names_on_pages(
         &names,
         &[
@@ -62,7 +62,7 @@ fn elements_are_listed_in_all_pages() {
 
 /// Returns the spelling of an option, from the trait that reports its absence: `AsksForSecondDerivatives`
 /// becomes `second_derivatives`.
-fn option_spelling(word: Word) -> String {
+fn option_spelling(word: RequestOption) -> String {
     let name = word.trait_for_missing_option().trim_start_matches("AsksFor");
     let snake_case_letter =
         |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
@@ -71,7 +71,7 @@ fn option_spelling(word: Word) -> String {
 
 #[test]
 fn language_words_are_listed_in_the_guide() {
-    let names: Vec<String> = Word::ALL.into_iter().map(option_spelling).collect();
+    let names: Vec<String> = RequestOption::ALL.into_iter().map(option_spelling).collect();
     check_names_on_pages(
         &names,
         &[

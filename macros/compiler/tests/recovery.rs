@@ -72,7 +72,7 @@ const MECHANISMS: [(&str, &str); 5] = [
 /// Map from the name to arguments and result; `None` for constants.
 type Names = BTreeMap<String, Option<String>>;
 
-struct Generated {
+struct GeneratedItems {
     /// Names of the functions and constants that each generated struct has.
     present: Names,
     /// Absent functions of a mechanism, with the bound that names the reason.
@@ -81,11 +81,11 @@ struct Generated {
     traits: BTreeSet<String>,
 }
 
-fn generate_code(arguments: &str, name: &str, fields: &str) -> Generated {
+fn generate_code(arguments: &str, name: &str, fields: &str) -> GeneratedItems {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
-    let mut all = Generated { present: Names::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
+    let mut all = GeneratedItems { present: Names::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
     for item in generated::items_of_generated_code(file) {
         if let Item::Impl(block) = item {
             all.read_implementation(&block);
@@ -213,14 +213,14 @@ fn errors_elsewhere_preserve_output_arguments() {
         assert_eq!(error, None, "{function}");
         let whole = generate_code("", "Measured", &fields);
         let failed = generate_code("", "Measured", &format!("{fields} {MISTAKE}"));
-        let signature_of_measure = |all: &Generated| all.present.get("Measured::measure").cloned();
+        let signature_of_measure = |all: &GeneratedItems| all.present.get("Measured::measure").cloned();
         assert!(signature_of_measure(&whole).is_some(), "{function}");
         assert_eq!(signature_of_measure(&failed), signature_of_measure(&whole), "{function}");
     }
 }
 
 /// Returns the bound of an absent function, which is the only bound over a lifetime.
-fn reason_of_absence(block: &ItemImpl) -> Option<String> {
+fn bound_of_absent_function(block: &ItemImpl) -> Option<String> {
     let bounds = block.generics.where_clause.as_ref()?.predicates.iter();
     let reasons = bounds.filter_map(|predicate| match predicate {
         syn::WherePredicate::Type(bound) if bound.lifetimes.is_some() => match bound.bounds.first()? {
@@ -232,7 +232,7 @@ fn reason_of_absence(block: &ItemImpl) -> Option<String> {
     reasons.last()
 }
 
-impl Generated {
+impl GeneratedItems {
     fn read_implementation(&mut self, block: &ItemImpl) {
         let Type::Path(of) = &*block.self_ty else { return };
         let of = of.path.segments.last().unwrap().ident.to_string();
@@ -240,7 +240,7 @@ impl Generated {
             self.traits.insert(format!("{of}: {}", path.segments.last().unwrap().ident));
             return;
         }
-        let reason = reason_of_absence(block);
+        let reason = bound_of_absent_function(block);
         for item in &block.items {
             let (name, arguments) = match item {
                 ImplItem::Fn(f) => (f.sig.ident.to_string(), Some(signature_text(f))),
@@ -438,7 +438,7 @@ fn names_by_availability(arguments: &str, name: &str, fields: &str) -> String {
                 ImplItem::Const(c) => c.ident.to_string(),
                 _ => continue,
             };
-            let list = reason_of_absence(&block)
+            let list = bound_of_absent_function(&block)
                 .map_or("there".to_string(), |reason| format!("not there, {reason}"));
             by.entry(list).or_default().insert(name);
         }

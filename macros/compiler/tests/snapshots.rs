@@ -262,14 +262,14 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
 ];
 
 /// Returns true for the function of a trait that only calls the inherent function of the same name.
-fn is_passed_on(function: &syn::ImplItemFn) -> bool {
+fn is_forwarding_function(function: &syn::ImplItemFn) -> bool {
     let body = function.block.to_token_stream().to_string();
     body.starts_with(&format!("{{ Self :: {} (", function.sig.ident))
 }
 
 /// Returns the generated code without documentation, frames, and functions that only report that a feature is
 /// absent.
-fn code_of_functions(text: &str, functions: &[&str]) -> String {
+fn generated_code_of_functions(text: &str, functions: &[&str]) -> String {
     let mut file = syn::parse_file(text).unwrap();
     file.items = generated::items_of_generated_code(file.clone());
     file.items.retain_mut(|item| {
@@ -287,7 +287,7 @@ fn code_of_functions(text: &str, functions: &[&str]) -> String {
             let attributes = match member {
                 syn::ImplItem::Fn(f) => {
                     let name = f.sig.ident.to_string();
-                    if inherent && !functions.contains(&name.as_str()) || asked && is_passed_on(f) {
+                    if inherent && !functions.contains(&name.as_str()) || asked && is_forwarding_function(f) {
                         return false;
                     }
                     &mut f.attrs
@@ -317,11 +317,11 @@ fn snapshot_difference(name: &str, text: &str) -> Option<String> {
     }
     let expected = fs::read_to_string(&path).unwrap_or_default();
     let lines = text.lines().count().max(expected.lines().count());
-    let pad_lines_with = |text: &'static str| std::iter::repeat(text);
+    let repeated_line = |text: &'static str| std::iter::repeat(text);
     let both = text
         .lines()
-        .chain(pad_lines_with("(no more)"))
-        .zip(expected.lines().chain(pad_lines_with("(no more)")));
+        .chain(repeated_line("(no more)"))
+        .zip(expected.lines().chain(repeated_line("(no more)")));
     let (k, (now, before)) = both.take(lines).enumerate().find(|(_, (now, before))| now != before)?;
     Some(format!("{name}.txt, line {}:\n  before: {before}\n  now:    {now}", k + 1))
 }
@@ -333,21 +333,21 @@ macro_rules! snapshots {
 
         $(#[test]
         fn $name() {
-            is_as_written(stringify!($name));
+            assert_equals_snapshot(stringify!($name));
         })+
     };
 }
 
 snapshots!(pendulum closed independent limbs prepare batch derivatives charts slipping driven governed measured speeds file f32);
 
-fn is_as_written(name: &str) {
+fn assert_equals_snapshot(name: &str) {
     let of = MECHANISMS.iter().find(|(known, ..)| *known == name);
     let (_, attribute, fields, functions) = of.expect("a mechanism of this name");
     let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
     let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
     assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
     assert_eq!(
-        snapshot_difference(name, &code_of_functions(&emitted.text, functions)),
+        snapshot_difference(name, &generated_code_of_functions(&emitted.text, functions)),
         None,
         "generated code differs; with `LINKWORK_WRITE=1` it is written anew"
     );

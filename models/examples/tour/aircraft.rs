@@ -1,6 +1,6 @@
 //! Transport aircraft: its trimmed flight, its response to a gust and to the rudder, and its flight modes.
 
-use crate::report::{Check, Picture, Section, Table, declaration_of_mechanism, format_number};
+use crate::report::{Picture, Section, Table, UpperBoundCheck, declaration_of_mechanism, format_number};
 use linkwork::nalgebra::DVector;
 use linkwork::prelude::*;
 use linkwork_design::flight::{self, FlightModes, LATERAL, LONGITUDINAL};
@@ -51,9 +51,13 @@ pub fn run_aircraft_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let along = system.of_states(&LONGITUDINAL)?;
     let (speed, linear, apart) = simulate_gust_response(&trim, &along)?;
     let checks = vec![
-        Check::new("eigenvalues against those of Etkin and Reid, relative", off, 4e-3),
-        Check::new("trim: elevator, rad", trim.u[0].abs(), 1e-9),
-        Check::new("speed after a gust, equations of motion against linear ones, of the gust", apart, 0.1),
+        UpperBoundCheck::new("eigenvalues against those of Etkin and Reid, relative", off, 4e-3),
+        UpperBoundCheck::new("trim: elevator, rad", trim.u[0].abs(), 1e-9),
+        UpperBoundCheck::new(
+            "speed after a gust, equations of motion against linear ones, of the gust",
+            apart,
+            0.1,
+        ),
     ];
     let across = system.of_states(&LATERAL)?;
     let grid = across.natural_frequencies(400)?;
@@ -78,7 +82,7 @@ pub fn run_aircraft_tour() -> Result<Section, Box<dyn std::error::Error>> {
              it, and its modes come by their names.",
             TRANSPORT.cruise
         ),
-        declaration: elements_of_declaration(&declaration_of_mechanism(
+        declaration: declaration_without_parameters(&declaration_of_mechanism(
             include_str!("../../src/cruising_aircraft.rs"),
             "CruisingAircraft",
         )),
@@ -91,7 +95,7 @@ pub fn run_aircraft_tour() -> Result<Section, Box<dyn std::error::Error>> {
 }
 
 /// Returns the text of a mechanism's declaration without its parameters.
-fn elements_of_declaration(declaration: &str) -> String {
+fn declaration_without_parameters(declaration: &str) -> String {
     let is_parameter = |line: &&str| line.starts_with("    pub ") || line.starts_with("    #[unit");
     declaration.lines().filter(|line| !is_parameter(line)).collect::<Vec<_>>().join("\n")
 }

@@ -1,6 +1,6 @@
 //! A Panda arm draws a figure eight with a load that its controller's model does not include.
 
-use crate::report::{Check, Picture, Section, Table, declaration_of_mechanism, format_number};
+use crate::report::{Picture, Section, Table, UpperBoundCheck, declaration_of_mechanism, format_number};
 use crate::scene::{Part, Point, Scene, Tone, View, point_in_ground};
 use linkwork::nalgebra::{IsometryMatrix3, Vector3, Vector6};
 use linkwork::prelude::*;
@@ -54,7 +54,7 @@ struct ArmController {
     momentum: JointVector,
 }
 
-pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
+pub fn arm_tour_section() -> Result<Section, Box<dyn std::error::Error>> {
     let cases = [
         ("no load", simulate_drawing(0.0, false)?),
         ("unknown load", simulate_drawing(LOAD, false)?),
@@ -78,16 +78,24 @@ pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
     };
     let [exact, loaded, observed] = &cases.each_ref().map(|(_, run)| run);
     let checks = vec![
-        Check::new("no load: largest error, mm", 1e3 * exact.largest_error(), 0.05),
-        Check::new("unknown load: largest error, mm", 1e3 * loaded.largest_error(), 40.0),
-        Check::new("unknown load, observed: largest error, mm", 1e3 * observed.largest_error(), 5.0),
-        Check::new(
+        UpperBoundCheck::new("no load: largest error, mm", 1e3 * exact.largest_error(), 0.05),
+        UpperBoundCheck::new("unknown load: largest error, mm", 1e3 * loaded.largest_error(), 40.0),
+        UpperBoundCheck::new(
+            "unknown load, observed: largest error, mm",
+            1e3 * observed.largest_error(),
+            5.0,
+        ),
+        UpperBoundCheck::new(
             "load weighed by joint torques, error in kg",
             (estimate_load_mass(observed) - LOAD).abs(),
             0.01,
         ),
-        Check::new("largest torque / limit of the joint", observed.largest_relative_torque(), 1.0),
-        Check::new("median time of a control step, µs", 1e-3 * median_time(&observed.cost), 1e6 * PERIOD),
+        UpperBoundCheck::new("largest torque / limit of the joint", observed.largest_relative_torque(), 1.0),
+        UpperBoundCheck::new(
+            "median time of a control step, µs",
+            1e-3 * median_time(&observed.cost),
+            1e6 * PERIOD,
+        ),
     ];
     let table_row_of_timing = |(name, times): (&str, [f64; 2])| {
         [vec![name.to_string()], times.map(|ns| format!("{ns:.0} ns")).to_vec()].concat()

@@ -1,7 +1,7 @@
 //! Cart-pole: swing-up by energy shaping, then stabilisation by a linear–quadratic regulator.
 
 use crate::report::{
-    Check, Picture, Section, Table, declaration_of_mechanism, format_number, pairs_of_curve,
+    Picture, Section, Table, UpperBoundCheck, declaration_of_mechanism, format_number, pairs_of_curve,
 };
 use crate::scene::{Part, Scene, Tone, View, corners_of_box, faces_of_box, point_in_ground};
 use linkwork::nalgebra::IsometryMatrix3;
@@ -72,14 +72,14 @@ pub fn run_cart_pole_tour() -> Result<Section, Box<dyn std::error::Error>> {
         ],
     };
     let checks = vec![
-        Check::new("caught upright, s", caught, SHOVE.start - 1.0),
-        Check::new("track used, m", largest_magnitude_since(0.0, &|q| q[0]), 1.0),
-        Check::new(
+        UpperBoundCheck::new("caught upright, s", caught, SHOVE.start - 1.0),
+        UpperBoundCheck::new("track used, m", largest_magnitude_since(0.0, &|q| q[0]), 1.0),
+        UpperBoundCheck::new(
             "tilt at the end, rad",
             largest_magnitude_since(DURATION - 0.5, &|q| angle_from_upright(q[1])),
             5e-3,
         ),
-        Check::new(
+        UpperBoundCheck::new(
             "cart's distance from the middle at the end, m",
             largest_magnitude_since(DURATION - 0.5, &|q| q[0]),
             0.02,

@@ -33,7 +33,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     let stops: [SectionFunction; 6] = [
         pendulum::run_pendulum_tour,
         cart_pole::run_cart_pole_tour,
-        arm::run_arm_tour,
+        arm::arm_tour_section,
         quadruped::run_quadruped_tour,
         aircraft::run_aircraft_tour,
         top::run_top_tour,

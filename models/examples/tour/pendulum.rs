@@ -1,7 +1,7 @@
 //! Pendulum over a thousand seconds: errors of energy and phase with three integrators.
 
 use crate::report::{
-    Check, Picture, Section, Table, declaration_of_mechanism, format_number, pairs_of_curve,
+    Picture, Section, Table, UpperBoundCheck, declaration_of_mechanism, format_number, pairs_of_curve,
 };
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
@@ -18,7 +18,7 @@ const INTERVAL: f64 = 0.05;
 const WINDOW: f64 = 5.0;
 
 /// Errors and computing time of one integrator.
-struct PendulumRun {
+struct PendulumIntegratorRun {
     /// End time, s, of each time window, and the largest error of the energy in the window, relative to m g
     /// l.
     energy: Vec<[f64; 2]>,
@@ -34,7 +34,7 @@ pub fn run_pendulum_tour() -> Result<Section, Box<dyn std::error::Error>> {
         ("implicit midpoint", "10 ms", simulate_swing(ImplicitMidpoint::step(0.01))?),
         ("Dormand–Prince", "adaptive", simulate_swing(DormandPrince::new())?),
     ];
-    let table_row_of_method = |(name, step, run): &(&str, &str, PendulumRun)| {
+    let table_row_of_method = |(name, step, run): &(&str, &str, PendulumIntegratorRun)| {
         vec![
             name.to_string(),
             step.to_string(),
@@ -53,23 +53,27 @@ pub fn run_pendulum_tour() -> Result<Section, Box<dyn std::error::Error>> {
         (worst_error(late) / worst_error(early) - 1.0).abs()
     };
     let checks = vec![
-        Check::new("Runge–Kutta: energy error after 1000 s", worst_error(&rk4.2.energy), 1e-5),
-        Check::new("implicit midpoint: energy error, second half over first", growth, 1e-2),
-        Check::new("Dormand–Prince: energy error after 1000 s", worst_error(&adaptive.2.energy), 1e-5),
-        Check::new(
+        UpperBoundCheck::new("Runge–Kutta: energy error after 1000 s", worst_error(&rk4.2.energy), 1e-5),
+        UpperBoundCheck::new("implicit midpoint: energy error, second half over first", growth, 1e-2),
+        UpperBoundCheck::new(
+            "Dormand–Prince: energy error after 1000 s",
+            worst_error(&adaptive.2.energy),
+            1e-5,
+        ),
+        UpperBoundCheck::new(
             "Dormand–Prince: angle against Jacobi's elliptic function, rad",
             worst_error(&adaptive.2.angle),
             1e-2,
         ),
     ];
     let energy = Picture::over_time("Energy error of the pendulum", "|E − E₀| / mgl", |chart| {
-        let add_energy_curve = |chart: Chart, (name, _, run): &(&str, &str, PendulumRun)| {
+        let add_energy_curve = |chart: Chart, (name, _, run): &(&str, &str, PendulumIntegratorRun)| {
             chart.curve(*name, pairs_of_curve(&run.energy))
         };
         methods.iter().fold(chart.logarithmic(), add_energy_curve)
     })?;
     let phase = Picture::over_time("Angle against the exact solution", "|θ − θ exact|, rad", |chart| {
-        let add_angle_curve = |chart: Chart, (name, _, run): &(&str, &str, PendulumRun)| {
+        let add_angle_curve = |chart: Chart, (name, _, run): &(&str, &str, PendulumIntegratorRun)| {
             chart.curve(*name, pairs_of_curve(&run.angle))
         };
         methods.iter().fold(chart.logarithmic(), add_angle_curve)
@@ -91,7 +95,7 @@ pub fn run_pendulum_tour() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-fn simulate_swing(method: impl Method<f64>) -> Result<PendulumRun, Error> {
+fn simulate_swing(method: impl Method<f64>) -> Result<PendulumIntegratorRun, Error> {
     let total_energy = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
         PENDULUM.kinetic_energy(q, v) + PENDULUM.potential_energy(q)
     };
@@ -116,9 +120,9 @@ fn simulate_swing(method: impl Method<f64>) -> Result<PendulumRun, Error> {
             .map(worst_error_in_window)
             .collect::<Vec<_>>()
     };
-    Ok(PendulumRun {
+    Ok(PendulumIntegratorRun {
         energy: worst_errors_in_windows(&|s| (total_energy(&s.q, &s.v) - e0).abs() / scale),
-        angle: worst_errors_in_windows(&|s| (s.q[0] - exact_angle(s.t)).abs()),
+        angle: worst_errors_in_windows(&|s| (s.q[0] - exact_pendulum_angle(s.t)).abs()),
         cost,
     })
 }
@@ -129,7 +133,7 @@ fn worst_error(errors: &[[f64; 2]]) -> f64 {
 
 /// Returns the exact angle of the pendulum: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`. Jacobi's
 /// functions follow by the descending Landen transformation (Abramowitz and Stegun, 16.4).
-fn exact_angle(t: f64) -> f64 {
+fn exact_pendulum_angle(t: f64) -> f64 {
     let k = (START / 2.0).sin();
     let (mut a, mut b) = (1.0, (START / 2.0).cos());
     let mut ratios = Vec::new();

@@ -2,7 +2,7 @@
 //! its angular momentum.
 
 use crate::report::{
-    Check, Picture, Section, Table, declaration_of_mechanism, format_number, pairs_of_curve,
+    Picture, Section, Table, UpperBoundCheck, declaration_of_mechanism, format_number, pairs_of_curve,
 };
 use crate::scene::{Part, Point, Scene, Tone, View, corners_of_box, faces_of_box, point_in_ground};
 use linkwork::integrate::Method;
@@ -57,18 +57,18 @@ pub fn run_quadruped_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let angular_rate_samples = |k: usize| samples.iter().map(|s| [s.t, s.v[3 + k]]).collect::<Vec<_>>();
     let fastest = angular_rate_samples(1).iter().map(|r| r[1].abs()).fold(0.0, f64::max);
     let checks = vec![
-        Check::new(
+        UpperBoundCheck::new(
             "centre of mass off its parabola, m",
             worst_error(&distance_from_parabola(samples)),
             1e-11,
         ),
-        Check::new(
+        UpperBoundCheck::new(
             "angular momentum about it, relative drift",
             worst_error(&angular_momentum_drift(samples)),
             1e-11,
         ),
-        Check::new("trunk against level at landing, rad", landing, 1e-6),
-        Check::new("spin at take-off / fastest spin, legs tucked", spin.y.abs() / fastest, 0.9),
+        UpperBoundCheck::new("trunk against level at landing, rad", landing, 1e-6),
+        UpperBoundCheck::new("spin at take-off / fastest spin, legs tucked", spin.y.abs() / fastest, 0.9),
     ];
     let pictures = vec![
         Picture::over_time("Angular velocity of the trunk", "angular velocity, rad/s", |chart| {
@@ -126,7 +126,7 @@ fn desired_posture(t: f64) -> SVector<f64, 12> {
 
 /// Returns the state of the quadruped at take-off, with the feet on the floor and the desired velocities of
 /// centre of mass and trunk.
-fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
+fn take_off_state(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
     let robot = Solo12;
     let mut q = robot.neutral();
     q.fixed_rows_mut::<12>(7).copy_from(&desired_posture(0.0));
@@ -142,7 +142,7 @@ fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
 const FOOT: f64 = 0.018;
 
 fn simulate_flight(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<QuadrupedSample>, Error> {
-    let (q, v) = take_off(spin);
+    let (q, v) = take_off_state(spin);
     simulate(&Solo12)
         .from(q, v)
         .control_every(PERIOD, |t, q, v| {
@@ -157,13 +157,13 @@ fn simulate_flight(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Q
 /// Returns the angular velocity at take-off for which the trunk is level again at the end, and the remaining
 /// tilt.
 fn find_takeoff_spin() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
-    let final_tilt = |spin: Vector3<f64>| -> Result<Vector3<f64>, Box<dyn std::error::Error>> {
+    let rotation_over_flight = |spin: Vector3<f64>| -> Result<Vector3<f64>, Box<dyn std::error::Error>> {
         let samples = simulate_flight(spin, Rk4::step(PERIOD))?;
         let (first, last) = samples.first().zip(samples.last()).ok_or("no samples")?;
         Ok(Solo12.difference(&first.q, &last.q).fixed_rows::<3>(3).into_owned())
     };
     let mut spin = Vector3::new(0.0, -5.0, 0.0);
-    let mut error = final_tilt(spin)?;
+    let mut error = rotation_over_flight(spin)?;
     for _ in 0..12 {
         if error.norm() < 1e-9 {
             break;
@@ -172,11 +172,11 @@ fn find_takeoff_spin() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>
         for k in 0..3 {
             let mut other = spin;
             other[k] += 1e-4;
-            slope.set_column(k, &((final_tilt(other)? - error) / 1e-4));
+            slope.set_column(k, &((rotation_over_flight(other)? - error) / 1e-4));
         }
         let step = slope.try_inverse().ok_or("a spin that changes nothing")? * error;
         spin -= step * (0.5 / step.norm()).min(1.0);
-        error = final_tilt(spin)?;
+        error = rotation_over_flight(spin)?;
     }
     Ok((spin, error.norm()))
 }

@@ -17,7 +17,7 @@ pub struct Section {
     /// Tables of results of the section.
     pub tables: Vec<Table>,
     /// Comparisons of the results in a section of the report with expected values.
-    pub checks: Vec<Check>,
+    pub checks: Vec<UpperBoundCheck>,
     /// Animated scenes of the section.
     pub scenes: Vec<Scene>,
     /// Plots of the section.
@@ -58,7 +58,7 @@ pub struct Table {
 }
 
 /// Check that a value is below a bound.
-pub struct Check {
+pub struct UpperBoundCheck {
     /// Name of the checked value, with its unit.
     pub what: &'static str,
     /// Measured value of the quantity.
@@ -67,7 +67,7 @@ pub struct Check {
     pub bound: f64,
 }
 
-impl Check {
+impl UpperBoundCheck {
     /// Creates a check of a value against its upper bound.
     pub fn new(what: &'static str, value: f64, bound: f64) -> Self {
         Self { what, value, bound }
@@ -113,7 +113,7 @@ impl Section {
     /// Returns the section as text for a terminal.
     pub fn section_text(&self, number: usize) -> String {
         let mut out = format!("{number}  {}\n", self.title);
-        write_wrapped(&mut out, &self.text);
+        write_wrapped_words(&mut out, &self.text);
         let shown = if self.equations.is_empty() { &self.declaration } else { self.equations };
         for line in shown.lines() {
             let _ = writeln!(out, "     │ {line}");
@@ -134,7 +134,7 @@ impl Section {
     }
 }
 
-fn write_wrapped(out: &mut String, text: &str) {
+fn write_wrapped_words(out: &mut String, text: &str) {
     let mut column = 0;
     for word in text.split_whitespace() {
         let length = word.chars().count();

@@ -1,6 +1,6 @@
 //! Heavy top: its precession and nutation against Lagrange's closed-form solutions.
 
-use crate::report::{Check, Picture, Section, Table, declaration_of_mechanism, format_number};
+use crate::report::{Picture, Section, Table, UpperBoundCheck, declaration_of_mechanism, format_number};
 use crate::scene::{Part, Point, Scene, Tone, View, point_in_ground};
 use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
@@ -30,7 +30,7 @@ pub fn run_top_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let mut compare = |row: &str, what, unit: &str, simulated: f64, closed: f64| {
         let cells = [simulated, closed].map(|x| format!("{x:.9} {unit}"));
         table.rows.push([vec![row.to_string()], cells.to_vec()].concat());
-        checks.push(Check::new(what, (simulated / closed - 1.0).abs(), 1e-9));
+        checks.push(UpperBoundCheck::new(what, (simulated / closed - 1.0).abs(), 1e-9));
     };
 
     // Steady precession: the slower solution of A Ω² cos θ − C n Ω + m g h = 0.
@@ -91,8 +91,8 @@ pub fn run_top_tour() -> Result<Section, Box<dyn std::error::Error>> {
         .map(|s| (vertical_angular_momentum(s) / vertical_angular_momentum(&samples[0]) - 1.0).abs())
         .fold(0.0, f64::max);
     let slowed = samples.iter().map(|s| (s.v[2] / SPIN - 1.0).abs()).fold(0.0, f64::max);
-    checks.push(Check::new("angular momentum about the vertical, drift", momentum, 1e-9));
-    checks.push(Check::new("spin about the axis, drift", slowed, 1e-9));
+    checks.push(UpperBoundCheck::new("angular momentum about the vertical, drift", momentum, 1e-9));
+    checks.push(UpperBoundCheck::new("spin about the axis, drift", slowed, 1e-9));
 
     Ok(Section {
         title: "A heavy top precesses and nutates".into(),

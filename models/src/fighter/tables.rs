@@ -144,12 +144,12 @@ const AFTERBURNER: [f64; 36] = [
     26070.0, 21075.0, 15975.0, 11115.0, 6860.0, 3950.0, 28886.0, 23319.0, 18300.0, 13484.0, 8642.0, 5057.0,
 ];
 
-static CL: [f64; 156] = odd_function_rows(&ROLL);
-static CN: [f64; 156] = odd_function_rows(&YAW);
+static CL: [f64; 156] = mirror_odd_function_rows(&ROLL);
+static CN: [f64; 156] = mirror_odd_function_rows(&YAW);
 static THRUST: [f64; 108] = thrust_by_power();
 
 /// Returns the rows from −30° to 30° of an odd function whose rows from 5° to 30° are given.
-const fn odd_function_rows(right: &[f64; 72]) -> [f64; 156] {
+const fn mirror_odd_function_rows(right: &[f64; 72]) -> [f64; 156] {
     let mut all = [0.0; 156];
     let mut row = 0;
     while row < 6 {

@@ -1,6 +1,6 @@
 //! Glider, quadrotor, satellite with wheels, and vehicle over the round Earth, against closed-form solutions.
 
-use crate::{assert_eigenvalue, assert_relatively_close};
+use crate::{assert_mode_eigenvalue, assert_relatively_close};
 use linkwork::nalgebra::{Complex, Quaternion, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork::{Mechanism, Outputs};
@@ -48,7 +48,7 @@ fn steady_glide(glider: &Glider, lift: f64) -> SteadyState<7, 6, 1> {
         .unwrap()
 }
 
-fn outputs_of_glide(glider: &Glider, found: &SteadyState<7, 6, 1>) -> (f64, f64) {
+fn speed_and_descent_of_glide(glider: &Glider, found: &SteadyState<7, 6, 1>) -> (f64, f64) {
     let seen = Outputs::outputs(glider, 0.0, &found.q, &found.v, &SVector::zeros(), &found.u);
     (seen[0], seen[1])
 }
@@ -58,14 +58,14 @@ fn glider_follows_its_polar() {
     let Glider { g, mass, density, area, cd_0, cd_induced, .. } = GLIDER;
     let best = (cd_0 / cd_induced).sqrt();
     for lift in [0.5 * best, best, 1.3 * best] {
-        let (speed, down) = outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift));
+        let (speed, down) = speed_and_descent_of_glide(&GLIDER, &steady_glide(&GLIDER, lift));
         let drag = cd_0 + cd_induced * lift * lift;
         assert_relatively_close(down / speed, drag / lift.hypot(drag), 1e-9);
         assert_relatively_close(0.5 * density * speed * speed * area * lift.hypot(drag), mass * g, 1e-9);
     }
     let glide_angle_sine = |lift: f64| {
-        outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).1
-            / outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).0
+        speed_and_descent_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).1
+            / speed_and_descent_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).0
     };
     let ratio = 1.0 / (2.0 * (cd_0 * cd_induced).sqrt());
     assert_relatively_close(glide_angle_sine(best).asin().tan(), 1.0 / ratio, 1e-9);
@@ -74,14 +74,14 @@ fn glider_follows_its_polar() {
             && glide_angle_sine(1.03 * best) > glide_angle_sine(best)
     );
     let slowest = 3.0_f64.sqrt() * best;
-    let sink_rate_at_lift = |lift| outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).1;
+    let sink_rate_at_lift = |lift| speed_and_descent_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).1;
     assert!(
         sink_rate_at_lift(0.97 * slowest) > sink_rate_at_lift(slowest)
             && sink_rate_at_lift(1.03 * slowest) > sink_rate_at_lift(slowest)
     );
 }
 
-fn flight_modes_of_glider(glider: &Glider, lift: f64) -> FlightModes {
+fn compute_glider_flight_modes(glider: &Glider, lift: f64) -> FlightModes {
     let found = steady_glide(glider, lift);
     FlightModes::from_system(&flight::linear_system(glider, &found.q, &found.v, &found.u).unwrap()).unwrap()
 }
@@ -90,10 +90,10 @@ fn flight_modes_of_glider(glider: &Glider, lift: f64) -> FlightModes {
 /// and `V γ̇ = k_L V² − g cos γ`. About the glide at `tan γ = −C_D / C_L` the trace is
 /// `−3 (g / V) C_D / C_L`, a third of which is due to the slope of the path.
 #[test]
-fn glider_phugoid_period_and_damping() {
+fn glider_phugoid_has_closed_form_period_and_damping() {
     let (lift, firm) = (0.8, Glider { cm_alpha: -1000.0, ..GLIDER });
-    let speed = outputs_of_glide(&firm, &steady_glide(&firm, lift)).0;
-    let found = flight_modes_of_glider(&firm, lift);
+    let speed = speed_and_descent_of_glide(&firm, &steady_glide(&firm, lift)).0;
+    let found = compute_glider_flight_modes(&firm, lift);
     let phugoid = found.phugoid.unwrap();
     assert_relatively_close(2.0 * PI / phugoid.frequency(), SQRT_2 * PI * speed / firm.g, 0.01);
     let ratio = lift / (firm.cd_0 + firm.cd_induced * lift * lift);
@@ -118,8 +118,9 @@ fn glider_phugoid_period_and_damping() {
 fn dihedral_stabilises_the_spiral() {
     let boundary = GLIDER.yaw_beta * GLIDER.roll_r / GLIDER.yaw_r;
     for (part, stable) in [(0.7, false), (1.3, true)] {
-        let spiral =
-            flight_modes_of_glider(&Glider { roll_beta: part * boundary, ..GLIDER }, 0.5).spiral.unwrap();
+        let spiral = compute_glider_flight_modes(&Glider { roll_beta: part * boundary, ..GLIDER }, 0.5)
+            .spiral
+            .unwrap();
         assert_eq!(spiral.exponent.re < 0.0, stable, "{spiral}");
     }
 }
@@ -187,13 +188,13 @@ fn quadrotor_hovers_and_responds() {
 const SATELLITE: WheeledSatellite =
     WheeledSatellite { mass: 80.0, ixx: 9.0, iyy: 6.0, izz: 12.0, wheel_mass: 2.0, wheel: 0.03 };
 
-fn state_at_rest() -> (SVector<f64, 7>, SVector<f64, 6>) {
+fn neutral_state_at_rest() -> (SVector<f64, 7>, SVector<f64, 6>) {
     ([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0].into(), SVector::zeros())
 }
 
 #[test]
 fn reaction_wheels_rotate_the_satellite() {
-    let (q, v) = state_at_rest();
+    let (q, v) = neutral_state_at_rest();
     // Rest-to-rest manoeuvre: acceleration in one direction, then in the opposite one.
     let apply_wheel_torques = |torques: [f64; 3], q, v, duration: f64| {
         let path = simulate(&SATELLITE)
@@ -223,7 +224,7 @@ fn reaction_wheels_rotate_the_satellite() {
 
 #[test]
 fn satellite_with_spinning_wheel_nutates() {
-    let (q, mut v) = state_at_rest();
+    let (q, mut v) = neutral_state_at_rest();
     v[4] = 300.0;
     let momentum = SATELLITE.wheel * v[4];
     let system = linear_system(&SATELLITE, &q, &v, &SVector::zeros()).unwrap();
@@ -231,7 +232,7 @@ fn satellite_with_spinning_wheel_nutates() {
     let nutation = momentum / (across[0] * across[1]).sqrt();
     let found: Vec<_> = system.modes().unwrap().into_iter().filter(|mode| mode.exponent.im > 1e-3).collect();
     assert_eq!(found.len(), 1);
-    assert_eigenvalue(found.first(), 0.0, nutation, 1e-10);
+    assert_mode_eigenvalue(found.first(), 0.0, nutation, 1e-10);
 }
 
 /// Checks a satellite that rotates at `ν` about the axis of its intermediate moment of inertia and tumbles. A
@@ -239,7 +240,7 @@ fn satellite_with_spinning_wheel_nutates() {
 /// which divided by `I₂ I₃` is the square of its nutation frequency (Hughes, § 6.3).
 #[test]
 fn wheel_stabilises_intermediate_axis() {
-    let (q, _) = state_at_rest();
+    let (q, _) = neutral_state_at_rest();
     let wheel = SATELLITE.wheel;
     let [i2, i3] = [SATELLITE.iyy, SATELLITE.izz].map(|hull| hull + wheel);
     let (i1, rate) = (SATELLITE.ixx + 2.0 * wheel, 0.2);
@@ -312,7 +313,7 @@ fn eastward_flight_needs_less_lift() {
 }
 
 #[test]
-fn gravity_and_inertial_forces_over_earth() {
+fn gravity_and_inertial_forces_match_earth_model() {
     for (k, latitude) in [-1.2_f64, -0.4, 0.3, 0.9].into_iter().enumerate() {
         let k = k as f64;
         let (longitude, r) = (0.7 * k - 1.0, CRAFT.radius + 200e3 + 1e4 * k);

@@ -1,6 +1,6 @@
 //! Transport and light aircraft given by their stability derivatives.
 
-use crate::{assert_eigenvalue, assert_relatively_close};
+use crate::{assert_mode_eigenvalue, assert_relatively_close};
 use linkwork::nalgebra::DMatrix;
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;
@@ -26,7 +26,7 @@ fn trim_level_flight(craft: &CruisingAircraft) -> CruiseState {
     (found.q, found.v, found.u)
 }
 
-fn linearized_aircraft(craft: &CruisingAircraft) -> StateSpace {
+fn linearize_at_level_flight(craft: &CruisingAircraft) -> StateSpace {
     let (q, v, u) = trim_level_flight(craft);
     flight::linear_system(craft, &q, &v, &u).unwrap()
 }
@@ -47,7 +47,7 @@ fn transport_aircraft_cruises() {
 /// Etkin's derivatives to 1e-9, and Etkin's printed matrices (ft and s) to their digits.
 #[test]
 fn transport_matches_etkin_and_reid_matrices() {
-    let system = linearized_aircraft(&TRANSPORT);
+    let system = linearize_at_level_flight(&TRANSPORT);
     let part = system.of_states(&["u", "w", "q", "theta"]).unwrap();
     let own = [
         [-0.006866611275943936, 0.013943035674208383, 0.0, -9.81],
@@ -97,17 +97,17 @@ fn transport_matches_etkin_and_reid_matrices() {
 /// of an independent computation.
 #[test]
 fn transport_matches_etkin_and_reid_modes() {
-    let modes = FlightModes::from_system(&linearized_aircraft(&TRANSPORT)).unwrap();
-    assert_eigenvalue(modes.short_period.as_ref(), -0.37166215649674494, 0.8868788584671381, 1e-9);
-    assert_eigenvalue(modes.phugoid.as_ref(), -0.003289206894193512, 0.06720807985472561, 1e-9);
-    assert_eigenvalue(modes.dutch_roll.as_ref(), -0.033052210108050734, 0.9467852313277423, 1e-9);
-    assert_eigenvalue(modes.roll.as_ref(), -0.5630776981191257, 0.0, 1e-9);
-    assert_eigenvalue(modes.spiral.as_ref(), -0.007277201746158317, 0.0, 1e-9);
-    assert_eigenvalue(modes.short_period.as_ref(), -0.3719, 0.8875, 1e-3);
-    assert_eigenvalue(modes.phugoid.as_ref(), -0.003289, 0.06723, 1e-3);
-    assert_eigenvalue(modes.dutch_roll.as_ref(), -0.033011, 0.94655, 1e-3);
-    assert_eigenvalue(modes.roll.as_ref(), -0.56248, 0.0, 1.2e-3);
-    assert_eigenvalue(modes.spiral.as_ref(), -0.0072973, 0.0, 3e-3);
+    let modes = FlightModes::from_system(&linearize_at_level_flight(&TRANSPORT)).unwrap();
+    assert_mode_eigenvalue(modes.short_period.as_ref(), -0.37166215649674494, 0.8868788584671381, 1e-9);
+    assert_mode_eigenvalue(modes.phugoid.as_ref(), -0.003289206894193512, 0.06720807985472561, 1e-9);
+    assert_mode_eigenvalue(modes.dutch_roll.as_ref(), -0.033052210108050734, 0.9467852313277423, 1e-9);
+    assert_mode_eigenvalue(modes.roll.as_ref(), -0.5630776981191257, 0.0, 1e-9);
+    assert_mode_eigenvalue(modes.spiral.as_ref(), -0.007277201746158317, 0.0, 1e-9);
+    assert_mode_eigenvalue(modes.short_period.as_ref(), -0.3719, 0.8875, 1e-3);
+    assert_mode_eigenvalue(modes.phugoid.as_ref(), -0.003289, 0.06723, 1e-3);
+    assert_mode_eigenvalue(modes.dutch_roll.as_ref(), -0.033011, 0.94655, 1e-3);
+    assert_mode_eigenvalue(modes.roll.as_ref(), -0.56248, 0.0, 1.2e-3);
+    assert_mode_eigenvalue(modes.spiral.as_ref(), -0.0072973, 0.0, 3e-3);
     // Height is the remaining state: nothing depends on it in air of uniform density.
     let [height] = &modes.others[..] else { panic!("{:?}", modes.others) };
     assert!(height.frequency() < 1e-9);
@@ -119,7 +119,11 @@ fn transport_matches_etkin_and_reid_modes() {
 #[test]
 fn alpha_rate_forces_damp_short_period() {
     let short_period_damping = |craft| {
-        FlightModes::from_system(&linearized_aircraft(&craft)).unwrap().short_period.unwrap().damping_ratio()
+        FlightModes::from_system(&linearize_at_level_flight(&craft))
+            .unwrap()
+            .short_period
+            .unwrap()
+            .damping_ratio()
     };
     let without = CruisingAircraft { cz_alpha_rate: 0.0, cm_alpha_rate: 0.0, ..TRANSPORT };
     let ratio = short_period_damping(without) / short_period_damping(TRANSPORT);
@@ -178,12 +182,12 @@ fn dimensionless_derivatives_match_declared() {
 /// 1998, ch. 4 and 5).
 #[test]
 fn navion_matches_nelson_modes() {
-    let modes = FlightModes::from_system(&linearized_aircraft(&CruisingAircraft::NAVION)).unwrap();
-    assert_eigenvalue(modes.short_period.as_ref(), -2.51, 2.59, 1e-2);
-    assert_eigenvalue(modes.phugoid.as_ref(), -0.017, 0.213, 1e-2);
-    assert_eigenvalue(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
-    assert_eigenvalue(modes.roll.as_ref(), -8.435, 0.0, 1e-2);
-    assert_eigenvalue(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
+    let modes = FlightModes::from_system(&linearize_at_level_flight(&CruisingAircraft::NAVION)).unwrap();
+    assert_mode_eigenvalue(modes.short_period.as_ref(), -2.51, 2.59, 1e-2);
+    assert_mode_eigenvalue(modes.phugoid.as_ref(), -0.017, 0.213, 1e-2);
+    assert_mode_eigenvalue(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
+    assert_mode_eigenvalue(modes.roll.as_ref(), -8.435, 0.0, 1e-2);
+    assert_mode_eigenvalue(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
 }
 
 /// Checks the modes of the DC-8 at 468.2 ft/s in 15 000 ft (Teper, *Aircraft Stability and Control Data*,
@@ -210,12 +214,12 @@ fn dc8_matches_cook_modes() {
         cn_r: derivative_by_rate(-0.257, izz),
         ..base
     };
-    let modes = FlightModes::from_system(&linearized_aircraft(&craft)).unwrap();
+    let modes = FlightModes::from_system(&linearize_at_level_flight(&craft)).unwrap();
     let dutch_roll = modes.dutch_roll.unwrap();
     assert_relatively_close(2.0 * dutch_roll.damping_ratio() * dutch_roll.frequency(), 0.254, 2e-3);
     assert_relatively_close(dutch_roll.frequency().powi(2), 1.433, 1e-3);
-    assert_eigenvalue(modes.roll.as_ref(), -1.329, 0.0, 1e-3);
-    assert_eigenvalue(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
+    assert_mode_eigenvalue(modes.roll.as_ref(), -1.329, 0.0, 1e-3);
+    assert_mode_eigenvalue(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
 }
 
 /// Checks the modes of the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the
@@ -243,7 +247,7 @@ fn printed_matrices_yield_named_modes() {
 }
 
 #[test]
-fn error_off_steady_state_states_the_rate() {
+fn error_away_from_steady_state_names_the_rate() {
     let (q, mut v, u) = trim_level_flight(&TRANSPORT);
     v[4] = 0.01;
     let error = flight::linear_system(&TRANSPORT, &q, &v, &u).unwrap_err().to_string();

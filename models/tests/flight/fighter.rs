@@ -1,6 +1,6 @@
 //! Fighter: rates in a published state, trimmed flight, and its linear motion.
 
-use crate::assert_eigenvalue;
+use crate::assert_mode_eigenvalue;
 use linkwork::Table;
 use linkwork::nalgebra::{DMatrix, SVector, UnitQuaternion};
 use linkwork::prelude::*;
@@ -21,7 +21,13 @@ fn pose_coordinates(place: [f64; 3], [bank, pitch, heading]: [f64; 3]) -> SVecto
 }
 
 /// Returns the velocity in body axes and the power, for a speed, angle of attack, sideslip, and body rates.
-fn velocity_and_power(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], power: f64) -> SVector<f64, 7> {
+fn velocity_vector_with_power(
+    speed: f64,
+    alpha: f64,
+    beta: f64,
+    [p, q, r]: [f64; 3],
+    power: f64,
+) -> SVector<f64, 7> {
     let across = speed * beta.cos();
     SVector::from([across * alpha.cos(), speed * beta.sin(), across * alpha.sin(), p, q, r, power])
 }
@@ -33,7 +39,7 @@ fn state_rates_match_the_book() {
     let fighter = Fighter { place: 0.4, ..Fighter::F16 };
     let (speed, alpha, beta) = (500.0 * FOOT, 0.5, -0.2);
     let q = pose_coordinates([1000.0 * FOOT, 900.0 * FOOT, -10000.0 * FOOT], [-1.0, 1.0, -1.0]);
-    let v = velocity_and_power(speed, alpha, beta, [0.7, -0.8, 0.9], 90.0);
+    let v = velocity_vector_with_power(speed, alpha, beta, [0.7, -0.8, 0.9], 90.0);
     let u = [0.9, 20.0, -15.0, -20.0].into();
     let whole = fighter.extended();
     let tau = whole.generalized_forces(0.0, &q, &v, &u);
@@ -116,18 +122,18 @@ fn files_contain_the_tables() {
     check_table_file("thrust", &f.thrust);
 }
 
-struct LevelFlight {
+struct LevelFlightState {
     q: SVector<f64, 7>,
     v: SVector<f64, 7>,
     u: SVector<f64, 4>,
 }
 
 /// Trims level flight at sea level: angle of attack, throttle, power and elevator are unknown.
-fn trim_level_flight(fighter: &Fighter, speed: f64) -> LevelFlight {
+fn trim_level_flight(fighter: &Fighter, speed: f64) -> LevelFlightState {
     let whole = fighter.extended();
     let found = equilibrium(&whole)
         .from(pose_coordinates([0.0; 3], [0.0, 0.1, 0.0]))
-        .moving(velocity_and_power(speed * FOOT, 0.1, 0.0, [0.0; 3], 20.0))
+        .moving(velocity_vector_with_power(speed * FOOT, 0.1, 0.0, [0.0; 3], 20.0))
         .with_inputs([0.3, -1.0, 0.0, 0.0].into())
         .coordinates(["flight.wy"])
         .speeds(["flight.vx", "flight.vz"])
@@ -136,7 +142,7 @@ fn trim_level_flight(fighter: &Fighter, speed: f64) -> LevelFlight {
         .output("airspeed", speed * FOOT)
         .find()
         .unwrap();
-    LevelFlight { q: found.q, v: found.v, u: found.u }
+    LevelFlightState { q: found.q, v: found.v, u: found.u }
 }
 
 /// Checks that throttle, angle of attack and elevator (degrees) as functions of the speed (ft/s) in level
@@ -159,7 +165,7 @@ fn trimmed_flight_matches_the_book() {
         (800.0, 0.378, -0.045, -0.943),
     ];
     for (speed, throttle, alpha, elevator) in published {
-        let LevelFlight { v, u, .. } = trim_level_flight(&Fighter::F16, speed);
+        let LevelFlightState { v, u, .. } = trim_level_flight(&Fighter::F16, speed);
         let found = [u[0], v[2].atan2(v[0]).to_degrees(), u[1]];
         for (found, (expected, digits)) in
             found.into_iter().zip([(throttle, 0.0012), (alpha, 0.05), (elevator, 0.006)])
@@ -171,7 +177,7 @@ fn trimmed_flight_matches_the_book() {
     for (place, throttle, alpha, elevator) in
         [(0.35, 0.1385, 0.03691, -0.7588), (0.3, 0.1485, 0.03936, -1.931), (0.38, 0.1325, 0.03544, -0.0559)]
     {
-        let LevelFlight { v, u, .. } = trim_level_flight(&Fighter { place, ..Fighter::F16 }, 502.0);
+        let LevelFlightState { v, u, .. } = trim_level_flight(&Fighter { place, ..Fighter::F16 }, 502.0);
         assert!((u[0] - throttle).abs() < 2e-4, "{u}");
         assert!((v[2].atan2(v[0]) - alpha).abs() < 2e-5, "{v}");
         assert!((u[1] - elevator).abs() < 1e-3, "{u}");
@@ -186,7 +192,7 @@ fn coordinated_turn_matches_the_book() {
     let (bank, pitch, turning) = (1.367_f64, 0.05185_f64, 0.3);
     let rates =
         [-pitch.sin(), bank.sin() * pitch.cos(), bank.cos() * pitch.cos()].map(|share| share * turning);
-    let v = velocity_and_power(502.0 * FOOT, 0.2485, 4.8e-4, rates, 64.0);
+    let v = velocity_vector_with_power(502.0 * FOOT, 0.2485, 4.8e-4, rates, 64.0);
     let found = equilibrium(&whole)
         .from(pose_coordinates([0.0; 3], [bank, pitch, 0.0]))
         .moving(v)
@@ -226,7 +232,7 @@ fn coordinated_turn_matches_the_book() {
     }
 }
 
-fn linearized_fighter(fighter: &Fighter, at_rest: &LevelFlight) -> StateSpace {
+fn linearize_fighter_at_level_flight(fighter: &Fighter, at_rest: &LevelFlightState) -> StateSpace {
     let whole = fighter.extended();
     flight::linear_system(&at(&whole, 0.0), &at_rest.q, &at_rest.v, &at_rest.u).unwrap()
 }
@@ -248,7 +254,7 @@ const ACROSS: [[f64; 4]; 3] =
 #[test]
 fn linearised_fighter_matches_the_book() {
     let trim = trim_level_flight(&Fighter::F16, 502.0);
-    let system = linearized_fighter(&Fighter::F16, &trim);
+    let system = linearize_fighter_at_level_flight(&Fighter::F16, &trim);
     let part = system.of_states(&["u", "w", "theta", "q"]).unwrap();
     let speed = 502.0 * FOOT;
     let (s, c) = trim.v[2].atan2(trim.v[0]).sin_cos();
@@ -282,16 +288,20 @@ fn linearised_fighter_matches_the_book() {
 /// lag of one second.
 #[test]
 fn centre_of_mass_determines_pitch_modes() {
-    let modes_with_center_of_mass = |place| {
+    let flight_modes_for_center_of_mass = |place| {
         let fighter = Fighter { place, ..Fighter::F16 };
-        FlightModes::from_system(&linearized_fighter(&fighter, &trim_level_flight(&fighter, 502.0))).unwrap()
+        FlightModes::from_system(&linearize_fighter_at_level_flight(
+            &fighter,
+            &trim_level_flight(&fighter, 502.0),
+        ))
+        .unwrap()
     };
-    let (stable, unstable) = (modes_with_center_of_mass(0.3), modes_with_center_of_mass(0.38));
+    let (stable, unstable) = (flight_modes_for_center_of_mass(0.3), flight_modes_for_center_of_mass(0.38));
     assert!(stable.short_period.is_some_and(|mode| mode.exponent.re < -1.0));
     assert!(stable.others.iter().all(|mode| mode.exponent.re < 0.0));
     let engine =
         stable.others.iter().find(|mode| mode.participation_of("power").is_some_and(|part| part > 0.99));
-    assert_eigenvalue(engine, -1.0, 0.0, 1e-9);
+    assert_mode_eigenvalue(engine, -1.0, 0.0, 1e-9);
     assert!(unstable.short_period.is_none());
     let growing: Vec<_> = unstable.others.iter().filter(|mode| mode.exponent.re > 0.0).collect();
     assert!(
@@ -303,11 +313,11 @@ fn centre_of_mass_determines_pitch_modes() {
     let [beta, p, r] = ACROSS;
     let bank = [0.0, 1.0, trim.v[2] / trim.v[0], 0.0];
     let published = DMatrix::from_fn(4, 4, |i, j| [beta, p, r, bank][i][j]).complex_eigenvalues();
-    let found = FlightModes::from_system(&linearized_fighter(&Fighter::F16, &trim)).unwrap();
+    let found = FlightModes::from_system(&linearize_fighter_at_level_flight(&Fighter::F16, &trim)).unwrap();
     let real =
         |from: f64, to: f64| published.iter().find(|e| e.im == 0.0 && from < e.re && e.re < to).unwrap();
     let wave = published.iter().find(|e| e.im > 0.0).unwrap();
-    assert_eigenvalue(found.dutch_roll.as_ref(), wave.re, wave.im, 1e-3);
-    assert_eigenvalue(found.roll.as_ref(), real(-5.0, -1.0).re, 0.0, 1e-3);
-    assert_eigenvalue(found.spiral.as_ref(), real(-0.1, 0.0).re, 0.0, 3e-2);
+    assert_mode_eigenvalue(found.dutch_roll.as_ref(), wave.re, wave.im, 1e-3);
+    assert_mode_eigenvalue(found.roll.as_ref(), real(-5.0, -1.0).re, 0.0, 1e-3);
+    assert_mode_eigenvalue(found.spiral.as_ref(), real(-0.1, 0.0).re, 0.0, 3e-2);
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, pose_about_x, pose_about_z};
+use crate::testing::{assert_near, pose_about_z, pose_along_and_about_x};
 use linkwork::nalgebra::Isometry3;
 use linkwork::prelude::*;
 use linkwork_models::Ur5;
@@ -13,7 +13,7 @@ fn ur5_tool_matches_denavit_hartenberg() {
     let alpha = [FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, -FRAC_PI_2, 0.0];
     let mut tool = Isometry3::identity();
     for k in 0..6 {
-        tool = tool * pose_about_z(q[k], d[k]) * pose_about_x(alpha[k], a[k]);
+        tool = tool * pose_about_z(q[k], d[k]) * pose_along_and_about_x(alpha[k], a[k]);
     }
     let base = robot.frame_placement(frame!(Ur5, "base"), &q);
     let found = base.inverse() * robot.frame_placement(frame!(Ur5, "tool0"), &q);
@@ -21,7 +21,7 @@ fn ur5_tool_matches_denavit_hartenberg() {
 }
 
 #[test]
-fn stretched_arm_weight_torques() {
+fn stretched_arm_torques_equal_weight_moments() {
     // At zero the arm is stretched out horizontally along x: the lift joint carries m₂, m₃ and the three
     // wrist bodies.
     let robot = Ur5;

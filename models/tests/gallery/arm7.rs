@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, pose_about_x, pose_about_z};
+use crate::testing::{assert_near, pose_about_z, pose_along_and_about_x};
 use linkwork::nalgebra::Isometry3;
 use linkwork::prelude::*;
 use linkwork_models::{LoadedPanda, Panda, PandaArm};
@@ -13,7 +13,7 @@ fn panda_flange_matches_denavit_hartenberg() {
     let alpha = [0.0, -1.0, 1.0, 1.0, -1.0, 1.0, 1.0].map(|sign| sign * FRAC_PI_2);
     let mut flange = Isometry3::identity();
     for k in 0..7 {
-        flange = flange * pose_about_x(alpha[k], a[k]) * pose_about_z(Q[k], d[k]);
+        flange = flange * pose_along_and_about_x(alpha[k], a[k]) * pose_about_z(Q[k], d[k]);
     }
     flange *= pose_about_z(0.0, 0.107);
     let found = PandaArm.frame_placement(frame!(PandaArm, "panda_link8"), &Q.into());

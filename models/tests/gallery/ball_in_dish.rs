@@ -7,7 +7,7 @@ const B: BallInDish = BallInDish { g: 9.81, mass: 0.2, radius: 0.03, curvature: 
 
 /// Returns a state with the ball touching a point of the dish, without rotation. The velocity of the centre
 /// is given along the dish's two tangents there, and the spin about the normal.
-fn ball_state(u: f64, w: f64, along: [f64; 2], spin: f64) -> (SVector<f64, 9>, SVector<f64, 8>) {
+fn state_of_ball_on_dish(u: f64, w: f64, along: [f64; 2], spin: f64) -> (SVector<f64, 9>, SVector<f64, 8>) {
     let (first, second) = (Vector3::new(1.0, 0.0, u / B.curvature), Vector3::new(0.0, 1.0, w / B.curvature));
     let normal = first.cross(&second).normalize();
     let foot = Vector3::new(u, w, (u * u + w * w) / (2.0 * B.curvature));
@@ -30,7 +30,7 @@ fn ball_circles_at_constant_height_in_dish() -> Result<(), Error> {
     for spin in [0.0, 40.0, -70.0] {
         let (square, linear) = (1.4 * rho * s, 0.4 * B.radius * spin * c);
         let rate = (-linear + (linear * linear + 4.0 * square * B.g * c).sqrt()) / (2.0 * square);
-        let (q, v) = ball_state(u, 0.0, [0.0, rate * rho], spin);
+        let (q, v) = state_of_ball_on_dish(u, 0.0, [0.0, rate * rho], spin);
         assert!(B.constraint_residuals(&q).amax() < 1e-16);
         assert_close(v[1], rate * u, 1e-13);
         let (_, lambda) = B.constrained_dynamics(&q, &v, &SVector::zeros());
@@ -56,7 +56,7 @@ fn ball_circles_at_constant_height_in_dish() -> Result<(), Error> {
 #[test]
 fn ball_in_dish_satisfies_newton_and_euler() {
     for (u, w, along, spin) in [(0.1, 0.15, [0.3, -0.2], 20.0), (-0.2, 0.05, [-0.5, 0.9], -35.0)] {
-        let (q, v) = ball_state(u, w, along, spin);
+        let (q, v) = state_of_ball_on_dish(u, w, along, spin);
         let a = B.forward_dynamics(&q, &v, &SVector::zeros());
         let (velocity, turning) = (Vector3::new(v[2], v[3], v[4]), Vector3::new(v[5], v[6], v[7]));
         let linear = Vector3::new(a[2], a[3], a[4]) + turning.cross(&velocity);
@@ -79,7 +79,7 @@ fn ball_in_dish_satisfies_newton_and_euler() {
 
 #[test]
 fn ball_in_dish_conserves_energy() -> Result<(), Error> {
-    let (q, v) = ball_state(0.2, -0.1, [0.4, 0.7], 30.0);
+    let (q, v) = state_of_ball_on_dish(0.2, -0.1, [0.4, 0.7], 30.0);
     let total_energy = |q: &_, v: &_| B.kinetic_energy(q, v) + B.potential_energy(q);
     let run = simulate(&B).from(q, v).method(precise_integrator()).duration(3.0).sample_every(0.25);
     let (mut lowest, mut highest) = (q[4], q[4]);

@@ -7,7 +7,12 @@ const B: BallInFunnel = BallInFunnel { g: 9.81, mass: 0.1, radius: 0.02, half_an
 
 /// Returns a state at the distance `rho` from the axis, towards x, without rotation. The ball moves along the
 /// funnel at `sinking` and around it at `rate`, with a spin about the normal.
-fn ball_state(rho: f64, rate: f64, sinking: f64, spin: f64) -> (SVector<f64, 7>, SVector<f64, 6>) {
+fn state_of_ball_on_funnel(
+    rho: f64,
+    rate: f64,
+    sinking: f64,
+    spin: f64,
+) -> (SVector<f64, 7>, SVector<f64, 6>) {
     let (s, c) = B.half_angle.sin_cos();
     let (normal, along) = (Vector3::new(-c, 0.0, s), Vector3::new(s, 0.0, c));
     let velocity = along * sinking + Vector3::y() * (rate * rho);
@@ -25,7 +30,7 @@ fn ball_circles_at_constant_height_in_funnel() -> Result<(), Error> {
     for spin in [0.0, 60.0, -25.0] {
         let (square, linear) = (1.4 * rho * s, 0.4 * B.radius * spin * c);
         let rate = (-linear + (linear * linear + 4.0 * square * B.g * c).sqrt()) / (2.0 * square);
-        let (q, v) = ball_state(rho, rate, 0.0, spin);
+        let (q, v) = state_of_ball_on_funnel(rho, rate, 0.0, spin);
         assert!(B.constraint_residuals(&q).amax() < 1e-16);
         assert!(B.constraint_rates(&q, &v).amax() < 1e-14);
         let (_, lambda) = B.constrained_dynamics(&q, &v, &SVector::zeros());
@@ -54,7 +59,7 @@ fn ball_in_funnel_conserves_integrals() -> Result<(), Error> {
         let spin = w.dot(&normal) - momentum / rho * c / (B.radius * s);
         SVector::from([momentum, spin, B.kinetic_energy(q, v) + B.potential_energy(q)])
     };
-    let (q, v) = ball_state(0.2, 5.0, -0.6, 30.0);
+    let (q, v) = state_of_ball_on_funnel(0.2, 5.0, -0.6, 30.0);
     let run = simulate(&B).from(q, v).method(precise_integrator()).duration(1.5).sample_every(0.1);
     let mut lowest = q[2];
     for sample in run {

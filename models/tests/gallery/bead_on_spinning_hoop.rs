@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 const H: BeadOnSpinningHoop = BeadOnSpinningHoop { g: 9.81, mass: 0.3, radius: 0.4, spin: 8.0 };
 
 #[test]
-fn bead_on_hoop_equation_of_motion() {
+fn bead_on_hoop_has_textbook_equation() {
     let mr2 = H.mass * H.radius * H.radius;
     for (t, theta, rate) in [(0.0, 0.4_f64, 1.0), (3.7, -2.2, 0.6)] {
         let (q, v) = (SVector::from([theta]), SVector::from([rate]));

@@ -174,7 +174,7 @@ fn bicycle_matches_published_eigenvalues() {
 }
 
 #[test]
-fn bicycle_weave_and_capsize_speeds() {
+fn bicycle_has_published_weave_and_capsize_speeds() {
     let largest_growth_rate = |speed: f64, weaving: bool| {
         let exponents = linearized_bicycle(speed).0.complex_eigenvalues();
         let of = exponents.iter().filter(|e| (e.im.abs() > 1e-6) == weaving).map(|e| e.re);

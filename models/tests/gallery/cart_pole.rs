@@ -3,7 +3,7 @@ use linkwork::prelude::*;
 use linkwork_models::CartPole;
 
 #[test]
-fn cart_pole_mass_matrix_and_bias_forces() {
+fn cart_pole_mass_matrix_and_bias_match_formulas() {
     let p = CartPole { cart_mass: 1.3, pole_mass: 0.4, pole_length: 0.9, rail_damping: 0.2 };
     let (q, v) = (SVector::from([0.5, 0.8]), SVector::from([-1.2, 2.3]));
     let half = 0.4 * 0.9 / 2.0;

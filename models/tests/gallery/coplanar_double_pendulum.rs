@@ -23,7 +23,7 @@ fn double_pendulum_matches_its_lagrangian() {
 
 /// Checks that a small deflection in a mode shape has an acceleration in the same shape.
 #[test]
-fn double_pendulum_normal_modes() {
+fn mode_shape_acceleration_has_the_same_shape() {
     let equal = CoplanarDoublePendulum { l2: P.l1, ..P };
     let (sum, l) = (P.m1 + P.m2, P.l1);
     for sign in [-1.0, 1.0] {

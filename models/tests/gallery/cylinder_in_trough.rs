@@ -5,7 +5,7 @@ use linkwork_models::CylinderInTrough;
 const C: CylinderInTrough = CylinderInTrough { g: 9.81, mass: 1.7, radius: 0.1, width: 0.25, trough: 0.6 };
 
 #[test]
-fn cylinder_in_trough_equation_of_motion() {
+fn cylinder_in_trough_matches_closed_form() {
     let (phi, rate) = (0.8_f64, 2.1);
     let (q, v) = (SVector::from([phi]), SVector::from([rate]));
     assert_near(C.mass_matrix(&q), SMatrix::<f64, 1, 1>::new(1.5 * 1.7 * 0.25), 1e-15);

@@ -37,7 +37,7 @@ fn servo_system_matrix(linear: &LinearMotion<f64, 5, 1>) -> SMatrix<f64, 6, 6> {
 }
 
 #[test]
-fn servo_characteristic_polynomial() {
+fn servo_has_the_expected_characteristic_polynomial() {
     let v = [0.3, 0.01, -0.1, 0.02, 0.04].into();
     assert_derivatives(&S.extended(), &[0.1].into(), &v, &[0.05].into(), 1e-6);
     let a = servo_system_matrix(&linear_servo_motion(&v, 0.0)).map(|x| Complex::new(x, 0.0));

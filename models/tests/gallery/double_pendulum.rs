@@ -3,7 +3,7 @@ use linkwork::prelude::*;
 use linkwork_models::DoublePendulum;
 
 #[test]
-fn double_pendulum_mass_and_bias() {
+fn double_pendulum_mass_and_bias_match_formulas() {
     let DoublePendulum { g, m1, m2, l1, l2 } = DoublePendulum { g: 9.81, m1: 1.2, m2: 0.7, l1: 0.9, l2: 0.6 };
     let p = DoublePendulum { g, m1, m2, l1, l2 };
     for (a, b, da, db) in [(0.4, -1.1, 2.0, -0.5), (2.9, 1.3, -0.7, 3.1)] {

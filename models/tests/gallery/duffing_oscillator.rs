@@ -7,7 +7,7 @@ const D: DuffingOscillator =
     DuffingOscillator { mass: 0.7, damping: 0.2, alpha: 3.0, beta: 5.0, drive: 1.5, frequency: 2.1 };
 
 #[test]
-fn duffing_equation_of_motion() {
+fn duffing_oscillator_has_duffings_equation() {
     let (t, x, dx) = (0.8, 0.6, -1.1);
     let (q, v) = (SVector::from([x]), SVector::from([dx]));
     let h = 0.2 * dx + 3.0 * x + 5.0 * x * x * x - 1.5 * f64::cos(2.1 * t);

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 const P: ElasticPendulum = ElasticPendulum { g: 9.81, mass: 0.5, stiffness: 40.0, free_length: 0.8 };
 
 #[test]
-fn elastic_pendulum_equations_of_motion() {
+fn elastic_pendulum_has_textbook_equations() {
     let (r, theta, dr, dtheta) = (0.9, 0.7_f64, -0.4, 1.3);
     let (q, v) = (SVector::from([r, theta]), SVector::from([dr, dtheta]));
     let ElasticPendulum { g, mass: m, stiffness: k, free_length: l } = P;
@@ -29,7 +29,7 @@ fn elastic_pendulum_bounces_harmonically() -> Result<(), Error> {
 }
 
 #[test]
-fn elastic_pendulum_period_of_small_swings() -> Result<(), Error> {
+fn small_swings_of_elastic_pendulum_have_pendulum_period() -> Result<(), Error> {
     let rest = P.free_length + P.mass * P.g / P.stiffness;
     let end = simulate(&P)
         .from([rest, 1e-4], [0.0, 0.0])

@@ -27,7 +27,7 @@ fn closed_form_positions(left: f64, right: f64) -> [Vector2<f64>; 3] {
     [first, second, first + half + Vector2::new(-half.y, half.x).normalize() * height]
 }
 
-fn linkage_state(left: f64, right: f64) -> SVector<f64, 4> {
+fn linkage_configuration(left: f64, right: f64) -> SVector<f64, 4> {
     let [first, second, tool] = closed_form_positions(left, right);
     let angle_to_tool = |from: Vector2<f64>| (tool.y - from.y).atan2(tool.x - from.x);
     [left, angle_to_tool(first) - left, right, angle_to_tool(second) - right].into()
@@ -48,7 +48,7 @@ fn tool_jacobian(left: f64, right: f64) -> Matrix2<f64> {
 fn five_bar_tool_is_at_circle_intersection() {
     assert_eq!((FiveBar::NC, FiveBar::NP, FiveBar::NU), (2, 2, 2));
     for (left, right) in [(2.0, 0.9), (2.4, 0.3), (1.6, 1.2)] {
-        let q = linkage_state(left, right);
+        let q = linkage_configuration(left, right);
         let guess = [left, 0.7 - left, right, 2.2 - right].into();
         assert_near(R.assemble(&guess, &[0, 2]).expect("the circles meet"), q, 1e-12);
         let [.., tool] = closed_form_positions(left, right);
@@ -60,9 +60,9 @@ fn five_bar_tool_is_at_circle_intersection() {
 /// Checks that torques from virtual work hold the linkage at rest, and that additional torque accelerates it
 /// by its reduced inertia in the two crank angles.
 #[test]
-fn five_bar_statics_and_reduced_inertia() {
+fn five_bar_torques_match_virtual_work_and_reduced_inertia() {
     let (left, right) = (2.0, 0.9);
-    let q = linkage_state(left, right);
+    let q = linkage_configuration(left, right);
     let tool = tool_jacobian(left, right);
     let zero = SVector::zeros();
     let [first, second, at] = closed_form_positions(left, right);

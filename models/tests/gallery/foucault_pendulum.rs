@@ -14,7 +14,7 @@ fn position_of_bob(q: &SVector<f64, 2>) -> SVector<f64, 3> {
 }
 
 #[test]
-fn foucault_coriolis_forces() {
+fn foucault_pendulum_feels_coriolis_force() {
     // x = −l b and y = l a; a faster earth makes the Coriolis force visible, terms in Ω² are neglected.
     let fast = FoucaultPendulum { earth_rate: 1e-4, ..P };
     let vertical = 1e-4 * P.latitude.sin();

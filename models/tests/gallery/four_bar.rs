@@ -6,7 +6,7 @@ use linkwork_models::FourBar;
 const L: FourBar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
 
 /// Returns the configuration in the open assembly mode with a given crank angle.
-fn configuration_of_crank(input: f64) -> SVector<f64, 3> {
+fn configuration_at_crank_angle(input: f64) -> SVector<f64, 3> {
     L.assemble(&[input, 0.9 - input, 1.8].into(), &[0]).expect("the crank goes all the way round")
 }
 
@@ -16,7 +16,7 @@ fn four_bar_satisfies_freudensteins_equation() {
     assert_eq!((FourBar::NC, FourBar::NP, FourBar::NS), (2, 1, 1));
     let FourBar { a, b, c, d, .. } = L;
     for k in 0..24 {
-        let q = configuration_of_crank(f64::from(k) * std::f64::consts::PI / 12.0);
+        let q = configuration_at_crank_angle(f64::from(k) * std::f64::consts::PI / 12.0);
         let (crank, coupler, rocker) = (q[0], q[0] + q[1], q[2]);
         let constant = (a * a - b * b + c * c + d * d) / (2.0 * a * c);
         let cosine = d / a * rocker.cos() - d / c * crank.cos() + constant;
@@ -31,9 +31,9 @@ fn four_bar_satisfies_freudensteins_equation() {
 
 /// Checks that at rest the motor torque equals the derivative of the potential energy, by virtual work.
 #[test]
-fn four_bar_holding_torque() {
+fn four_bar_holding_torque_equals_energy_derivative() {
     let FourBar { g, density, a, b, c, .. } = L;
-    let q = configuration_of_crank(0.7);
+    let q = configuration_at_crank_angle(0.7);
     let v = L.project_velocity(&q, &[1.0, 0.0, 0.0].into()).expect("no dead centre");
     let rates = [q[0].cos(), (q[0] + q[1]).cos() * (v[0] + v[1]) / v[0], q[2].cos() * v[2] / v[0]];
     let lift = density * a * a / 2.0 * rates[0]
@@ -48,8 +48,8 @@ fn total_energy(q: &SVector<f64, 3>, v: &SVector<f64, 3>) -> f64 {
     L.kinetic_energy(q, v) + L.potential_energy(q)
 }
 
-fn start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
-    let q = configuration_of_crank(0.7);
+fn four_bar_start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let q = configuration_at_crank_angle(0.7);
     (q, L.project_velocity(&q, &[12.0, 0.0, 0.0].into()).expect("no dead centre"))
 }
 
@@ -57,7 +57,7 @@ fn start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
 /// constraints.
 #[test]
 fn four_bar_integration_has_order_four() -> Result<(), Error> {
-    let (q, v) = start_state();
+    let (q, v) = four_bar_start_state();
     let exact = simulate(&L).from(q, v).method(precise_integrator()).duration(1.0).finish()?;
     assert_close(total_energy(&exact.q, &exact.v), total_energy(&q, &v), 1e-10);
     let errors_with_step = |h: f64| -> Result<[f64; 2], Error> {

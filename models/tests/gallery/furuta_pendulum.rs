@@ -14,7 +14,7 @@ fn closed_form_mass_matrix(theta: f64) -> SMatrix<f64, 2, 2> {
 }
 
 #[test]
-fn furuta_mass_matrix_and_bias_forces() {
+fn furuta_mass_matrix_and_bias_forces_match_closed_form() {
     let FurutaPendulum { g, arm_length: r, mass: m, length: l, .. } = P;
     let (theta, dphi, dtheta) = (0.8_f64, 2.1, -1.4);
     let (q, v) = (SVector::from([0.5, theta]), SVector::from([dphi, dtheta]));
@@ -26,7 +26,7 @@ fn furuta_mass_matrix_and_bias_forces() {
 }
 
 #[test]
-fn furuta_small_swings_with_free_arm() -> Result<(), Error> {
+fn furuta_pendulum_has_small_swing_frequency_with_free_arm() -> Result<(), Error> {
     let m = closed_form_mass_matrix(0.0);
     let frequency = (P.mass * P.g * P.length / 2.0 * m[(0, 0)] / m.determinant()).sqrt();
     let end = simulate(&P)

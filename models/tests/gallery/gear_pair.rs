@@ -6,7 +6,7 @@ const G: GearPair =
     GearPair { small_inertia: 2e-4, large_inertia: 3e-3, small_radius: 0.02, large_radius: 0.05 };
 
 #[test]
-fn gear_pair_reduced_inertia_and_tooth_force() {
+fn gear_pair_has_reduced_inertia_and_tooth_force() {
     assert_eq!((GearPair::NC, GearPair::NP), (1, 1));
     let ratio: f64 = 0.4;
     let torque = 0.3;

@@ -37,15 +37,15 @@ fn gear_teeth_lose_a_fraction_of_load() {
 }
 
 #[test]
-fn gear_efficiencies_in_both_directions() {
-    let power_ratio = |drive: f64, torque: f64, direction: f64| {
+fn gear_efficiencies_hold_in_both_directions() {
+    let input_and_output_power = |drive: f64, torque: f64, direction: f64| {
         let a = geared_accelerations(torque, direction, drive);
         assert_close(a[0] * 2e-5, 0.0, 1e-12);
         (drive * 80.0 * direction, torque * direction)
     };
-    let (motor, link) = power_ratio(50.0 * 1.25 / 80.0, 50.0, 1.0);
+    let (motor, link) = input_and_output_power(50.0 * 1.25 / 80.0, 50.0, 1.0);
     assert_close(link / motor, 1.0 / 1.25, 1e-12);
-    let (motor, link) = power_ratio(50.0 * 0.75 / 80.0, 50.0, -1.0);
+    let (motor, link) = input_and_output_power(50.0 * 0.75 / 80.0, 50.0, -1.0);
     assert_close(motor / link, 0.75, 1e-12);
 }
 

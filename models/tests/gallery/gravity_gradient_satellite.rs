@@ -8,14 +8,14 @@ use std::f64::consts::TAU;
 const S: GravityGradientSatellite =
     GravityGradientSatellite { mu: 3.986004418e14, mass: 50.0, ixx: 5.0, iyy: 90.0, izz: 92.0 };
 
-fn satellite_configuration(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
+fn configuration_from_attitude(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
     SVector::from([r.x, r.y, r.z, turn.i, turn.j, turn.k, turn.w])
 }
 
 #[test]
-fn gravity_gradient_force_and_torque() {
+fn gravity_gradient_force_and_torque_match_theory() {
     let (r, turn) = (Vector3::new(4.1e6, -5.2e6, 1.7e6), UnitQuaternion::from_euler_angles(0.4, -0.8, 1.9));
-    let h = S.bias_forces(&satellite_configuration(r, turn), &SVector::zeros());
+    let h = S.bias_forces(&configuration_from_attitude(r, turn), &SVector::zeros());
     let own = turn.inverse() * r;
     let (distance, n) = (own.norm(), own.normalize());
     let weight = S.mu * S.mass / distance.powi(2) * n;
@@ -28,7 +28,7 @@ fn gravity_gradient_force_and_torque() {
 }
 
 #[test]
-fn satellite_pitch_oscillation() -> Result<(), Error> {
+fn satellite_pitch_oscillates_at_textbook_frequency() -> Result<(), Error> {
     let frequency = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
     check_pitch(S, TAU / frequency, |t| (frequency * t).cos())
 }
@@ -68,7 +68,7 @@ fn check_pitch(
         (q[0] * x.y - q[1] * x.x) / q[0].hypot(q[1])
     };
     let run = simulate(&unit)
-        .from(satellite_configuration(Vector3::x(), start), [v.x, v.y, v.z, 0.0, 0.0, 1.0])
+        .from(configuration_from_attitude(Vector3::x(), start), [v.x, v.y, v.z, 0.0, 0.0, 1.0])
         .method(precise_integrator())
         .duration(duration);
     for sample in run.sample_every(duration / 8.0) {

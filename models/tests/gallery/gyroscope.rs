@@ -5,7 +5,7 @@ use linkwork_models::Gyroscope;
 const G: Gyroscope = Gyroscope { g: 9.81, mass: 0.5, offset: 0.08, axial: 0.002, transverse: 0.0013 };
 
 #[test]
-fn gyroscope_steady_precession() {
+fn gyroscope_precesses_steadily() {
     let across = G.transverse + G.mass * G.offset * G.offset;
     let (theta, rate) = (0.6_f64, 2.5_f64);
     let total = (across * rate * rate * theta.cos() + G.mass * G.g * G.offset) / (G.axial * rate);
@@ -15,7 +15,7 @@ fn gyroscope_steady_precession() {
 }
 
 #[test]
-fn gyroscope_mass_matrix() {
+fn gyroscope_has_textbook_mass_matrix() {
     let across = G.transverse + G.mass * G.offset * G.offset;
     let (s, c) = 0.7_f64.sin_cos();
     let m = G.mass_matrix(&SVector::from([0.4, 0.7, 2.0]));
@@ -35,7 +35,7 @@ fn gyroscope_mass_matrix() {
 }
 
 #[test]
-fn gyroscope_velocity_by_euler_angles() {
+fn gyroscope_velocity_follows_euler_angle_rates() {
     let (theta, [precession, nutation, spin]) = (0.7_f64, [1.3, -0.4, 20.0]);
     let found = G.rotor_rate(&[0.2, theta, 2.0].into(), &[precession, nutation, spin].into());
     let expected = [nutation, precession * theta.sin(), spin + precession * theta.cos()];

@@ -28,7 +28,7 @@ fn heavy_top_satisfies_eulers_equations() {
 /// Checks that slow and fast steady precession exist for the same spin: the inclination of the axis is
 /// constant, and it precesses at the predicted rate.
 #[test]
-fn heavy_top_steady_precession() -> Result<(), Error> {
+fn heavy_top_precesses_steadily_at_two_rates() -> Result<(), Error> {
     let (theta, spin) = (0.5_f64, 150.0);
     let (a, b, c) =
         (transverse_inertia_at_pivot() * theta.cos(), TOP.axial * spin, TOP.mass * TOP.g * TOP.height);

@@ -6,7 +6,7 @@ const R: JeffcottRotor =
     JeffcottRotor { spin: 90.0, mass: 2.0, eccentricity: 1e-3, stiffness: 8000.0, damping: 20.0 };
 
 #[test]
-fn jeffcott_rotor_equations_of_motion() {
+fn jeffcott_rotor_has_closed_form_equations() {
     let (t, q, v) = (0.4, SVector::from([0.002, -0.001]), SVector::from([0.1, 0.3]));
     assert_near(R.mass_matrix(t, &q), SMatrix::<f64, 2, 2>::identity() * 2.0, 1e-15);
     let turned = R.spin * t;
@@ -16,7 +16,7 @@ fn jeffcott_rotor_equations_of_motion() {
 }
 
 #[test]
-fn jeffcott_whirl_around_critical_speed() -> Result<(), Error> {
+fn jeffcott_rotor_has_closed_form_whirl() -> Result<(), Error> {
     for spin in [30.0, 63.0, 200.0, 2000.0] {
         let rotor = JeffcottRotor { spin, ..R };
         let ratio = spin * (R.mass / R.stiffness).sqrt();

@@ -7,7 +7,7 @@ const P: KapitzaPendulum =
     KapitzaPendulum { g: 9.81, mass: 0.2, length: 0.5, amplitude: 0.01, frequency: 1000.0 };
 
 #[test]
-fn kapitza_equation_of_motion() {
+fn kapitza_pendulum_has_textbook_equation() {
     let (t, theta, rate) = (0.0023, 0.9_f64, -1.7);
     let shaken = P.g - P.amplitude * P.frequency * P.frequency * (P.frequency * t).cos();
     let ml = P.mass * P.length;

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 const N: NutOnScrew = NutOnScrew { g: 9.81, mass: 0.6, radius: 0.03, pitch: 0.008 };
 
 #[test]
-fn nut_on_screw_equation_of_motion() {
+fn nut_on_screw_acceleration_has_closed_form() {
     let p = N.pitch;
     let inertia = N.mass * N.radius * N.radius / 2.0 + N.mass * p * p;
     let tau = N.inverse_dynamics(&[1.2].into(), &[3.0].into(), &[0.7].into());

@@ -12,7 +12,7 @@ const P: PendulumOnCollar = PendulumOnCollar {
 };
 
 #[test]
-fn pendulum_on_collar_mass_and_energy() {
+fn pendulum_on_collar_has_textbook_mass_and_energy() {
     let (s, theta) = (0.04, 0.7_f64);
     let q = SVector::from([s, 1.9, theta]);
     let ml = P.mass * P.length;
@@ -28,7 +28,7 @@ fn pendulum_on_collar_mass_and_energy() {
 }
 
 #[test]
-fn pendulum_on_collar_steady_rotation() {
+fn pendulum_on_collar_rotates_steadily() {
     let rate = 9.0;
     let theta = (P.g / (P.length * rate * rate)).acos();
     let sag = -1.3 * P.g / P.stiffness;
@@ -37,7 +37,7 @@ fn pendulum_on_collar_steady_rotation() {
 }
 
 #[test]
-fn pendulum_on_collar_conserved_quantities() -> Result<(), Error> {
+fn pendulum_on_collar_conserves_energy_and_momentum() -> Result<(), Error> {
     let total_energy = |s: &Sample<f64, 3, 3, 0>| P.kinetic_energy(&s.q, &s.v) + P.potential_energy(&s.q);
     let angular_momentum = |s: &Sample<f64, 3, 3, 0>| P.generalized_momentum(&s.q, &s.v)[1];
     let mut start = None;

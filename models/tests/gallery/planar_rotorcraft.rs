@@ -5,7 +5,7 @@ use linkwork_models::PlanarRotorcraft;
 const R: PlanarRotorcraft = PlanarRotorcraft { g: 9.81, mass: 0.5, inertia: 0.003, arm: 0.17 };
 
 #[test]
-fn planar_rotorcraft_equations_of_motion() {
+fn planar_rotorcraft_accelerations_match_closed_form() {
     let theta = 0.4_f64;
     let (q, v) = (SVector::from([1.0, 2.0, theta]), SVector::from([0.5, -0.3, 1.2]));
     let tau = R.generalized_forces(&q, &SVector::from([2.0, 3.1]));

@@ -33,7 +33,7 @@ fn anymal_falls_freely() {
 }
 
 #[test]
-fn foot_position_of_quadruped_leg() {
+fn quadruped_foot_is_at_hand_computed_position() {
     let robot = Solo12;
     let mut q = robot.neutral();
     let (alpha, beta) = (0.6_f64, -1.3_f64);

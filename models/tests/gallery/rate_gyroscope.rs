@@ -6,7 +6,7 @@ const G: RateGyroscope =
     RateGyroscope { rate: 0.4, axial: 2e-4, transverse: 1.2e-4, stiffness: 0.5, damping: 0.01 };
 
 #[test]
-fn rate_gyroscope_equations_of_motion() {
+fn rate_gyroscope_has_textbook_equations() {
     let (theta, dtheta, spin) = (0.3_f64, -0.7, 900.0);
     let (q, v) = (SVector::from([theta, 1.1]), SVector::from([dtheta, spin]));
     let (s, c) = theta.sin_cos();

@@ -6,7 +6,7 @@ const A: RemotelyDrivenArm =
     RemotelyDrivenArm { g: 9.81, m1: 2.0, m2: 1.3, l1: 0.6, l2: 0.5, rotor: 3e-5, ratio: 60.0 };
 
 #[test]
-fn remote_drive_mass_matrix_and_bias_forces() {
+fn remote_drive_has_textbook_dynamics() {
     let RemotelyDrivenArm { g, m1, m2, l1, l2, rotor, ratio } = A;
     let (p1, p2, d1, d2) = (0.4_f64, 1.5_f64, 2.0, -0.8);
     let (q, v) = (SVector::from([p1, p2]), SVector::from([d1, d2]));

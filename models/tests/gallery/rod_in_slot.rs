@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 const R: RodInSlot = RodInSlot { g: 9.81, mass: 0.9, length: 0.7 };
 
 #[test]
-fn rod_in_slot_mass_matrix_and_bias_forces() {
+fn rod_in_slot_has_textbook_dynamics() {
     let RodInSlot { g, mass: m, length: l } = R;
     let (theta, rate) = (0.6_f64, 1.9);
     let (q, v) = (SVector::from([0.4, theta]), SVector::from([-0.3, rate]));
@@ -31,7 +31,7 @@ fn rod_in_slot_falls_straight_down() -> Result<(), Error> {
 }
 
 #[test]
-fn rod_in_slot_period_of_small_swings() -> Result<(), Error> {
+fn small_swings_of_rod_have_linear_period() -> Result<(), Error> {
     let end = simulate(&R)
         .from([0.0, 1e-4], [0.0, 0.0])
         .method(precise_integrator())

@@ -3,7 +3,7 @@ use linkwork::prelude::*;
 use linkwork_models::RollerOnIncline;
 
 #[test]
-fn roller_accelerations_and_contact_forces() {
+fn roller_has_textbook_accelerations_and_forces() {
     assert_eq!((RollerOnIncline::NC, RollerOnIncline::NH, RollerOnIncline::NS), (2, 1, 1));
     for (shape, part) in [(0.4, 5.0 / 7.0), (0.5, 2.0 / 3.0), (1.0, 0.5)] {
         let (g, mass, slope) = (9.81, 0.8, 0.35_f64);

@@ -61,7 +61,7 @@ fn rolling_cone_swings_about_its_apex() -> Result<(), Error> {
 /// Checks Euler's equation about the apex of a cone that rolls on a level plane: the moments of normal force
 /// and weight together change the angular momentum.
 #[test]
-fn cone_normal_force_along_contact_line() {
+fn cone_normal_force_satisfies_eulers_equation() {
     let c = RollingCone { slope: 0.0, ..C };
     let (sine, cosine) = c.half_angle.sin_cos();
     let radius = c.height * c.half_angle.tan();

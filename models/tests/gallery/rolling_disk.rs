@@ -14,7 +14,7 @@ fn leaning_state(lean: f64, u: [f64; 3]) -> (SVector<f64, 6>, SVector<f64, 6>) {
 }
 
 #[test]
-fn rolling_disk_accelerations() {
+fn rolling_disk_accelerations_match_closed_form() {
     assert_eq!((RollingDisk::NC, RollingDisk::NH, RollingDisk::NP, RollingDisk::NS), (3, 1, 5, 3));
     let (lean, u): (f64, _) = (0.35, [0.7, -3.0, 1.3]);
     let (q, v) = leaning_state(lean, u);
@@ -35,7 +35,7 @@ fn rolling_disk_accelerations() {
 /// Checks the stability of a rolling disk. Below the critical speed one exponent is positive; above it small
 /// leans oscillate. The other exponents are zero.
 #[test]
-fn rolling_disk_stability_of_straight_motion() {
+fn rolling_disk_is_stable_above_critical_speed() {
     let critical = (D.g * D.radius / 3.0).sqrt();
     for speed in [0.3 * critical, 0.99 * critical, 1.01 * critical, 3.0 * critical] {
         let (q, v) = leaning_state(0.0, [0.0, speed / D.radius, 0.0]);

@@ -13,7 +13,7 @@ const S: SeriesElasticJoint = SeriesElasticJoint {
 };
 
 #[test]
-fn series_elastic_equations_of_motion() {
+fn series_elastic_accelerations_have_closed_form() {
     let (q, v, drive) = ([0.7, 0.5].into(), [1.0, -0.5].into(), 3.0);
     let torque = 120.0 * 0.2 + 0.4 * 1.5;
     assert_close(S.torque(&q, &v), torque, 1e-13);
@@ -25,7 +25,7 @@ fn series_elastic_equations_of_motion() {
 
 /// Checks the transfer function from motor torque to spring torque, for a heavy link that is at rest.
 #[test]
-fn series_elastic_torque_transfer_function() {
+fn spring_torque_transfer_function_matches_closed_form() {
     let fixed = SeriesElasticJoint { mass: 1e12, g: 0.0, ..S };
     let linear = fixed.linear_motion(&[0.0; 2].into(), &[0.0; 2].into(), &[0.0].into());
     for omega in [3.0, 49.0, 300.0] {

@@ -5,7 +5,7 @@ use linkwork_models::ShaftWithSlider;
 const S: ShaftWithSlider = ShaftWithSlider { inertia: 0.4, mass: 0.7 };
 
 #[test]
-fn shaft_with_slider_equations_of_motion() {
+fn shaft_with_slider_has_textbook_equations() {
     let (q, v) = (SVector::from([1.1, 0.6]), SVector::from([2.0, -0.5]));
     let mass = SMatrix::<f64, 2, 2>::new(0.4 + 0.7 * 0.36, 0.0, 0.0, 0.7);
     assert_near(S.mass_matrix(&q), mass, 1e-15);

@@ -5,11 +5,11 @@ use linkwork_models::SliderCrank;
 const S: SliderCrank = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
 
 /// Function of the crank angle, as its value with the first and second derivative.
-type CrankFunction = [f64; 3];
+type ValueWithCrankDerivatives = [f64; 3];
 
 /// Returns the closed forms of the rod's angle, x and y of its centre, and the position of the piston, as
 /// functions of the crank angle.
-fn closed_form_positions(theta: f64) -> [CrankFunction; 4] {
+fn closed_form_positions(theta: f64) -> [ValueWithCrankDerivatives; 4] {
     let SliderCrank { r, l, .. } = S;
     let (s, c) = theta.sin_cos();
     let phi = (-r / l * s).asin();
@@ -46,14 +46,15 @@ fn piston_position_matches_closed_form() {
 /// Checks that the acceleration follows from Eksergian's equation, and that the power of the motor is the
 /// rate of the energy.
 #[test]
-fn slider_crank_reduced_inertia() {
+fn slider_crank_follows_eksergians_equation() {
     let SliderCrank { g, r, l, m_crank, m_rod, m_piston } = S;
     let (theta, rate, torque) = (0.8, 120.0, 7.0);
     let courses = closed_form_positions(theta);
     let [rod, x, y, piston] = courses;
     let masses = [m_rod * l * l / 12.0, m_rod, m_rod, m_piston];
-    let sum_over_masses =
-        |f: fn(&CrankFunction) -> f64| masses.iter().zip(&courses).map(|(m, c)| m * f(c)).sum::<f64>();
+    let sum_over_masses = |f: fn(&ValueWithCrankDerivatives) -> f64| {
+        masses.iter().zip(&courses).map(|(m, c)| m * f(c)).sum::<f64>()
+    };
     let inertia = m_crank * r * r / 3.0 + sum_over_masses(|c| c[1] * c[1]);
     let lift = g * (m_crank * r / 2.0 * theta.cos() + m_rod * y[1]);
     let expected = (torque - sum_over_masses(|c| c[1] * c[2]) * rate * rate - lift) / inertia;
@@ -61,10 +62,10 @@ fn slider_crank_reduced_inertia() {
     let (q, v) = crank_state(theta, rate);
     assert_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
     let a = S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[torque].into()));
-    let acceleration_of_course = |c: &CrankFunction| c[1] * expected + c[2] * rate * rate;
+    let crank_function_acceleration = |c: &ValueWithCrankDerivatives| c[1] * expected + c[2] * rate * rate;
     assert_near(
         a,
-        [expected, acceleration_of_course(&rod) - expected, acceleration_of_course(&piston)].into(),
+        [expected, crank_function_acceleration(&rod) - expected, crank_function_acceleration(&piston)].into(),
         1e-12,
     );
     assert_close(x[0], r * theta.cos() + l / 2.0 * rod[0].cos(), 1e-15);

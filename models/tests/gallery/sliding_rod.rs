@@ -6,30 +6,30 @@ const R: SlidingRod = SlidingRod { g: 9.81, mass: 0.3, half: 0.5, radius: 0.01, 
 
 /// Returns a state of the rod with this angle, slip velocity of its end and angular velocity.
 fn rod_state(angle: f64, slip: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
-    let [c, d] = contact_arm(angle);
+    let [c, d] = contact_relative_to_centre(angle);
     ([0.0, -d, angle].into(), [slip + rate * d, -rate * c, rate].into())
 }
 
 /// Returns the position of the rod's contact point relative to its centre.
-fn contact_arm(angle: f64) -> [f64; 2] {
+fn contact_relative_to_centre(angle: f64) -> [f64; 2] {
     [-R.half * angle.cos(), -R.half * angle.sin() - R.radius]
 }
 
 /// Returns the normal acceleration of the rod's end per normal force, `1/m + c²/J + μ σ c d / J`.
 fn acceleration_per_normal_force(rod: &SlidingRod, angle: f64, slip: f64) -> f64 {
-    let ([c, d], inertia) = (contact_arm(angle), rod.mass * rod.half * rod.half / 3.0);
+    let ([c, d], inertia) = (contact_relative_to_centre(angle), rod.mass * rod.half * rod.half / 3.0);
     let part = slip / slip.hypot(1e-3);
     1.0 / rod.mass + c * c / inertia + rod.friction * part * c * d / inertia
 }
 
 #[test]
-fn sliding_rod_normal_force() {
+fn sliding_rod_has_closed_form_normal_force() {
     assert_eq!((SlidingRod::NC, SlidingRod::NS), (1, 2));
     for (slip, rate) in [(0.7, 0.0), (-0.7, 0.5), (1e-3, -0.8), (0.0, 0.0)] {
         let (q, v) = rod_state(0.6, slip, rate);
         assert!(R.constraint_residuals(&q).amax() < 1e-16 && R.constraint_rates(&q, &v).amax() < 1e-16);
         let (a, lambda) = R.try_constrained_dynamics(&q, &v, &SVector::zeros()).expect("it slides");
-        let [c, d] = contact_arm(0.6);
+        let [c, d] = contact_relative_to_centre(0.6);
         // The centre of the end moves on a circle about the rod's centre.
         let normal =
             (R.g - R.half * 0.6_f64.sin() * rate * rate) / acceleration_per_normal_force(&R, 0.6, slip);

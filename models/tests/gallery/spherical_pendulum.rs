@@ -5,7 +5,7 @@ use linkwork_models::SphericalPendulum;
 const P: SphericalPendulum = SphericalPendulum { g: 9.81, mass: 0.6, length: 1.2 };
 
 #[test]
-fn spherical_pendulum_equations_of_motion() {
+fn spherical_pendulum_has_closed_form_equations() {
     let (a, b, da, db) = (0.7_f64, -1.1_f64, 1.3, 0.8);
     let (q, v) = (SVector::from([a, b]), SVector::from([da, db]));
     let ml2 = P.mass * P.length * P.length;
@@ -18,7 +18,7 @@ fn spherical_pendulum_equations_of_motion() {
 }
 
 #[test]
-fn spherical_pendulum_conical_motion() -> Result<(), Error> {
+fn spherical_pendulum_moves_on_a_cone() -> Result<(), Error> {
     // Start in the (y, z) plane at the inclination α, a = α, b = 0, moving along −x: ḃ = ω sin α.
     let alpha = 0.9_f64;
     let period = 2.0 * std::f64::consts::PI * (P.length * alpha.cos() / P.g).sqrt();

@@ -14,7 +14,7 @@ fn vibration_mode(j: usize) -> (f64, f64, SVector<f64, 3>) {
 }
 
 #[test]
-fn spring_chain_equations_of_motion() {
+fn spring_chain_has_linear_equations_of_motion() {
     let k = SMatrix::<f64, 3, 3>::new(2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 1.0);
     let (q, v) = (SVector::from([0.1, -0.3, 0.2]), SVector::from([1.0, 0.4, -2.0]));
     assert_near(C.mass_matrix(&q), SMatrix::identity() * C.mass, 1e-15);

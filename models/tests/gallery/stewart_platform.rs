@@ -54,7 +54,7 @@ fn platform_configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatfo
 }
 
 #[test]
-fn stewart_platform_inverse_kinematics() {
+fn stewart_platform_legs_match_inverse_kinematics() {
     assert_eq!((StewartPlatform::NV, StewartPlatform::NC), (24, 18));
     assert_eq!((StewartPlatform::NP, StewartPlatform::NS, StewartPlatform::NU), (6, 6, 6));
     let q = platform_configuration(&platform_pose());
@@ -72,7 +72,7 @@ fn stewart_platform_inverse_kinematics() {
 /// Checks leg forces by virtual work. Rows of the matrices are derivatives of the weights' heights, and of
 /// the lengths, with respect to the platform's velocity in body axes.
 #[test]
-fn stewart_leg_forces_by_virtual_work() {
+fn stewart_leg_forces_satisfy_virtual_work() {
     let pose = platform_pose();
     let (mut lengths, mut weight) = (Matrix6::zeros(), Vector6::zeros());
     weight[2] = P.platform_mass;

@@ -47,7 +47,7 @@ pub fn pose_about_z(angle: f64, d: f64) -> Isometry3<f64> {
 }
 
 /// Returns a rotation about x and a displacement along it: the other half of a Denavit–Hartenberg step.
-pub fn pose_about_x(angle: f64, a: f64) -> Isometry3<f64> {
+pub fn pose_along_and_about_x(angle: f64, a: f64) -> Isometry3<f64> {
     pose_about_axis(Vector3::x(), angle, a)
 }
 
@@ -70,7 +70,7 @@ pub fn assert_derivatives<M, const NV: usize, const NU: usize, const NQ: usize>(
 {
     const STEP: f64 = 1e-6;
     let linear = at(m, 0.0).linear_motion(q, v, u);
-    let acceleration_at = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
+    let acceleration_at_state = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
         m.forward_dynamics(0.0, q, v, &m.generalized_forces(0.0, q, v, u))
     };
     let difference_quotient = |a: SVector<f64, NV>, b: SVector<f64, NV>| (a - b) / (2.0 * STEP);
@@ -78,18 +78,25 @@ pub fn assert_derivatives<M, const NV: usize, const NU: usize, const NQ: usize>(
     for k in 0..NV {
         let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
         let displaced_configuration = |step| m.integrate(q, &step);
-        let [above, below] = [step, -step].map(|step| acceleration_at(&displaced_configuration(step), v, u));
+        let [above, below] =
+            [step, -step].map(|step| acceleration_at_state(&displaced_configuration(step), v, u));
         by_q.set_column(k, &difference_quotient(above, below));
         by_v.set_column(
             k,
-            &difference_quotient(acceleration_at(q, &(v + step), u), acceleration_at(q, &(v - step), u)),
+            &difference_quotient(
+                acceleration_at_state(q, &(v + step), u),
+                acceleration_at_state(q, &(v - step), u),
+            ),
         );
     }
     for k in 0..NU {
         let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
         by_u.set_column(
             k,
-            &difference_quotient(acceleration_at(q, v, &(u + step)), acceleration_at(q, v, &(u - step))),
+            &difference_quotient(
+                acceleration_at_state(q, v, &(u + step)),
+                acceleration_at_state(q, v, &(u - step)),
+            ),
         );
     }
     assert_near(linear.by_q, by_q, tolerance);

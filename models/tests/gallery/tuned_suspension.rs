@@ -6,7 +6,7 @@ const S: TunedSuspension =
     TunedSuspension { m1: 10.0, m2: 0.8, k1: 900.0, k2: 120.0, damping: 3.0, inertance: 0.5 };
 
 #[test]
-fn tuned_suspension_equations_of_motion() {
+fn tuned_suspension_accelerations_have_closed_form() {
     let symmetric_matrix = |a, b, c| SMatrix::<f64, 2, 2>::new(a, b, b, c);
     assert_near(S.mass_matrix(&SVector::zeros()), symmetric_matrix(10.5, -0.5, 1.3), 1e-14);
     let (q, v) = (SVector::from([0.02, -0.05]), SVector::from([0.7, 0.3]));

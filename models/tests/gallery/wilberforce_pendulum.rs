@@ -12,7 +12,7 @@ const P: WilberforcePendulum = WilberforcePendulum {
 };
 
 #[test]
-fn wilberforce_equations_of_motion() {
+fn wilberforce_accelerations_have_closed_form() {
     let q = SVector::from([0.04, -1.3]);
     let bias = [2.63 * q[0] + 4.635e-3 * q[1], 7.44e-4 * q[1] + 4.635e-3 * q[0]];
     assert_near(P.bias_forces(&q, &SVector::from([0.1, 2.0])), SVector::from(bias), 1e-15);

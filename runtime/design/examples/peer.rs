@@ -12,7 +12,7 @@ use std::time::Instant;
 
 type ResultNumbers = Result<Vec<f64>, Error>;
 
-fn flatten_matrix(m: &DMatrix<f64>) -> Vec<f64> {
+fn flatten_matrix_by_rows(m: &DMatrix<f64>) -> Vec<f64> {
     m.transpose().iter().copied().collect()
 }
 
@@ -23,17 +23,17 @@ fn flatten_complex_numbers(all: &[Complex<f64>]) -> Vec<f64> {
 /// Computes the named result of a system, such as `poles`, `zeros` or `care`.
 fn compute_result(name: &str, s: &StateSpace) -> ResultNumbers {
     let (n, m) = s.b().shape();
-    let unit_cost = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));
+    let cost_with_identity_weights = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));
     Ok(match name {
         "poles" => flatten_complex_numbers(&s.poles()?),
         "zeros" => flatten_complex_numbers(&s.zeros()?),
-        "lyap" => flatten_matrix(&lyapunov(s.a(), &DMatrix::identity(n, n))?),
-        "care" => flatten_matrix(&riccati(s.a(), s.b(), &unit_cost())?.x),
+        "lyap" => flatten_matrix_by_rows(&lyapunov(s.a(), &DMatrix::identity(n, n))?),
+        "care" => flatten_matrix_by_rows(&riccati(s.a(), s.b(), &cost_with_identity_weights())?.x),
         "dare" => {
             let held = s.discretize(0.1, Hold::Zero)?;
-            flatten_matrix(&discrete_riccati(held.a(), held.b(), &unit_cost())?.x)
+            flatten_matrix_by_rows(&discrete_riccati(held.a(), held.b(), &cost_with_identity_weights())?.x)
         }
-        "gram" => flatten_matrix(&s.controllability_gramian()?),
+        "gram" => flatten_matrix_by_rows(&s.controllability_gramian()?),
         "h2" => vec![
             StateSpace::new(s.a().clone(), s.b().clone(), s.c().clone(), DMatrix::zeros(s.d().nrows(), m))?
                 .h2_norm()?,
@@ -41,7 +41,7 @@ fn compute_result(name: &str, s: &StateSpace) -> ResultNumbers {
         "hinf" => vec![s.peak_gain()?.gain],
         "zoh" => {
             let held = s.discretize(0.1, Hold::Zero)?;
-            [flatten_matrix(held.a()), flatten_matrix(held.b())].concat()
+            [flatten_matrix_by_rows(held.a()), flatten_matrix_by_rows(held.b())].concat()
         }
         "response" => {
             let map = s.frequency_map()?;

@@ -227,7 +227,7 @@ impl StateSpace {
     }
 
     /// Checks that a system has a single input and a single output; otherwise returns an error.
-    pub(crate) fn check_single(&self) -> Result<(), Error> {
+    pub(crate) fn check_single_input_and_output(&self) -> Result<(), Error> {
         for (what, signals) in [("input", &self.inputs), ("output", &self.outputs)] {
             if signals.len() != 1 {
                 return Err(Error::Count { what, expected: 1, found: signals.len() });

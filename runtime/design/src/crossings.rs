@@ -25,23 +25,23 @@ impl MatrixPencil {
 impl StateSpace {
     /// Returns the frequency of a pole or zero in the complex plane, rad/s: `|Im s|`, or `|arg z| / h` for a
     /// discrete system.
-    pub(crate) fn frequency_of(&self, root: C) -> f64 {
+    pub(crate) fn frequency_of_root(&self, root: C) -> f64 {
         self.period.map_or(root.im.abs(), |h| root.arg().abs() / h)
     }
 
     /// Returns the upper end of the frequency axis, rad/s: infinity, or the Nyquist frequency.
-    pub(crate) fn highest_frequency(&self) -> f64 {
+    pub(crate) fn upper_frequency_limit(&self) -> f64 {
         self.period.map_or(f64::INFINITY, |h| std::f64::consts::PI / h)
     }
 
     /// Returns the damped and the natural frequencies of all poles and zeros, rad/s.
-    pub(crate) fn root_frequencies(&self) -> Result<Vec<f64>, Error> {
+    pub(crate) fn pole_and_zero_frequencies(&self) -> Result<Vec<f64>, Error> {
         let mut all = Vec::new();
         for root in self.poles()?.into_iter().chain(self.zeros().unwrap_or_default()) {
             let exponent = self.period.map_or(root, |h| root.ln() / h);
-            all.extend([self.frequency_of(root), exponent.norm()]);
+            all.extend([self.frequency_of_root(root), exponent.norm()]);
         }
-        all.retain(|w| *w > 0.0 && *w < self.highest_frequency());
+        all.retain(|w| *w > 0.0 && *w < self.upper_frequency_limit());
         Ok(all)
     }
 
@@ -77,7 +77,7 @@ impl StateSpace {
 
     /// Returns candidates that include all frequencies at which the response of a single channel is real, in
     /// ascending order. They are zeros of `G(s) − G(−s)`, or of `G(z) − G(1 / z)`.
-    pub(crate) fn real_frequencies(&self) -> Result<Vec<f64>, Error> {
+    pub(crate) fn real_response_frequencies(&self) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let n = a.nrows();
         let size = 2 * n + 1;
@@ -103,7 +103,7 @@ impl StateSpace {
     /// Each shift is accurate for eigenvalues of about its own magnitude.
     fn pencil_frequencies(&self, pencil: &MatrixPencil) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
-        let mut scales = self.root_frequencies()?;
+        let mut scales = self.pole_and_zero_frequencies()?;
         let unit = self.period.map_or_else(|| a.norm().max(b.norm() * c.norm()), |h| 1.0 / h);
         scales.push(if unit > 0.0 { unit } else { 1.0 });
         scales.sort_by(f64::total_cmp);
@@ -116,9 +116,9 @@ impl StateSpace {
         let mut found = Vec::new();
         for scale in scales {
             let shift = self.period.map_or(1.13 * scale, |h| (1.13 * scale * h).min(1.0).exp());
-            found.extend(pencil.finite_eigenvalues(shift).into_iter().map(|s| self.frequency_of(s)));
+            found.extend(pencil.finite_eigenvalues(shift).into_iter().map(|s| self.frequency_of_root(s)));
         }
-        found.retain(|w| *w > 0.0 && *w < self.highest_frequency());
+        found.retain(|w| *w > 0.0 && *w < self.upper_frequency_limit());
         found.sort_by(f64::total_cmp);
         Ok(found)
     }

@@ -113,7 +113,7 @@ impl StateSpace {
                 let (a, b) = (log.view((0, 0), (n, n)).into_owned(), log.view((0, n), (n, m)).into_owned());
                 (a, b, self.c.clone(), self.d.clone())
             }
-            Hold::First => return self.undiscretize_first(period),
+            Hold::First => return self.undiscretize_first_order_hold(period),
             Hold::Tustin | Hold::Prewarped(_) => {
                 let s = bilinear_factor(hold, period)?;
                 let what = "A + I of Tustin's rule";
@@ -128,7 +128,7 @@ impl StateSpace {
         Ok(Self { a, b, c, d, period: None, ..self.clone() })
     }
 
-    fn undiscretize_first(&self, period: f64) -> Result<Self, Error> {
+    fn undiscretize_first_order_hold(&self, period: f64) -> Result<Self, Error> {
         let n = self.order();
         let a = logarithm(&self.a)? / period;
         // Γ₁ = W₁ B and Γ₂ = W₂ B with the blocks of the exponential of [A h, h I, 0; 0, 0, I; 0, 0, 0].
@@ -170,19 +170,20 @@ impl ZerosPolesGain {
         zeros.extend(std::iter::repeat_n(C::new(-1.0, 0.0), excess));
         // A factor `s − r` has the value `−r` at `s = 0`; its image at `z = 1` has the value
         // `1 − e^{r h}`. Their ratio tends to `h` for small `r`.
-        let gain_ratio_of_root = |root: &C| match root.norm() {
+        let static_gain_ratio_of_root = |root: &C| match root.norm() {
             0.0 => C::new(period, 0.0),
             _ => exponential_less_one(root * period) / root,
         };
-        let all_roots = || self.zeros.iter().chain(&self.poles);
-        if all_roots().any(|root| exponential_less_one(root * period).norm() < 1e-12 * (root * period).norm())
+        let zeros_and_poles = || self.zeros.iter().chain(&self.poles);
+        if zeros_and_poles()
+            .any(|root| exponential_less_one(root * period).norm() < 1e-12 * (root * period).norm())
         {
             return Err(Error::Singular { what: "the gain of the matched system at rest" });
         }
         let mut gain = C::new(self.gain * (-(excess as f64)).exp2(), 0.0);
         for k in 0..denominator {
-            gain *= gain_ratio_of_root(&self.poles[k]);
-            gain /= self.zeros.get(k).map_or(C::new(1.0, 0.0), gain_ratio_of_root);
+            gain *= static_gain_ratio_of_root(&self.poles[k]);
+            gain /= self.zeros.get(k).map_or(C::new(1.0, 0.0), static_gain_ratio_of_root);
         }
         Ok(Self { zeros, poles: map_roots_to_z_plane(&self.poles), gain: gain.re, period: Some(period) })
     }

@@ -8,7 +8,7 @@ const SPLIT: f64 = 134_217_729.0;
 
 /// Returns the rounding error of the product of two numbers, by Veltkamp's splitting: processors without a
 /// fused product take hundreds of operations for `mul_add`.
-fn product_error(a: f64, b: f64, product: f64) -> f64 {
+fn product_rounding_error(a: f64, b: f64, product: f64) -> f64 {
     let split_into_halves = |x: f64| {
         let shifted = SPLIT * x;
         let high = shifted - (shifted - x);
@@ -36,7 +36,7 @@ impl DoubleDouble {
     pub fn inverse_of(x: f64) -> Self {
         let near = x.recip();
         let product = near * x;
-        Self::from_sum(near, near * ((1.0 - product) - product_error(near, x, product)))
+        Self::from_sum(near, near * ((1.0 - product) - product_rounding_error(near, x, product)))
     }
 
     /// Returns the double-precision number nearest to a double-double number.
@@ -79,7 +79,7 @@ impl Mul for DoubleDouble {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let product = self.high * other.high;
-        let error = product_error(self.high, other.high, product);
+        let error = product_rounding_error(self.high, other.high, product);
         Self::from_sum(product, error + (self.high * other.low + self.low * other.high))
     }
 }

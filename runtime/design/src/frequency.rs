@@ -70,7 +70,7 @@ impl FrequencyMap {
         let factors = self.factorise_at_frequency(s)?;
         let (mut x, mut y) = (complex_matrix(&self.b), complex_matrix(&self.c));
         factors.solve_in_place(&mut x);
-        factors.solve_left(&mut y);
+        factors.solve_row_vector_system(&mut y);
         let value = (complex_matrix(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
         // The entries of the matrices have rounding errors; this sums the effect of each on the value. The
         // transformation to Hessenberg form has errors in proportion to the norm.
@@ -79,7 +79,7 @@ impl FrequencyMap {
             size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x
         } else {
             let (size_x, size_y) = (x.map(|x| x.norm()), y.map(|y| y.norm()));
-            let sizes = factors.magnitude_bounds(&size_x)
+            let sizes = factors.rounding_error_magnitudes(&size_x)
                 + self.h.abs() * &size_x
                 + &size_x * s.norm()
                 + self.b.abs();
@@ -135,7 +135,7 @@ impl TriangularFactors {
 
     /// Returns `|L| |U| x` for a vector of magnitudes, with the magnitudes of the entries of the factors of
     /// `M = L U`: the rounding errors of a solution `x` are in proportion to it.
-    fn magnitude_bounds(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
+    fn rounding_error_magnitudes(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
         let mut sizes = self.u.map(|u| u.norm()).upper_triangle() * x;
         for (k, (swapped, factor)) in self.steps.iter().enumerate().rev() {
             sizes[k + 1] += factor.norm() * sizes[k];
@@ -147,7 +147,7 @@ impl TriangularFactors {
     }
 
     /// Solves `y M = r` with the factorised matrix `M`; the row vector `y` replaces `r`.
-    fn solve_left(&self, y: &mut CMatrix) {
+    fn solve_row_vector_system(&self, y: &mut CMatrix) {
         for j in 0..self.u.ncols() {
             let sum: C = (0..j).map(|k| y[k] * self.u[(k, j)]).sum();
             y[j] = (y[j] - sum) / self.u[(j, j)];

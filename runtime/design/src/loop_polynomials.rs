@@ -20,7 +20,7 @@ struct ErrorBoundedCoefficient {
 }
 
 impl ErrorBoundedCoefficient {
-    fn rounded_coefficient(value: f64) -> Self {
+    fn coefficient_with_rounding_error(value: f64) -> Self {
         Self { value: value.into(), error: ROUNDING * value.abs() }
     }
 
@@ -36,7 +36,7 @@ impl ErrorBoundedCoefficient {
         Self { value: self.value - other.value, error: self.error + other.error }
     }
 
-    fn times_coefficient(self, other: Self) -> Self {
+    fn product_with_error_bound(self, other: Self) -> Self {
         let [one, two] = [self, other].map(|c| c.value.value().abs());
         let error = one * other.error + self.error * (two + other.error);
         Self { value: self.value * other.value, error }
@@ -67,7 +67,7 @@ impl PolynomialTerms {
 
     /// Combines the coefficients of each power of two polynomials by a function; missing coefficients are
     /// zero.
-    fn combine_terms(
+    fn combine_coefficients_with(
         &self,
         other: &Self,
         f: impl Fn(ErrorBoundedCoefficient, ErrorBoundedCoefficient) -> ErrorBoundedCoefficient,
@@ -81,11 +81,11 @@ impl PolynomialTerms {
     }
 
     fn plus_polynomial(&self, other: &Self) -> Self {
-        self.combine_terms(other, ErrorBoundedCoefficient::plus_coefficient)
+        self.combine_coefficients_with(other, ErrorBoundedCoefficient::plus_coefficient)
     }
 
     fn subtract_polynomial(&self, other: &Self) -> Self {
-        self.combine_terms(other, ErrorBoundedCoefficient::minus_coefficient)
+        self.combine_coefficients_with(other, ErrorBoundedCoefficient::minus_coefficient)
     }
 
     fn times_polynomial(&self, other: &Self) -> Self {
@@ -93,7 +93,7 @@ impl PolynomialTerms {
             vec![ErrorBoundedCoefficient::default(); (self.0.len() + other.0.len()).saturating_sub(1)];
         for (i, a) in self.0.iter().enumerate() {
             for (j, b) in other.0.iter().enumerate() {
-                product[i + j] = product[i + j].plus_coefficient(a.times_coefficient(*b));
+                product[i + j] = product[i + j].plus_coefficient(a.product_with_error_bound(*b));
             }
         }
         Self(product)
@@ -107,14 +107,16 @@ impl PolynomialTerms {
         let terms = self.0.iter().enumerate().skip(1);
         Self(
             terms
-                .map(|(k, c)| c.times_coefficient(ErrorBoundedCoefficient::exact_coefficient(k as f64)))
+                .map(|(k, c)| {
+                    c.product_with_error_bound(ErrorBoundedCoefficient::exact_coefficient(k as f64))
+                })
                 .collect(),
         )
     }
 
     /// Returns the value of the polynomial at `x`. If `x` is above one, the value is divided by `x` to the
     /// power `degree`, to avoid overflow.
-    fn evaluate_scaled(&self, x: f64, degree: usize) -> ErrorBoundedCoefficient {
+    fn evaluate_without_overflow(&self, x: f64, degree: usize) -> ErrorBoundedCoefficient {
         let start = ErrorBoundedCoefficient::default();
         let horner_step = |sum: ErrorBoundedCoefficient, (c, by): (ErrorBoundedCoefficient, DoubleDouble)| {
             ErrorBoundedCoefficient {
@@ -134,8 +136,8 @@ impl PolynomialTerms {
     }
 
     /// Returns the value of the polynomial at `x` up to a positive factor, to determine its sign.
-    fn sign_at(&self, x: f64) -> f64 {
-        self.evaluate_scaled(x, self.0.len().saturating_sub(1)).value.value()
+    fn scaled_value_at(&self, x: f64) -> f64 {
+        self.evaluate_without_overflow(x, self.0.len().saturating_sub(1)).value.value()
     }
 
     /// Returns points between which the polynomial is monotonic, ascending: bounds of all positive roots, and
@@ -146,13 +148,14 @@ impl PolynomialTerms {
         if signs.windows(2).all(|pair| pair[0] * pair[1].signum() > 0.0) {
             return Vec::new();
         }
-        let logarithmic_size = |k: usize| self.0[k].value.value().abs().ln();
+        let logarithm_of_coefficient = |k: usize| self.0[k].value.value().abs().ln();
         let is_nonzero = |k: &usize| !self.0[*k].is_zero();
         let all: Vec<usize> = (0..self.0.len()).filter(is_nonzero).collect();
         let (first, last) = (all[0], all[all.len() - 1]);
         // Fujiwara's bound, and that of the polynomial with reversed coefficients.
-        let slope_between =
-            |low: usize, high: usize| (logarithmic_size(low) - logarithmic_size(high)) / (high - low) as f64;
+        let slope_between = |low: usize, high: usize| {
+            (logarithm_of_coefficient(low) - logarithm_of_coefficient(high)) / (high - low) as f64
+        };
         let high =
             all.iter().filter(|k| **k < last).map(|k| slope_between(*k, last)).fold(f64::MIN, f64::max);
         let low =
@@ -172,14 +175,13 @@ impl PolynomialTerms {
 
     /// Returns the positive roots of the polynomial at which its sign changes by more than rounding errors of
     /// the coefficients.
-    fn certain_roots(&self) -> Vec<f64> {
-        let has_certain_sign_change = |x: &f64| {
+    fn roots_with_certain_sign_change(&self) -> Vec<f64> {
+        let has_certain_sign = |x: &f64| {
             let ErrorBoundedCoefficient { value, error } =
-                self.evaluate_scaled(*x, self.0.len().saturating_sub(1));
+                self.evaluate_without_overflow(*x, self.0.len().saturating_sub(1));
             value.value().abs() > error
         };
-        let points: Vec<f64> =
-            self.monotonic_separators().into_iter().filter(has_certain_sign_change).collect();
+        let points: Vec<f64> = self.monotonic_separators().into_iter().filter(has_certain_sign).collect();
         self.roots_between(&points)
     }
 
@@ -188,7 +190,7 @@ impl PolynomialTerms {
         let mut found = Vec::new();
         for pair in points.windows(2) {
             let (mut low, mut high) = (pair[0], pair[1]);
-            let is_negative_at = |x: f64| self.sign_at(x) < 0.0;
+            let is_negative_at = |x: f64| self.scaled_value_at(x) < 0.0;
             let start = is_negative_at(low);
             if start == is_negative_at(high) {
                 continue;
@@ -197,7 +199,7 @@ impl PolynomialTerms {
                 let middle = low.sqrt() * high.sqrt();
                 *if is_negative_at(middle) == start { &mut low } else { &mut high } = middle;
             }
-            found.push(root_between(|x| self.sign_at(x), low, high));
+            found.push(root_between(|x| self.scaled_value_at(x), low, high));
         }
         found
     }
@@ -213,13 +215,13 @@ impl EvenAndOddParts {
     fn new(coefficients: &[ErrorBoundedCoefficient]) -> Self {
         let negated_coefficient =
             |c: &ErrorBoundedCoefficient| ErrorBoundedCoefficient { value: -c.value, ..*c };
-        let alternate_terms = |first: usize| {
+        let terms_with_alternating_signs = |first: usize| {
             let terms = coefficients.iter().skip(first).step_by(2).enumerate();
             PolynomialTerms(
                 terms.map(|(k, c)| if k % 2 == 0 { *c } else { negated_coefficient(c) }).collect(),
             )
         };
-        Self { even: alternate_terms(0), odd: alternate_terms(1) }
+        Self { even: terms_with_alternating_signs(0), odd: terms_with_alternating_signs(1) }
     }
 
     /// Returns the squared magnitude of the polynomial at `s = iω`, as a polynomial in `ω²`.
@@ -229,7 +231,7 @@ impl EvenAndOddParts {
             .plus_polynomial(&self.odd.times_polynomial(&self.odd).times_x())
     }
 
-    fn plus_parts(&self, other: &Self) -> Self {
+    fn add_even_and_odd_parts(&self, other: &Self) -> Self {
         Self { even: self.even.plus_polynomial(&other.even), odd: self.odd.plus_polynomial(&other.odd) }
     }
 }
@@ -267,16 +269,18 @@ impl LoopPolynomials {
             |p: &Polynomial| (0..=p.degree()).map(|k| p.coefficient(k)).collect::<Vec<f64>>();
         let both = [coefficient_list(g.numerator()), coefficient_list(g.denominator())];
         if g.period().is_none() {
-            let both =
-                both.map(|all| all.into_iter().map(ErrorBoundedCoefficient::rounded_coefficient).collect());
+            let both = both.map(|all| {
+                all.into_iter().map(ErrorBoundedCoefficient::coefficient_with_rounding_error).collect()
+            });
             return Self::from_coefficients(both, None);
         }
         // z = (1 + w) / (1 − w).
         let n = g.denominator().degree().max(g.numerator().degree());
-        let transformed_coefficients = |all: &Vec<f64>| {
+        let bilinear_transformed_coefficients = |all: &Vec<f64>| {
             let mut sum = PolynomialTerms(vec![ErrorBoundedCoefficient::default(); n + 1]);
             for (k, a) in all.iter().enumerate() {
-                let mut term = PolynomialTerms(vec![ErrorBoundedCoefficient::rounded_coefficient(*a)]);
+                let mut term =
+                    PolynomialTerms(vec![ErrorBoundedCoefficient::coefficient_with_rounding_error(*a)]);
                 for i in 0..n {
                     let sign = if i < k { 1.0 } else { -1.0 };
                     term = term.times_polynomial(&PolynomialTerms(vec![
@@ -291,7 +295,7 @@ impl LoopPolynomials {
             sum.0
         };
         Self::from_coefficients(
-            [transformed_coefficients(&both[0]), transformed_coefficients(&both[1])],
+            [bilinear_transformed_coefficients(&both[0]), bilinear_transformed_coefficients(&both[1])],
             g.period(),
         )
     }
@@ -316,7 +320,10 @@ impl LoopPolynomials {
                     product[k] = product[k] * constant + below * linear;
                 }
             }
-            product.into_iter().map(|c| ErrorBoundedCoefficient::rounded_coefficient(c.re)).collect()
+            product
+                .into_iter()
+                .map(|c| ErrorBoundedCoefficient::coefficient_with_rounding_error(c.re))
+                .collect()
         };
         Self::from_coefficients(
             [expanded_polynomial(&g.zeros, g.gain), expanded_polynomial(&g.poles, 1.0)],
@@ -333,12 +340,12 @@ impl LoopPolynomials {
         let mut both = both.map(|all| PolynomialTerms(all).without_rounding_errors().0);
         let common = both[0].iter().zip(&both[1]).take_while(|(n, d)| n.is_zero() && d.is_zero()).count();
         both.iter_mut().for_each(|all| drop(all.drain(..common.min(all.len()))));
-        let logarithmic_size = |c: &ErrorBoundedCoefficient| c.value.value().abs().log2();
+        let logarithm_of_coefficient = |c: &ErrorBoundedCoefficient| c.value.value().abs().log2();
         let nonzero: Vec<(usize, f64)> = both[1]
             .iter()
             .enumerate()
             .filter(|(_, c)| !c.is_zero())
-            .map(|(k, c)| (k, logarithmic_size(c)))
+            .map(|(k, c)| (k, logarithm_of_coefficient(c)))
             .collect();
         let (Some((low, first)), Some((high, last))) = (nonzero.first().copied(), nonzero.last().copied())
         else {
@@ -350,7 +357,7 @@ impl LoopPolynomials {
             nonzero.iter().map(|(k, size)| size + unit * *k as f64).fold(f64::MIN, f64::max).round();
         for all in &mut both {
             for (k, c) in all.iter_mut().enumerate() {
-                *c = c.times_coefficient(ErrorBoundedCoefficient::exact_coefficient(
+                *c = c.product_with_error_bound(ErrorBoundedCoefficient::exact_coefficient(
                     (unit * k as f64 - largest).exp2(),
                 ));
             }
@@ -368,16 +375,17 @@ impl LoopPolynomials {
     }
 
     /// Evaluates numerator and denominator of the loop at the frequency whose scaled square is `x`.
-    fn loop_value(&self, x: f64) -> LoopValue {
+    fn loop_numerator_and_denominator(&self, x: f64) -> LoopValue {
         let degree = self.coefficients.iter().map(|all| all.len() / 2).max().unwrap_or(0);
         let root = x.sqrt();
-        let parts = [&self.numerator, &self.denominator]
-            .map(|p| [p.even.evaluate_scaled(x, degree), p.odd.evaluate_scaled(x, degree)]);
+        let parts = [&self.numerator, &self.denominator].map(|p| {
+            [p.even.evaluate_without_overflow(x, degree), p.odd.evaluate_without_overflow(x, degree)]
+        });
         let [[ne, no], [de, d_o]] = parts;
         let x = ErrorBoundedCoefficient::exact_coefficient(x);
         let square = |[even, odd]: [ErrorBoundedCoefficient; 2]| {
-            even.times_coefficient(even)
-                .plus_coefficient(odd.times_coefficient(odd).times_coefficient(x))
+            even.product_with_error_bound(even)
+                .plus_coefficient(odd.product_with_error_bound(odd).product_with_error_bound(x))
                 .value
                 .value()
         };
@@ -387,11 +395,12 @@ impl LoopPolynomials {
             even.error + root * odd.error <= CERTAIN * squares[k].sqrt()
         };
         let real = ne
-            .times_coefficient(de)
-            .plus_coefficient(no.times_coefficient(d_o).times_coefficient(x))
+            .product_with_error_bound(de)
+            .plus_coefficient(no.product_with_error_bound(d_o).product_with_error_bound(x))
             .value
             .value();
-        let imaginary = no.times_coefficient(de).minus_coefficient(ne.times_coefficient(d_o)).value.value();
+        let imaginary =
+            no.product_with_error_bound(de).minus_coefficient(ne.product_with_error_bound(d_o)).value.value();
         LoopValue {
             product: C::new(real, root * imaginary),
             squares,
@@ -422,7 +431,7 @@ impl LoopPolynomials {
     /// power of `|D|`.
     fn distance_slope_terms(&self) -> PolynomialTerms {
         let (p, r) = (
-            self.numerator.plus_parts(&self.denominator).squared_magnitude(),
+            self.numerator.add_even_and_odd_parts(&self.denominator).squared_magnitude(),
             self.denominator.squared_magnitude(),
         );
         p.derivative_of_polynomial()
@@ -432,7 +441,7 @@ impl LoopPolynomials {
     }
 
     /// Returns the value of the loop at zero frequency, or at infinite `s` or `w`.
-    fn limit_value(&self, at_zero: bool) -> f64 {
+    fn value_at_zero_or_infinity(&self, at_zero: bool) -> f64 {
         let [n, d] = &self.coefficients;
         let coefficient_value =
             |all: &[ErrorBoundedCoefficient], k: usize| all.get(k).map_or(0.0, |c| c.value.value());
@@ -445,25 +454,30 @@ impl LoopPolynomials {
 
     /// Returns all stability margins of the loop.
     pub fn margins(&self) -> Margins {
-        let gain_margin_at_limit = |value: f64, frequency: f64| {
+        let gain_margin_at_limit_frequency = |value: f64, frequency: f64| {
             let is_negative = value < 0.0 && value.is_finite();
             is_negative.then_some(GainMargin { factor: -1.0 / value, frequency })
         };
-        let between = self.imaginary_part_terms().certain_roots().into_iter().filter_map(|x| {
-            let at = self.loop_value(x);
-            let is_negative = at.product.re < 0.0 && at.certain == [true; 2];
-            is_negative.then(|| GainMargin {
-                factor: -at.squares[1] / at.product.re,
+        let between =
+            self.imaginary_part_terms().roots_with_certain_sign_change().into_iter().filter_map(|x| {
+                let at = self.loop_numerator_and_denominator(x);
+                let is_negative = at.product.re < 0.0 && at.certain == [true; 2];
+                is_negative.then(|| GainMargin {
+                    factor: -at.squares[1] / at.product.re,
+                    frequency: self.frequency_of_square(x),
+                })
+            });
+        let top = self
+            .period
+            .and_then(|h| gain_margin_at_limit_frequency(self.value_at_zero_or_infinity(false), PI / h));
+        let phase = self.magnitude_difference_terms().roots_with_certain_sign_change().into_iter().map(|x| {
+            PhaseMargin {
+                degrees: (-self.loop_numerator_and_denominator(x).product).arg().to_degrees(),
                 frequency: self.frequency_of_square(x),
-            })
-        });
-        let top = self.period.and_then(|h| gain_margin_at_limit(self.limit_value(false), PI / h));
-        let phase = self.magnitude_difference_terms().certain_roots().into_iter().map(|x| PhaseMargin {
-            degrees: (-self.loop_value(x).product).arg().to_degrees(),
-            frequency: self.frequency_of_square(x),
+            }
         });
         Margins {
-            gain: gain_margin_at_limit(self.limit_value(true), 0.0)
+            gain: gain_margin_at_limit_frequency(self.value_at_zero_or_infinity(true), 0.0)
                 .into_iter()
                 .chain(between)
                 .chain(top)
@@ -478,11 +492,11 @@ impl LoopPolynomials {
         let distance_at_limit =
             |value: f64| if value.is_finite() { (1.0 + value).abs() } else { f64::INFINITY };
         let ends = [
-            (distance_at_limit(self.limit_value(false)), top),
-            (distance_at_limit(self.limit_value(true)), 0.0),
+            (distance_at_limit(self.value_at_zero_or_infinity(false)), top),
+            (distance_at_limit(self.value_at_zero_or_infinity(true)), 0.0),
         ];
         let inner = self.distance_slope_terms().positive_roots().into_iter().filter_map(|x| {
-            let LoopValue { product, squares, certain } = self.loop_value(x);
+            let LoopValue { product, squares, certain } = self.loop_numerator_and_denominator(x);
             let value = product / squares[1];
             certain[1].then(|| ((1.0 + value).norm(), self.frequency_of_square(x)))
         });

@@ -145,7 +145,8 @@ impl OpenLoop {
         samples: &[ResponseSample],
         f: impl Fn(C) -> f64,
     ) -> Vec<f64> {
-        let value_at_frequency = |w: f64| self.sample_response(w).map_or(f64::NAN, |sample| f(sample.value));
+        let margin_function_at_frequency =
+            |w: f64| self.sample_response(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
         let mut before: Option<(f64, f64)> = None;
         for (w, sample) in grid.iter().zip(samples) {
@@ -154,7 +155,7 @@ impl OpenLoop {
                 continue;
             }
             if let Some((last, _)) = before.filter(|(_, there)| there * here < 0.0) {
-                found.push(root_between(value_at_frequency, last, *w));
+                found.push(root_between(margin_function_at_frequency, last, *w));
             }
             before = Some((*w, here));
         }
@@ -181,10 +182,13 @@ impl StateSpace {
     ///
     /// [`Error::Count`] unless the system has one input and one output, [`Error::NotConverged`].
     pub fn margins(&self) -> Result<Margins, Error> {
-        self.check_single()?;
+        self.check_single_input_and_output()?;
         let open = OpenLoop { map: self.frequency_map()?, period: self.period };
-        let (grid, samples): (Vec<f64>, Vec<ResponseSample>) =
-            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample_response(w)?))).unzip();
+        let (grid, samples): (Vec<f64>, Vec<ResponseSample>) = self
+            .margin_separating_frequencies()?
+            .into_iter()
+            .filter_map(|w| Some((w, open.sample_response(w)?)))
+            .unzip();
         let gain_margin_at_crossing = |frequency: f64| {
             let ResponseSample { value, error, .. } = open.sample_response(frequency)?;
             // The sign also changes at a pole or zero on the stability boundary, where the value is
@@ -193,7 +197,7 @@ impl StateSpace {
             let is_negative = value.re < 0.0 && value.im.abs() <= 1e-6 * value.norm();
             (is_certain && is_negative).then_some(GainMargin { factor: -1.0 / value.re, frequency })
         };
-        let ends = [0.0, self.highest_frequency()];
+        let ends = [0.0, self.upper_frequency_limit()];
         let crossings = open.sign_change_frequencies(&grid, &samples, |x| x.im);
         let all = ends[..1].iter().chain(&crossings).chain(&ends[1..]);
         let gain = all.filter(|w| w.is_finite()).filter_map(|w| gain_margin_at_crossing(*w)).collect();
@@ -207,17 +211,17 @@ impl StateSpace {
 
     /// Returns frequencies, in ascending order, that separate all frequencies at which the open-loop response
     /// is real or has magnitude one.
-    fn margin_grid(&self) -> Result<Vec<f64>, Error> {
-        let mut points = self.root_frequencies()?;
+    fn margin_separating_frequencies(&self) -> Result<Vec<f64>, Error> {
+        let mut points = self.pole_and_zero_frequencies()?;
         points.extend(self.level_frequencies(1.0)?);
-        points.extend(self.real_frequencies()?);
-        points.extend(self.factor_frequencies());
+        points.extend(self.real_response_frequencies()?);
+        points.extend(self.crossing_frequencies_of_factors());
         points.sort_by(f64::total_cmp);
         points.dedup_by(|a, b| *a - *b <= 1e-12 * *b);
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
             return Ok(Vec::new());
         };
-        let top = self.highest_frequency();
+        let top = self.upper_frequency_limit();
         points.insert(0, 0.01 * first);
         points.push(if top.is_finite() { top } else { 100.0 * last });
         let between = points.windows(2).flat_map(|pair| {
@@ -230,12 +234,12 @@ impl StateSpace {
 
     /// Returns the frequencies of the crossings that follow from zeros, poles and gain. The eigenvalues of a
     /// pencil miss some if crossings are decades apart.
-    fn factor_frequencies(&self) -> Vec<f64> {
+    fn crossing_frequencies_of_factors(&self) -> Vec<f64> {
         let factors = self.zeros_poles_gain();
         let found =
             factors.and_then(|factors| Ok(LoopPolynomials::from_factors(&factors)?.crossing_frequencies()));
         let mut found = found.unwrap_or_default();
-        found.retain(|w| *w > 0.0 && *w < self.highest_frequency());
+        found.retain(|w| *w > 0.0 && *w < self.upper_frequency_limit());
         found
     }
 

@@ -20,7 +20,7 @@ pub use exponential::exponential;
 pub use logarithm::logarithm;
 pub use lyapunov::{discrete_lyapunov, discrete_sylvester, lyapunov, sylvester};
 pub use rank::rank;
-pub(crate) use rank::{RowCompression, smallest_singular};
+pub(crate) use rank::{RowCompression, smallest_singular_value};
 pub(crate) use riccati::is_uncontrollable_mode;
 pub use riccati::{Cost, Riccati, discrete_riccati, riccati};
 pub(crate) use schur::Schur;
@@ -44,7 +44,7 @@ pub(crate) fn check_matrix(
 }
 
 /// Returns the number of rows of a matrix, or an error if the matrix is not square or not finite.
-pub(crate) fn check_square(matrix: &'static str, m: &DMatrix<f64>) -> Result<usize, Error> {
+pub(crate) fn checked_square_size(matrix: &'static str, m: &DMatrix<f64>) -> Result<usize, Error> {
     check_matrix(matrix, m, m.nrows(), m.nrows())?;
     Ok(m.nrows())
 }

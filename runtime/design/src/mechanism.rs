@@ -77,7 +77,7 @@ where
 
 /// Returns the names and units of the states: displacements with the names of the velocities, then changes of
 /// velocity with a prime, then states of first order with their own names.
-pub(crate) fn state_names<M, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn signals_of_states<M, const NQ: usize, const NV: usize, const NU: usize>(
     coordinates: impl IntoIterator<Item = usize>,
     speeds: impl IntoIterator<Item = usize>,
 ) -> Vec<Signal>
@@ -104,7 +104,7 @@ where
 }
 
 /// Returns the names and units of the inputs of a mechanism.
-pub(crate) fn input_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<Signal>
+pub(crate) fn input_signals<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<Signal>
 where
     M: Mechanism<NQ, NV, NU>,
 {
@@ -167,12 +167,12 @@ where
 {
     let motion = m.linear_motion(q, v, u);
     let n = M::FIRST_ORDER;
-    let system = system_of_motion(&motion, n)?;
-    let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
-    Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
+    let system = state_space_of_linear_motion(&motion, n)?;
+    let system = system.with_states(signals_of_states::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
+    Ok(system.with_inputs(input_signals::<M, NQ, NV, NU>())?.with_states_as_outputs())
 }
 
-fn system_of_motion<const NV: usize, const NU: usize>(
+fn state_space_of_linear_motion<const NV: usize, const NU: usize>(
     motion: &LinearMotion<f64, NV, NU>,
     first_order: usize,
 ) -> Result<StateSpace, Error> {
@@ -233,12 +233,12 @@ where
     let motion = m.linear_motion(q, v, u);
     let seen = m.output_derivatives(t, q, v, &motion.acceleration, u).in_motion(&motion);
     let n = M::FIRST_ORDER;
-    let system = system_of_motion(&motion, n)?;
+    let system = state_space_of_linear_motion(&motion, n)?;
     let (c, d) = output_matrices(&seen);
     let system = StateSpace::new(system.a, system.b, c.select_columns(&state_indices(NV, n)), d)?;
-    let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
+    let system = system.with_states(signals_of_states::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
     system
-        .with_inputs(input_names::<M, NQ, NV, NU>())?
+        .with_inputs(input_signals::<M, NQ, NV, NU>())?
         .with_outputs(signals_with_units(&M::OUTPUTS, &M::OUTPUT_UNITS))
 }
 
@@ -297,13 +297,13 @@ where
     let (a, b) = (dynamic_matrix(&linear.a), dynamic_matrix(&linear.b));
     let system = StateSpace::new(a, b, DMatrix::identity(NX, NX), DMatrix::zeros(NX, NU))?;
     let states =
-        state_names::<M, NQ, NV, NU>(linear.coordinates.iter().copied(), linear.speeds.iter().copied());
-    Ok(system.with_states(states)?.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
+        signals_of_states::<M, NQ, NV, NU>(linear.coordinates.iter().copied(), linear.speeds.iter().copied());
+    Ok(system.with_states(states)?.with_inputs(input_signals::<M, NQ, NV, NU>())?.with_states_as_outputs())
 }
 
 /// Returns the effective mass matrix, which multiplies the accelerations: the mass matrix, or the derivative
 /// of inverse dynamics with respect to accelerations if forces depend on accelerations.
-pub(crate) fn effective_mass<M, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn effective_mass_at_state<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: f64,
     q: &SVector<f64, NQ>,
@@ -351,7 +351,7 @@ where
         return Err(Error::Count { what, expected: 0, found: M::FIRST_ORDER });
     }
     let motion = m.linear_motion(q, v, u);
-    let mass = effective_mass(m, 0.0, q, v);
+    let mass = effective_mass_at_state(m, 0.0, q, v);
     let (by_q, by_v) = (dynamic_matrix(&motion.by_q), dynamic_matrix(&motion.by_v));
     let turning = dynamic_matrix(&motion.turning);
     // δv = δq̇ − T δq; hence δv̇ = δq̈ − T δq̇ about a steady motion.
@@ -359,5 +359,5 @@ where
     let position = -(&mass * (&by_q - &by_v * &turning));
     let input = &mass * dynamic_matrix(&motion.by_u);
     let form = SecondOrderForm::new(mass, velocity, position, input)?;
-    form.with_names(displacement_signals::<M, NQ, NV, NU>(0..NV), input_names::<M, NQ, NV, NU>())
+    form.with_names(displacement_signals::<M, NQ, NV, NU>(0..NV), input_signals::<M, NQ, NV, NU>())
 }

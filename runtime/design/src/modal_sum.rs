@@ -32,7 +32,7 @@ struct ModalTerm {
 impl ModalTerm {
     /// Returns the term of `c e^{T t} x`, or of `c Tᵗ x` if `sampled`, for a triangular matrix `T` whose
     /// eigenvalues nearly coincide. Returns `None` for fast modes of sampled systems.
-    fn sum_term_of_group(
+    fn modal_term_of_eigenvalue_group(
         c: &CMatrix,
         t: &CMatrix,
         x: &CMatrix,
@@ -45,7 +45,7 @@ impl ModalTerm {
         }
         let mut nilpotent = t - CMatrix::identity(k, k) * center;
         if sampled {
-            nilpotent = logarithm_beside_one(&(nilpotent / center))?;
+            nilpotent = logarithm_of_one_plus_matrix(&(nilpotent / center))?;
         }
         let exponent = if sampled { center.ln() } else { center };
         if exponent.re >= 0.0 {
@@ -56,7 +56,7 @@ impl ModalTerm {
         let mut largest = f64::NEG_INFINITY;
         for j in 0..MAX_TERMS {
             coefficients.push((c * &v)[(0, 0)]);
-            let size = (c.norm() * v.norm()).ln() + logarithm_of_peak(j, exponent);
+            let size = (c.norm() * v.norm()).ln() + logarithm_of_modal_peak(j, exponent);
             largest = largest.max(size);
             if k == 1 || (j + 1 >= k && (size.is_nan() || size <= largest - 46.0)) {
                 return Ok(Some(Self { exponent, coefficients }));
@@ -79,8 +79,9 @@ impl ModalTerm {
 
     /// Returns an upper bound of the magnitude of the term at all instants.
     fn bound_at_all_instants(&self) -> f64 {
-        let bound_of_term = |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_peak(k, self.exponent)).exp();
-        self.coefficients.iter().enumerate().map(bound_of_term).sum()
+        let peak_bound_of_coefficient =
+            |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_modal_peak(k, self.exponent)).exp();
+        self.coefficients.iter().enumerate().map(peak_bound_of_coefficient).sum()
     }
 
     fn derivative_of_term(&self) -> Self {
@@ -93,13 +94,13 @@ impl ModalTerm {
 }
 
 /// Returns the logarithm of the maximum of `tᵏ |e^{λ t}|` over time, which is at `t = k / −Re λ`.
-fn logarithm_of_peak(k: usize, exponent: C) -> f64 {
+fn logarithm_of_modal_peak(k: usize, exponent: C) -> f64 {
     let k = k as f64;
     if k == 0.0 { 0.0 } else { k * (k / -exponent.re).ln() - k }
 }
 
 /// Computes the matrix logarithm `ln(I + M)` for a small triangular matrix `M` by its power series.
-fn logarithm_beside_one(m: &CMatrix) -> Result<CMatrix, Error> {
+fn logarithm_of_one_plus_matrix(m: &CMatrix) -> Result<CMatrix, Error> {
     let mut sum = m.clone();
     let mut power = m.clone();
     for j in 2..MAX_TERMS {
@@ -114,7 +115,7 @@ fn logarithm_beside_one(m: &CMatrix) -> Result<CMatrix, Error> {
 
 /// Solves `T₁ X − X T₂ = −T₁₂` for `X`, where `T₁` has the leading `k` rows and columns of a triangular
 /// matrix.
-fn block_coupling(t: &CMatrix, k: usize) -> CMatrix {
+fn solve_block_sylvester(t: &CMatrix, k: usize) -> CMatrix {
     let m = t.nrows();
     let mut x = CMatrix::zeros(k, m - k);
     for j in 0..m - k {
@@ -153,23 +154,23 @@ struct BoundedInterval {
 }
 
 /// Interval with the bound by which the search for an extremum ranks it.
-struct RankedInterval(f64, BoundedInterval);
+struct IntervalRankedByBound(f64, BoundedInterval);
 
-impl PartialEq for RankedInterval {
+impl PartialEq for IntervalRankedByBound {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for RankedInterval {}
+impl Eq for IntervalRankedByBound {}
 
-impl PartialOrd for RankedInterval {
+impl PartialOrd for IntervalRankedByBound {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for RankedInterval {
+impl Ord for IntervalRankedByBound {
     fn cmp(&self, other: &Self) -> Ordering {
         self.0.total_cmp(&other.0)
     }
@@ -192,13 +193,15 @@ impl ModalSum {
             let m = rest.t.nrows();
             let mut k = 1;
             let separate = loop {
-                let found = block_coupling(&rest.t, k);
+                let found = solve_block_sylvester(&rest.t, k);
                 if found.iter().all(|x| x.norm() <= MAX_COUPLING) {
                     break found;
                 }
                 let center = rest.t.diagonal().rows(0, k).sum() / k as f64;
-                let distance_to_center = |j: &usize| (rest.t[(*j, *j)] - center).norm();
-                let nearest = (k..m).min_by(|i, j| distance_to_center(i).total_cmp(&distance_to_center(j)));
+                let eigenvalue_distance_to_center = |j: &usize| (rest.t[(*j, *j)] - center).norm();
+                let nearest = (k..m).min_by(|i, j| {
+                    eigenvalue_distance_to_center(i).total_cmp(&eigenvalue_distance_to_center(j))
+                });
                 rest.raise_eigenvalue(nearest.unwrap_or(k), k);
                 k += 1;
             };
@@ -206,15 +209,15 @@ impl ModalSum {
             let (own_c, others_x) = (c.columns(0, k).into_owned(), x.rows(k, m - k).into_owned());
             let own_x = x.rows(0, k) - &separate * &others_x;
             let block = rest.t.view((0, 0), (k, k)).into_owned();
-            terms.extend(ModalTerm::sum_term_of_group(&own_c, &block, &own_x, sampled)?);
+            terms.extend(ModalTerm::modal_term_of_eigenvalue_group(&own_c, &block, &own_x, sampled)?);
             (c, x) = (c.columns(k, m - k) + own_c * separate, others_x);
             let t = rest.t.view((k, k), (m - k, m - k)).into_owned();
             rest = Schur { q: CMatrix::identity(m - k, m - k), t };
         }
-        Ok(Self::of_terms(terms, sampled))
+        Ok(Self::from_modal_terms(terms, sampled))
     }
 
-    fn of_terms(terms: Vec<ModalTerm>, sampled: bool) -> Self {
+    fn from_modal_terms(terms: Vec<ModalTerm>, sampled: bool) -> Self {
         let noise =
             64.0 * f64::EPSILON * terms.iter().map(ModalTerm::bound_at_all_instants).sum::<f64>().max(1.0);
         // A term decays beyond the last maximum of its powers.
@@ -223,14 +226,14 @@ impl ModalSum {
         while terms.iter().map(|term| term.bound_on_interval(end, end)).sum::<f64>() > noise {
             end *= 1.5;
         }
-        let with_derivatives = |term: ModalTerm| {
+        let term_with_derivatives = |term: ModalTerm| {
             let first = term.derivative_of_term();
             let second = first.derivative_of_term();
             let third = second.derivative_of_term();
             [term, first, second, third]
         };
         Self {
-            terms: terms.into_iter().map(with_derivatives).collect(),
+            terms: terms.into_iter().map(term_with_derivatives).collect(),
             sampled,
             noise,
             end: if sampled { end.ceil() } else { end },
@@ -249,7 +252,7 @@ impl ModalSum {
         self.derivative_at(0, t)
     }
 
-    fn enclose_interval(&self, from: f64, to: f64) -> BoundedInterval {
+    fn bound_sum_on_interval(&self, from: f64, to: f64) -> BoundedInterval {
         let half = 0.5 * (to - from);
         let t = from + half;
         let (mut middle, mut near, mut slope, mut curvature, mut far) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -287,10 +290,10 @@ impl ModalSum {
     }
 
     /// Divides a time interval into two halves, with bounds of the sum on each.
-    fn halves_of_interval(&self, interval: &BoundedInterval) -> [BoundedInterval; 2] {
+    fn split_bounded_interval(&self, interval: &BoundedInterval) -> [BoundedInterval; 2] {
         let middle = interval.from + 0.5 * (interval.to - interval.from);
         let middle = if self.sampled { middle.floor() } else { middle };
-        [self.enclose_interval(interval.from, middle), self.enclose_interval(middle, interval.to)]
+        [self.bound_sum_on_interval(interval.from, middle), self.bound_sum_on_interval(middle, interval.to)]
     }
 
     /// Divides a final interval at a local extremum of the sum, so that the sum is monotone on each piece.
@@ -312,7 +315,7 @@ impl ModalSum {
 
     /// Returns the time at which a function of the modal sum changes its sign on an interval where it is
     /// monotone. For a sampled sum this is the sample on the nonnegative side.
-    fn sign_change(&self, f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    fn time_of_sign_change(&self, f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
         if !self.sampled {
             return root_between(|t| f(self.value(t)), from, to);
         }
@@ -332,7 +335,7 @@ impl ModalSum {
     ///
     /// [`Error::NotConverged`] after too many intervals.
     pub fn first_above(&self, level: f64, from: f64) -> Result<f64, Error> {
-        let mut open = vec![self.enclose_interval(from, self.end.max(from))];
+        let mut open = vec![self.bound_sum_on_interval(from, self.end.max(from))];
         let mut count = 0;
         while let Some(interval) = open.pop() {
             if interval.high + self.noise < level {
@@ -344,14 +347,14 @@ impl ModalSum {
                         return Ok(low);
                     }
                     if self.value(high) >= level {
-                        return Ok(self.sign_change(|e| e - level, low, high));
+                        return Ok(self.time_of_sign_change(|e| e - level, low, high));
                     }
                 }
             } else {
-                let [left, right] = self.halves_of_interval(&interval);
+                let [left, right] = self.split_bounded_interval(&interval);
                 open.extend([right, left]);
             }
-            count_interval(&mut count)?;
+            count_interval_within_limit(&mut count)?;
         }
         Ok(self.end.max(from))
     }
@@ -363,7 +366,7 @@ impl ModalSum {
     ///
     /// [`Error::NotConverged`] after too many intervals.
     pub fn last_outside(&self, band: f64, from: f64) -> Result<Option<f64>, Error> {
-        let mut open = vec![self.enclose_interval(from, self.end.max(from))];
+        let mut open = vec![self.bound_sum_on_interval(from, self.end.max(from))];
         let mut count = 0;
         while let Some(interval) = open.pop() {
             if interval.high.max(-interval.low) + self.noise <= band {
@@ -375,13 +378,13 @@ impl ModalSum {
                         return Ok(Some(high));
                     }
                     if self.value(low).abs() > band {
-                        return Ok(Some(self.sign_change(|e| e.abs() - band, low, high)));
+                        return Ok(Some(self.time_of_sign_change(|e| e.abs() - band, low, high)));
                     }
                 }
             } else {
-                open.extend(self.halves_of_interval(&interval));
+                open.extend(self.split_bounded_interval(&interval));
             }
-            count_interval(&mut count)?;
+            count_interval_within_limit(&mut count)?;
         }
         Ok((self.value(from).abs() > band).then_some(from))
     }
@@ -398,10 +401,10 @@ impl ModalSum {
         let bound_of_interval =
             |interval: &BoundedInterval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
         let mut open = BinaryHeap::new();
-        let whole = self.enclose_interval(from, self.end.max(from));
-        open.push(RankedInterval(bound_of_interval(&whole), whole));
+        let whole = self.bound_sum_on_interval(from, self.end.max(from));
+        open.push(IntervalRankedByBound(bound_of_interval(&whole), whole));
         let mut count = 0;
-        while let Some(RankedInterval(most, interval)) = open.pop() {
+        while let Some(IntervalRankedByBound(most, interval)) = open.pop() {
             if most <= best.1 + 2.0 * self.noise || most < reached {
                 break;
             }
@@ -413,20 +416,20 @@ impl ModalSum {
                     }
                 }
             } else {
-                for half in self.halves_of_interval(&interval) {
+                for half in self.split_bounded_interval(&interval) {
                     if !self.sampled {
                         reached = reached.max(sign * half.middle);
                     }
-                    open.push(RankedInterval(bound_of_interval(&half), half));
+                    open.push(IntervalRankedByBound(bound_of_interval(&half), half));
                 }
             }
-            count_interval(&mut count)?;
+            count_interval_within_limit(&mut count)?;
         }
         Ok((best.0, sign * best.1))
     }
 }
 
-fn count_interval(count: &mut usize) -> Result<(), Error> {
+fn count_interval_within_limit(count: &mut usize) -> Result<(), Error> {
     *count += 1;
     if *count > MAX_INTERVALS { Err(Error::NotConverged { what: "the search over time" }) } else { Ok(()) }
 }

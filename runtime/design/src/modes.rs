@@ -94,12 +94,12 @@ impl Mode {
     }
 
     /// Returns the index of a state by name; zero for an unknown name.
-    pub(crate) fn place_of(&self, state: &str) -> usize {
+    pub(crate) fn index_of_state_name(&self, state: &str) -> usize {
         self.states.iter().position(|s| s.name == state).unwrap_or(0)
     }
 
     /// Returns the unit of a state; `None` if it has no unit.
-    pub(crate) fn unit_of(&self, state: &str) -> Option<&str> {
+    pub(crate) fn unit_of_state(&self, state: &str) -> Option<&str> {
         let found = self.states.iter().find(|s| s.name == state)?;
         Some(found.unit.as_str()).filter(|unit| !unit.is_empty())
     }

@@ -65,25 +65,25 @@ impl StateSpace {
                 Err(_) => f64::INFINITY,
             }
         };
-        let top = self.highest_frequency();
+        let top = self.upper_frequency_limit();
         let mut best = PeakGain { gain: gain_at_frequency(top), frequency: top };
         let mut improve = |frequencies: &mut dyn Iterator<Item = f64>| {
             let before = best.gain;
             for w in frequencies {
                 let gain = gain_at_frequency(w);
                 // Smaller differences are rounding errors.
-                if extreme.is_beyond(gain, extreme.level_beyond(best.gain, 1e-14)) {
+                if extreme.is_more_extreme(gain, extreme.level_beyond_gain(best.gain, 1e-14)) {
                     best = PeakGain { gain, frequency: w };
                 }
             }
             (before, best)
         };
-        let (_, mut found) = improve(&mut self.root_frequencies()?.into_iter().chain([0.0]));
+        let (_, mut found) = improve(&mut self.pole_and_zero_frequencies()?.into_iter().chain([0.0]));
         // Levels near the gain of high frequencies are also crossed at very high frequencies; hence coarse
         // steps first.
         for step in [1e-3, 1e-6, 1e-9, 1e-12] {
             for _ in 0..60 {
-                let level = extreme.level_beyond(found.gain, step);
+                let level = extreme.level_beyond_gain(found.gain, step);
                 if !(level > 0.0 && level.is_finite()) {
                     return Ok(found);
                 }
@@ -97,7 +97,7 @@ impl StateSpace {
                 let ends = ends.into_iter().flatten().filter(|w| *w < top);
                 let (before, now) = improve(&mut between.chain(ends).chain(crossings.iter().copied()));
                 found = now;
-                if !extreme.is_beyond(now.gain, extreme.level_beyond(before, step)) {
+                if !extreme.is_more_extreme(now.gain, extreme.level_beyond_gain(before, step)) {
                     break;
                 }
             }
@@ -120,7 +120,7 @@ pub(crate) enum GainExtremum {
 }
 
 impl GainExtremum {
-    fn is_beyond(self, one: f64, other: f64) -> bool {
+    fn is_more_extreme(self, one: f64, other: f64) -> bool {
         match self {
             Self::Largest => one > other,
             Self::Least => one < other,
@@ -129,7 +129,7 @@ impl GainExtremum {
 
     /// Returns a level that is beyond a gain by a fraction of it: above it for a maximum, below it for a
     /// minimum.
-    fn level_beyond(self, gain: f64, part: f64) -> f64 {
+    fn level_beyond_gain(self, gain: f64, part: f64) -> f64 {
         match self {
             Self::Largest => gain * (1.0 + part),
             Self::Least => gain * (1.0 - part),

@@ -25,7 +25,7 @@ mod panel;
 pub use chart::Chart;
 pub use modes::{modes, named_modes};
 
-fn diagram_title(response: &FrequencyResponse) -> String {
+fn frequency_response_title(response: &FrequencyResponse) -> String {
     format!("from {} to {}", response.input.name, response.output.name)
 }
 
@@ -49,7 +49,7 @@ pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
         ..Panel::default()
     };
     let above = bode_panel(
-        format!("Bode diagram, {}", diagram_title(response)),
+        format!("Bode diagram, {}", frequency_response_title(response)),
         "magnitude, dB",
         response.decibels(),
     );
@@ -74,7 +74,7 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     let smooth = smooth_curve(&response.values);
     let nyquist_points = |sign: f64| smooth.iter().map(|x| (x.re, sign * x.im)).collect();
     let panel = Panel {
-        title: format!("Nyquist diagram, {}", diagram_title(response)),
+        title: format!("Nyquist diagram, {}", frequency_response_title(response)),
         x: "real part".into(),
         y: "imaginary part".into(),
         equal: true,

@@ -75,7 +75,7 @@ impl Polynomial {
 
     /// Returns a bound of the rounding error of the polynomial's value at a point of this magnitude, which
     /// may be a rounded root.
-    pub(crate) fn rounding_at(&self, magnitude: f64) -> f64 {
+    pub(crate) fn rounding_bound_at(&self, magnitude: f64) -> f64 {
         let sum = self.coefficients.iter().fold(0.0, |sum, c| sum * magnitude + c.abs());
         64.0 * f64::EPSILON * self.coefficients.len() as f64 * sum
     }

@@ -20,7 +20,7 @@ pub struct RootLocus {
 }
 
 /// Orders closed-loop poles by branch: each is matched with a near pole of the previous gain.
-fn order_along_branches(before: &[C], mut now: Vec<C>) -> Vec<C> {
+fn order_poles_along_branches(before: &[C], mut now: Vec<C>) -> Vec<C> {
     let mut order = vec![C::new(0.0, 0.0); before.len()];
     let mut free: Vec<usize> = (0..before.len()).collect();
     // The nearest pair is matched first, so that no branch continues into another.
@@ -43,13 +43,13 @@ impl StateSpace {
     /// [`Error::Count`] unless the system has one input and one output, [`Error::AlgebraicLoop`] at a gain of
     /// `−1 / D`.
     pub fn root_locus(&self, gains: &[f64]) -> Result<RootLocus, Error> {
-        self.check_single()?;
+        self.check_single_input_and_output()?;
         let (poles, zeros) = (self.poles()?, self.zeros()?);
         let mut branches: Vec<Vec<C>> = vec![Vec::new(); poles.len()];
         let mut before = poles.clone();
         for k in gains {
             let closed = self.feedback_gain(&DMatrix::from_element(1, 1, *k))?;
-            before = order_along_branches(&before, closed.poles()?);
+            before = order_poles_along_branches(&before, closed.poles()?);
             branches.iter_mut().zip(&before).for_each(|(branch, pole)| branch.push(*pole));
         }
         Ok(RootLocus { gains: gains.to_vec(), branches, poles, zeros, period: self.period })
@@ -63,13 +63,13 @@ impl StateSpace {
     ///
     /// As for [`root_locus`](Self::root_locus).
     pub fn locus_gains(&self) -> Result<Vec<f64>, Error> {
-        self.check_single()?;
+        self.check_single_input_and_output()?;
         let poles = self.poles()?;
         let all = poles.iter().copied().chain(self.zeros()?);
         let size = all.map(|x| x.norm()).fold(1e-6, f64::max);
-        let pole_shift = |k: f64| -> Result<f64, Error> {
+        let largest_pole_shift = |k: f64| -> Result<f64, Error> {
             let closed = self.feedback_gain(&DMatrix::from_element(1, 1, k))?.poles()?;
-            Ok(order_along_branches(&poles, closed)
+            Ok(order_poles_along_branches(&poles, closed)
                 .iter()
                 .zip(&poles)
                 .map(|(a, b)| (a - b).norm())
@@ -77,13 +77,13 @@ impl StateSpace {
         };
         let (mut low, mut high) = (1.0, 1.0);
         for _ in 0..60 {
-            if pole_shift(low)? <= 0.01 * size {
+            if largest_pole_shift(low)? <= 0.01 * size {
                 break;
             }
             low *= 0.4;
         }
         for _ in 0..60 {
-            if pole_shift(high)? >= 4.0 * size {
+            if largest_pole_shift(high)? >= 4.0 * size {
                 break;
             }
             high *= 2.5;

@@ -150,7 +150,7 @@ impl Polynomial {
     ///
     /// [`Error::NotFinite`].
     pub fn stable_gains(&self, other: &Self) -> Result<Vec<GainRange>, Error> {
-        let mut critical = self.critical_gains(other)?;
+        let mut critical = self.candidate_critical_gains(other)?;
         critical.sort_by(f64::total_cmp);
         critical.dedup_by(|a, b| (*a - *b).abs() <= 1e-12 * b.abs());
         let mut ends = vec![f64::NEG_INFINITY];
@@ -183,7 +183,7 @@ impl Polynomial {
 
     /// Returns candidates that include all gains at which a root is on the imaginary axis or at infinity. The
     /// list may contain other gains as well.
-    fn critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
+    fn candidate_critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
         let mirrored_polynomial = |p: &Self| {
             let n = p.degree();
             let signs = p.coefficients().iter().enumerate();
@@ -197,7 +197,7 @@ impl Polynomial {
         for w in points {
             let s = C::new(0.0, w);
             // At a zero of q the gain is infinite.
-            if other.at(s).norm() > other.rounding_at(w) {
+            if other.at(s).norm() > other.rounding_bound_at(w) {
                 found.push((-self.at(s) / other.at(s)).re);
             }
         }

@@ -1,6 +1,6 @@
 //! Second-order systems: mass, damping, gyroscopic, stiffness and circulatory matrices.
 
-use crate::matrices::{check_matrix, check_square, solve_linear_system};
+use crate::matrices::{check_matrix, checked_square_size, solve_linear_system};
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
 
@@ -41,7 +41,7 @@ impl SecondOrderForm {
         position: DMatrix<f64>,
         input: DMatrix<f64>,
     ) -> Result<Self, Error> {
-        let n = check_square("M", &mass)?;
+        let n = checked_square_size("M", &mass)?;
         check_matrix("the matrix by velocities", &velocity, n, n)?;
         check_matrix("the matrix by positions", &position, n, n)?;
         check_matrix("B", &input, n, input.ncols())?;

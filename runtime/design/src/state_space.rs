@@ -1,7 +1,7 @@
 //! Linear systems in state-space form.
 
 use crate::Error;
-use crate::matrices::{C, check_matrix, check_square, eigenvalues};
+use crate::matrices::{C, check_matrix, checked_square_size, eigenvalues};
 use nalgebra::DMatrix;
 use std::fmt;
 
@@ -106,7 +106,7 @@ impl StateSpace {
     ///
     /// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, Error> {
-        let n = check_square("A", &a)?;
+        let n = checked_square_size("A", &a)?;
         check_matrix("B", &b, n, b.ncols())?;
         check_matrix("C", &c, c.nrows(), n)?;
         check_matrix("D", &d, c.nrows(), b.ncols())?;
@@ -239,12 +239,12 @@ impl StateSpace {
     /// Returns the pole with the largest real part (largest magnitude for a discrete system), if the system
     /// is unstable.
     pub(crate) fn unstable_pole(&self) -> Result<Option<C>, Error> {
-        let excess_over_stability = |p: &C| if self.period.is_some() { p.norm() - 1.0 } else { p.re };
+        let pole_excess_over_stability = |p: &C| if self.period.is_some() { p.norm() - 1.0 } else { p.re };
         let worst = self
             .poles()?
             .into_iter()
-            .max_by(|a, b| excess_over_stability(a).total_cmp(&excess_over_stability(b)));
-        Ok(worst.filter(|p| excess_over_stability(p) >= 0.0))
+            .max_by(|a, b| pole_excess_over_stability(a).total_cmp(&pole_excess_over_stability(b)));
+        Ok(worst.filter(|p| pole_excess_over_stability(p) >= 0.0))
     }
 
     /// Returns an error that names an unstable pole, if the system has one.

@@ -50,7 +50,7 @@ pub use stiffness::{Stiffness, Verdict};
 type MechanismFamily<'m, M> = dyn Fn(&[f64]) -> M + 'm;
 
 /// Mechanism of a trim: either fixed, or built for each set of parameters.
-enum MechanismSource<'m, M> {
+enum TrimMechanism<'m, M> {
     Given(&'m M),
     Family(Box<MechanismFamily<'m, M>>),
 }
@@ -86,7 +86,7 @@ type ConditionQuantity<'m, M, const NQ: usize, const NV: usize, const NU: usize>
 /// mechanism, are unknown unless they are [fixed](Trim::fix), and their rates are zero. Constraints are
 /// always conditions.
 pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
-    source: MechanismSource<'m, M>,
+    source: TrimMechanism<'m, M>,
     t: f64,
     q: SVector<f64, NQ>,
     v: SVector<f64, NV>,
@@ -206,7 +206,7 @@ where
 {
     fn new(m: &'m M) -> Self {
         Self {
-            source: MechanismSource::Given(m),
+            source: TrimMechanism::Given(m),
             t: 0.0,
             q: m.neutral(),
             v: SVector::zeros(),
@@ -422,7 +422,7 @@ where
         family: impl Fn(&[f64]) -> M + 'm,
     ) -> Self {
         self.parameters = guesses.into_iter().map(|(name, guess)| (name.into(), guess)).collect();
-        self.source = MechanismSource::Family(Box::new(family));
+        self.source = TrimMechanism::Family(Box::new(family));
         self
     }
 
@@ -488,17 +488,17 @@ where
         const APART: f64 = 1e-6;
         let differs =
             |a: &[f64], b: &[f64]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > APART * a.abs().max(1.0));
-        let way = self.with_mechanism(&one.parameters, |m| m.difference(&one.q, &other.q));
+        let way = self.call_with_mechanism(&one.parameters, |m| m.difference(&one.q, &other.q));
         way.amax() > APART
             || differs(one.v.as_slice(), other.v.as_slice())
             || differs(one.u.as_slice(), other.u.as_slice())
             || differs(&one.parameters, &other.parameters)
     }
 
-    fn with_mechanism<R>(&self, parameters: &[f64], f: impl FnOnce(&M) -> R) -> R {
+    fn call_with_mechanism<R>(&self, parameters: &[f64], f: impl FnOnce(&M) -> R) -> R {
         match &self.source {
-            MechanismSource::Given(m) => f(m),
-            MechanismSource::Family(family) => f(&family(parameters)),
+            TrimMechanism::Given(m) => f(m),
+            TrimMechanism::Family(family) => f(&family(parameters)),
         }
     }
 }

@@ -46,15 +46,15 @@ impl Default for StepLimits {
 
 /// Deviation of a step response from its final value, relative to the final value, as a function of time or
 /// of the sample index.
-struct StepDeviation {
+struct StepResponseDeviation {
     /// First samples of the deviation of a discrete system, which its modes do not describe.
     first: Vec<f64>,
     modes: ModalSum,
 }
 
-impl StepDeviation {
+impl StepResponseDeviation {
     /// Returns the first instant at which the modes alone describe the deviation.
-    fn start_of_modal_sum(&self) -> f64 {
+    fn first_instant_of_modal_sum(&self) -> f64 {
         self.first.len() as f64
     }
 
@@ -63,14 +63,14 @@ impl StepDeviation {
     fn first_above(&self, level: f64) -> Result<f64, Error> {
         match self.first.iter().position(|e| *e >= level) {
             Some(k) => Ok(k as f64),
-            None => self.modes.first_above(level, self.start_of_modal_sum()),
+            None => self.modes.first_above(level, self.first_instant_of_modal_sum()),
         }
     }
 
     /// Returns the last instant at which the magnitude of the deviation of the step response exceeds a band.
     fn last_outside(&self, band: f64) -> Result<Option<f64>, Error> {
         let early = self.first.iter().rposition(|e| e.abs() > band).map(|k| k as f64);
-        Ok(self.modes.last_outside(band, self.start_of_modal_sum())?.or(early))
+        Ok(self.modes.last_outside(band, self.first_instant_of_modal_sum())?.or(early))
     }
 
     /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the deviation
@@ -79,7 +79,7 @@ impl StepDeviation {
     fn extreme_deviation(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
-        let late = self.modes.extreme(sign, from.max(self.start_of_modal_sum()))?;
+        let late = self.modes.extreme(sign, from.max(self.first_instant_of_modal_sum()))?;
         let best = early.filter(|early| sign * early.1 >= sign * late.1).unwrap_or(late);
         let initial = self.first.get(from as usize).copied().unwrap_or_else(|| self.modes.value(from));
         Ok(if sign * best.1 > self.modes.noise {
@@ -122,7 +122,7 @@ impl StateSpace {
     /// As for [`step_figures`](Self::step_figures), and [`Error::Range`] for limits outside their meaningful
     /// range.
     pub fn step_figures_within(&self, limits: StepLimits) -> Result<StepFigures, Error> {
-        self.check_single()?;
+        self.check_single_input_and_output()?;
         self.check_stable()?;
         let (low, high) = limits.rise;
         for (what, value) in
@@ -146,21 +146,26 @@ impl StateSpace {
             (Some(last), Some(_)) => last + 1.0,
         };
         let (top, bottom) = (distance.extreme_deviation(1.0, 0.0)?, distance.extreme_deviation(-1.0, 0.0)?);
-        let relative_extreme = |extreme: (f64, f64)| 1.0 + extreme.1;
-        let peak = if relative_extreme(top).abs() >= relative_extreme(bottom).abs() { top } else { bottom };
+        let extreme_relative_to_final_value = |extreme: (f64, f64)| 1.0 + extreme.1;
+        let peak =
+            if extreme_relative_to_final_value(top).abs() >= extreme_relative_to_final_value(bottom).abs() {
+                top
+            } else {
+                bottom
+            };
         let after_rise = [distance.extreme_deviation(1.0, to)?, distance.extreme_deviation(-1.0, to)?];
-        let after_rise = after_rise.map(|extreme| final_value * relative_extreme(extreme));
+        let after_rise = after_rise.map(|extreme| final_value * extreme_relative_to_final_value(extreme));
         Ok(StepFigures {
             final_value,
             rise_time: (to - from) * period,
             settling_time: settling_time * period,
             overshoot: 100.0 * top.1.max(0.0),
-            undershoot: if -relative_extreme(bottom) > distance.modes.noise {
-                -100.0 * relative_extreme(bottom)
+            undershoot: if -extreme_relative_to_final_value(bottom) > distance.modes.noise {
+                -100.0 * extreme_relative_to_final_value(bottom)
             } else {
                 0.0
             },
-            peak: (final_value * relative_extreme(peak)).abs(),
+            peak: (final_value * extreme_relative_to_final_value(peak)).abs(),
             peak_time: peak.0 * period,
             least_after_rise: after_rise[0].min(after_rise[1]),
             largest_after_rise: after_rise[0].max(after_rise[1]),
@@ -168,7 +173,7 @@ impl StateSpace {
     }
 
     /// Computes the deviation of the step response from its final value, as a function of time.
-    fn distance_from_final_value(&self, final_value: f64) -> Result<StepDeviation, Error> {
+    fn distance_from_final_value(&self, final_value: f64) -> Result<StepResponseDeviation, Error> {
         let n = self.order();
         // The initial value of x − x∞ is −x∞.
         let (left, what) = match self.period {
@@ -185,7 +190,7 @@ impl StateSpace {
                 x = &self.a * x;
             }
         }
-        Ok(StepDeviation { first, modes })
+        Ok(StepResponseDeviation { first, modes })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Controllability and observability of linear systems.
 
 use crate::matrices::{
-    C, CMatrix, RowCompression, balance_system, discrete_lyapunov, lyapunov, smallest_singular,
+    C, CMatrix, RowCompression, balance_system, discrete_lyapunov, lyapunov, smallest_singular_value,
 };
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
@@ -205,7 +205,7 @@ impl StateSpace {
                 let entry = C::new(scaled.a[(i, j)], 0.0);
                 if i == j { entry - pole } else { entry }
             });
-            (pole, smallest_singular(&test) / size)
+            (pole, smallest_singular_value(&test) / size)
         };
         Ok(self.poles()?.into_iter().map(distance_to_uncontrollability).collect())
     }

@@ -28,7 +28,7 @@ fn to_dual_numbers<const N: usize>(x: &SVector<f64, N>) -> SVector<Dual64, N> {
 }
 
 #[track_caller]
-fn assert_agreement(what: &str, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
+fn assert_matrices_agree(what: &str, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
     assert_eq!(found.shape(), expected.shape(), "{what}");
     let (error, size) = ((found - expected).amax(), expected.amax().max(1e-3));
     assert!(error <= ROUNDING * size, "{what} is {error:e} off: found {found}expected {expected}");
@@ -76,16 +76,16 @@ static ANGLES: [f64; 5] = [-1.6, -0.5, 0.1, 0.6, 1.7];
 static LIFTS: [f64; 5] = [-0.3, -0.9, 0.6, 1.4, 0.2];
 
 fn unsteady_aircraft<T: Real>(state: T) -> UnsteadyAircraft<T> {
-    let constant_number = |x: f64| nalgebra::convert(x);
+    let scalar_from_f64 = |x: f64| nalgebra::convert(x);
     let lift = Table::new([&ANGLES], &LIFTS).unwrap().smooth();
     UnsteadyAircraft {
-        mass: constant_number(900.0),
-        area: constant_number(12.0),
-        chord: constant_number(1.4),
-        lag: constant_number(0.7),
+        mass: scalar_from_f64(900.0),
+        area: scalar_from_f64(12.0),
+        chord: scalar_from_f64(1.4),
+        lag: scalar_from_f64(0.7),
         lift,
-        lift_rate: constant_number(300.0),
-        moment_rate: constant_number(-90.0),
+        lift_rate: scalar_from_f64(300.0),
+        moment_rate: scalar_from_f64(-90.0),
         power: state,
     }
 }
@@ -116,17 +116,17 @@ fn linear_systems_match_automatic_differentiation() {
         let rows = system.a().rows(6, 7);
         let displaced_motion =
             |by: SVector<Dual64, 7>| acceleration_of_whole(&whole.integrate(&q, &by), &v, &u);
-        assert_agreement(
+        assert_matrices_agree(
             "∂v̇/∂q",
             &rows.columns(0, 6).clone_owned(),
             &dual_derivatives(displaced_motion).columns(0, 6).clone_owned(),
         );
-        assert_agreement(
+        assert_matrices_agree(
             "∂v̇/∂v",
             &rows.columns(6, 7).clone_owned(),
             &dual_derivatives(|by| acceleration_of_whole(&q, &(v + by), &u)),
         );
-        assert_agreement(
+        assert_matrices_agree(
             "B",
             &system.b().rows(6, 7).clone_owned(),
             &dual_derivatives(|by| acceleration_of_whole(&q, &v, &(u + by))),
@@ -159,7 +159,7 @@ struct CoupledPendulum<T: Real> {
     pushed: Force,
 }
 
-fn coupled_mechanism<T: Real>() -> CoupledPendulum<T> {
+fn sample_coupled_pendulum<T: Real>() -> CoupledPendulum<T> {
     CoupledPendulum {
         gain: nalgebra::convert(0.2),
         share: nalgebra::convert(0.5),
@@ -171,25 +171,25 @@ fn coupled_mechanism<T: Real>() -> CoupledPendulum<T> {
 fn second_order_forms_match_inverse_dynamics() {
     for (q, v, u) in [([0.0, 0.0], [0.0, 0.0], [0.0]), ([0.3, -0.7], [0.5, 1.2], [2.0])] {
         let (q, v, u) = (q.into(), v.into(), u.into());
-        let form = second_order_form(&coupled_mechanism::<f64>(), &q, &v, &u).unwrap();
-        let dual = coupled_mechanism::<Dual64>();
-        let motion = linear_system(&coupled_mechanism::<f64>(), &q, &v, &u).unwrap();
-        let forces = coupled_mechanism::<f64>().generalized_forces(&q, &v, &u);
-        let a = to_dual_numbers(&coupled_mechanism::<f64>().forward_dynamics(&q, &v, &forces));
+        let form = second_order_form(&sample_coupled_pendulum::<f64>(), &q, &v, &u).unwrap();
+        let dual = sample_coupled_pendulum::<Dual64>();
+        let motion = linear_system(&sample_coupled_pendulum::<f64>(), &q, &v, &u).unwrap();
+        let forces = sample_coupled_pendulum::<f64>().generalized_forces(&q, &v, &u);
+        let a = to_dual_numbers(&sample_coupled_pendulum::<f64>().forward_dynamics(&q, &v, &forces));
         let (q, v, u) = (to_dual_numbers(&q), to_dual_numbers(&v), to_dual_numbers(&u));
         // Residual of the equations of motion: τ(q, v, a) − f(q, u).
         let missing =
             |q: &_, v: &_, a: &_, u: &_| dual.inverse_dynamics(q, v, a) - dual.generalized_forces(q, v, u);
-        assert_agreement("M", &form.mass, &dual_derivatives(|by| missing(&q, &v, &(a + by), &u)));
+        assert_matrices_agree("M", &form.mass, &dual_derivatives(|by| missing(&q, &v, &(a + by), &u)));
         let velocity = &form.damping + &form.gyroscopic;
-        assert_agreement("D + G", &velocity, &dual_derivatives(|by| missing(&q, &(v + by), &a, &u)));
+        assert_matrices_agree("D + G", &velocity, &dual_derivatives(|by| missing(&q, &(v + by), &a, &u)));
         let position = &form.stiffness + &form.circulatory;
-        assert_agreement("K + N", &position, &dual_derivatives(|by| missing(&(q + by), &v, &a, &u)));
-        assert_agreement("B", &form.input, &-dual_derivatives(|by| missing(&q, &v, &a, &(u + by))));
+        assert_matrices_agree("K + N", &position, &dual_derivatives(|by| missing(&(q + by), &v, &a, &u)));
+        assert_matrices_agree("B", &form.input, &-dual_derivatives(|by| missing(&q, &v, &a, &(u + by))));
         assert!((form.mass[(0, 1)] - form.mass[(1, 0)]).abs() > 0.01, "not symmetric");
         let again = form.state_space().unwrap();
-        assert_agreement("A", again.a(), motion.a());
-        assert_agreement("B", again.b(), motion.b());
+        assert_matrices_agree("A", again.a(), motion.a());
+        assert_matrices_agree("B", again.b(), motion.b());
     }
 }
 
@@ -218,7 +218,7 @@ struct CoupledCarts {
 }
 
 #[test]
-fn steady_motion_with_acceleration_forces() {
+fn modes_and_equilibria_use_effective_mass() {
     let carts = CoupledCarts { forth: 0.8, back: -0.1 };
     // The second cart is locked: the first one oscillates with its own effective mass, 2 + 0.5 kg.
     let held = equilibrium(&carts).hold(["right"]);

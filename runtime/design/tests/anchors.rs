@@ -86,7 +86,7 @@ fn jet_transport_channels_match_published() {
 }
 
 #[test]
-fn jet_transport_frequency_response() {
+fn jet_transport_response_matches_reference() {
     let frequencies = [0.1, 0.5, 1.0, 2.0, 10.0];
     let response = jet_transport().frequency_response("yaw rate", "rudder", &frequencies).unwrap();
     // Recomputed with 40 digits (mpmath).
@@ -99,7 +99,7 @@ fn jet_transport_frequency_response() {
 }
 
 #[test]
-fn jet_transport_yaw_damper() {
+fn yaw_damper_moves_poles_to_published_values() {
     let yaw = jet_transport().channel("yaw rate", "rudder").unwrap();
     let closed = yaw.feedback_gain(&dmatrix![-2.85]).unwrap().poles().unwrap();
     assert_contains_pole(&closed, -0.297221693126074, 0.60611851148743, 1e-12);
@@ -244,7 +244,7 @@ fn whipple_bicycle_matches_benchmark() {
 /// Compares with exact solutions of Benner, Laub and Mehrmann, *A collection of benchmark examples for the
 /// numerical solution of algebraic Riccati equations* (1995), continuous time, examples 1, 2, 7 and 12.
 #[test]
-fn riccati_benchmarks() {
+fn riccati_solutions_match_benchmarks() {
     let assert_same_matrix = |found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64| {
         assert!(
             (found - expected).norm() <= tolerance * expected.norm(),
@@ -291,7 +291,7 @@ fn riccati_benchmarks() {
 /// Compares with exact solutions of Benner, Laub and Mehrmann's collection for discrete time, in which the
 /// weight of the inputs may vanish.
 #[test]
-fn discrete_riccati_benchmarks() {
+fn discrete_riccati_benchmarks_match_exact_solutions() {
     let (a, b) = (dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0]);
     let q = dmatrix![1.0, 2.0; 2.0, 4.0];
     let x = discrete_riccati(&a, &b, &Cost::new(q, DMatrix::identity(1, 1))).unwrap().x;
@@ -305,7 +305,7 @@ fn discrete_riccati_benchmarks() {
 /// Checks the gain margin of `K / (s + 1)ⁿ`, which crosses the real axis at `tan(π/n)` with gain `cosⁿ(π/n)`,
 /// and of `K / (s (s + 1) (s + 5))`, which crosses it at `√5` with gain `K / 30`.
 #[test]
-fn margins_of_repeated_poles() {
+fn repeated_poles_have_closed_form_gain_margin() {
     for n in [3_usize, 4, 5, 8] {
         let roots = vec![C::new(-1.0, 0.0); n];
         let denominator = Polynomial::from_roots(&roots);

@@ -38,7 +38,7 @@ fn integrator_system() -> StateSpace {
     system_without_feedthrough(dmatrix![0.0], dmatrix![1.0], dmatrix![1.0])
 }
 
-fn two_inputs() -> StateSpace {
+fn system_with_two_inputs() -> StateSpace {
     system_without_feedthrough(dmatrix![-1.0], dmatrix![1.0, 2.0], dmatrix![1.0])
 }
 
@@ -168,8 +168,8 @@ fn unstable_systems_name_the_pole() {
     );
     assert_error_message(cancel, matrices::lyapunov(&dmatrix![0.0], &dmatrix![1.0]));
     assert_error_message(cancel, matrices::discrete_lyapunov(&dmatrix![1.0], &dmatrix![1.0]));
-    assert_error_message("expected 1 input, found 2", two_inputs().step_figures());
-    assert_error_message("expected 1 input, found 2", two_inputs().margins());
+    assert_error_message("expected 1 input, found 2", system_with_two_inputs().step_figures());
+    assert_error_message("expected 1 input, found 2", system_with_two_inputs().margins());
     let limits = StepLimits { settling: -0.02, ..StepLimits::default() };
     assert_error_message("a band of -0.02 is not allowed", stable_system().step_figures_within(limits));
 }
@@ -329,7 +329,7 @@ fn unknown_names_suggest_the_nearest() {
 
 /// Checks systems without states, inputs or outputs: results are empty, zero or an error, never a panic.
 #[test]
-fn systems_without_states_inputs_or_outputs() {
+fn systems_without_states_or_signals_do_not_panic() {
     let still = gain_system(2.0);
     assert!(still.modes().unwrap().is_empty() && still.poles().unwrap().is_empty());
     assert!(still.zeros().unwrap().is_empty() && still.hankel_values().unwrap().is_empty());
@@ -346,7 +346,7 @@ fn systems_without_states_inputs_or_outputs() {
 }
 
 #[test]
-fn empty_pictures_are_drawn() {
+fn pictures_without_data_are_errors() {
     let text = "no picture: no finite values to draw";
     let nothing = stable_system().frequency_response(0, 0, &[]).unwrap();
     assert_error_message(text, picture::bode(&nothing));
@@ -402,38 +402,47 @@ fn linearisation_off_steady_state_is_an_error() {
 fn wrongly_posed_trims_are_errors() {
     let whole = Pendulum { lag: 0.2, torque: 0.0 };
     let whole = whole.extended();
-    let equilibrium_of_whole = || equilibrium(&whole);
+    let unsolved_equilibrium_problem = || equilibrium(&whole);
     let unknown_name_message =
         |kind: &str| format!("no {kind} `hing`, perhaps `hinge`; there are hinge, torque");
     assert_error_message(
         &unknown_name_message("coordinate"),
-        equilibrium_of_whole().coordinates(["hing"]).find(),
-    );
-    assert_error_message(&unknown_name_message("coordinate"), equilibrium_of_whole().fix(["hing"]).find());
-    assert_error_message(&unknown_name_message("coordinate"), equilibrium_of_whole().hold(["hing"]).find());
-    assert_error_message(&unknown_name_message("speed"), equilibrium_of_whole().speeds(["hing"]).find());
-    assert_error_message(
-        &unknown_name_message("velocity"),
-        equilibrium_of_whole().accelerating(["hing"]).find(),
+        unsolved_equilibrium_problem().coordinates(["hing"]).find(),
     );
     assert_error_message(
+        &unknown_name_message("coordinate"),
+        unsolved_equilibrium_problem().fix(["hing"]).find(),
+    );
+    assert_error_message(
+        &unknown_name_message("coordinate"),
+        unsolved_equilibrium_problem().hold(["hing"]).find(),
+    );
+    assert_error_message(
+        &unknown_name_message("speed"),
+        unsolved_equilibrium_problem().speeds(["hing"]).find(),
+    );
+    assert_error_message(
         &unknown_name_message("velocity"),
-        equilibrium_of_whole().acceleration("hing", 1.0).find(),
+        unsolved_equilibrium_problem().accelerating(["hing"]).find(),
+    );
+    assert_error_message(
+        &unknown_name_message("velocity"),
+        unsolved_equilibrium_problem().acceleration("hing", 1.0).find(),
     );
     assert_error_message(
         "no input `comand`, perhaps `command`; there are command",
-        equilibrium_of_whole().inputs(["comand"]).find(),
+        unsolved_equilibrium_problem().inputs(["comand"]).find(),
     );
-    let output_at_rest = || equilibrium_of_whole().inputs(["command"]).output("angle", 0.2);
-    let angel = equilibrium_of_whole().inputs(["command"]).output("angel", 0.2);
+    let output_at_rest = || unsolved_equilibrium_problem().inputs(["command"]).output("angle", 0.2);
+    let angel = unsolved_equilibrium_problem().inputs(["command"]).output("angel", 0.2);
     assert_error_message("no output `angel`, perhaps `angle`; there are angle", angel.find());
     assert_error_message(
         "the coordinate `hinge` is requested twice",
-        equilibrium_of_whole().coordinates(["hinge", "hinge"]).find(),
+        unsolved_equilibrium_problem().coordinates(["hinge", "hinge"]).find(),
     );
     assert_error_message(
         "the coordinate `hinge` is requested twice",
-        equilibrium_of_whole().hold(["hinge"]).hold(["hinge"]).find(),
+        unsolved_equilibrium_problem().hold(["hinge"]).hold(["hinge"]).find(),
     );
     assert_error_message(
         "the input `command` is requested twice",
@@ -445,26 +454,26 @@ fn wrongly_posed_trims_are_errors() {
     );
     assert_error_message(
         "the velocity `hinge` is requested twice",
-        equilibrium_of_whole().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
+        unsolved_equilibrium_problem().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
     );
     // Too many unknowns.
     assert_error_message(
         "the conditions do not determine hinge, torque', command at hinge 0.000000, torque' 0.000000, \
          command 0.000000: fix or prescribe one of them, add a condition, or take the nearest",
-        equilibrium_of_whole().inputs(["command"]).find(),
+        unsolved_equilibrium_problem().inputs(["command"]).find(),
     );
     // Too few unknowns, and equal numbers of unknowns and conditions without a solution.
     for (trim, start) in [
         (
-            equilibrium_of_whole().output("angle", 0.2),
+            unsolved_equilibrium_problem().output("angle", 0.2),
             "no steady state near the guess: 2 unknowns for 3 conditions, and `hinge''` is left at ",
         ),
         (
-            equilibrium_of_whole().fix(["hinge"]).from([0.5].into()),
+            unsolved_equilibrium_problem().fix(["hinge"]).from([0.5].into()),
             "no steady state near the guess: one unknown for 2 conditions, and `torque'` is left at ",
         ),
         (
-            equilibrium_of_whole().with_inputs([100.0].into()),
+            unsolved_equilibrium_problem().with_inputs([100.0].into()),
             "no steady state near the guess: 2 unknowns for 2 conditions, and `torque'` is left at ",
         ),
     ] {

@@ -54,7 +54,7 @@ fn biproper_peak(e: f64, f: f64, b: f64, c: f64) -> f64 {
 }
 
 #[test]
-fn peak_gains_of_biproper_systems() {
+fn biproper_systems_have_closed_form_peak_gain() {
     let mut random = Random(1);
     for k in 0..1000 {
         let light = k % 4 == 3;
@@ -82,7 +82,7 @@ fn peak_gains_of_biproper_systems() {
 /// tolerance 1e-13), which returns 1.414487935024265 at 4.638148816470194 rad/s. The largest singular value
 /// of `D` is one; that of the response is larger.
 #[test]
-fn peak_gain_of_two_channels() {
+fn peak_gain_of_two_channels_matches_slicot() {
     let system = StateSpace::new(
         DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, -16.0, -4.0, 0.0, 0.0, 1.0, -1.0]),
         DMatrix::from_row_slice(3, 2, &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]),
@@ -97,7 +97,7 @@ fn peak_gain_of_two_channels() {
 /// Checks that loops whose magnitude does not cross one have no phase margins: all-passes, whose magnitude is
 /// one, and `s / (s + a)`, whose magnitude only approaches one.
 #[test]
-fn loops_without_gain_crossings() {
+fn loops_without_gain_crossings_have_no_phase_margin() {
     let mut random = Random(2);
     for _ in 0..200 {
         let (a, b) = (random.log_uniform_number(1e-2, 1e2), random.log_uniform_number(1e-2, 1e2));
@@ -126,7 +126,7 @@ fn loops_without_gain_crossings() {
 /// `k / (a b (a + b))`. Tustin's rule changes the frequency only. Neither loop has a margin at zero
 /// frequency, where there is a pole, or at the Nyquist frequency, where there is a zero.
 #[test]
-fn gain_margins_of_loops_with_an_integrator() {
+fn integrator_loops_have_closed_form_gain_margins() {
     let mut random = Random(3);
     for _ in 0..120 {
         let (a, b) = (random.log_uniform_number(0.1, 10.0), random.log_uniform_number(0.1, 10.0));
@@ -174,7 +174,7 @@ fn loops_with_two_real_crossings_have_margins_at_the_negative_ones() {
 /// Nyquist frequency only, with magnitude `h / 2`, and has magnitude one at `sin(ω h / 2) = h / 2`. A double
 /// integrator discretised by Tustin's rule is real at all frequencies.
 #[test]
-fn margins_of_held_integrators() {
+fn held_integrator_margins_match_closed_form() {
     let mut random = Random(4);
     for _ in 0..200 {
         let h = random.log_uniform_number(1e-3, 1.0);
@@ -205,7 +205,7 @@ fn margins_of_held_integrators() {
 /// Checks `k / (s (s + a) (s + b))` with crossings up to 15 decades apart: the response is real at `√(a b)`,
 /// and has magnitude one where `x (x + a²) (x + b²) = k²` with `x = ω²`.
 #[test]
-fn crossings_decades_apart() {
+fn crossings_decades_apart_are_found() {
     let mut random = Random(9);
     for _ in 0..300 {
         let (a, b) = (random.log_uniform_number(1e-3, 1e3), random.log_uniform_number(1e-3, 1e3));
@@ -232,7 +232,7 @@ fn crossings_decades_apart() {
 
 /// Compares all crossings of loops with large and small gains with values recomputed with 60 digits (mpmath).
 #[test]
-fn crossings_of_loops_with_extreme_gains() {
+fn crossings_of_extreme_gain_loops_match_reference() {
     let steep = transfer_function(
         &[8382104296.556898, 26490146733.51389, 65074465968.99992, 93444242998.93744],
         &[
@@ -303,26 +303,28 @@ fn crossings_of_loops_with_extreme_gains() {
 /// frequencies.
 #[test]
 fn matched_systems_preserve_low_frequencies() {
-    let matched_coefficients = |g: &TransferFunction, h: f64| {
+    let pole_zero_matched_coefficients = |g: &TransferFunction, h: f64| {
         let matched = g.factored().unwrap().matched(h).unwrap().transfer_function();
         (matched.numerator().coefficients().to_vec(), matched.denominator().coefficients().to_vec())
     };
     let mut random = Random(5);
     for _ in 0..300 {
         let (h, a) = (random.log_uniform_number(1e-4, 10.0), random.log_uniform_number(1e-8, 30.0));
-        let (numerator, denominator) = matched_coefficients(&transfer_function(&[1.0], &[1.0, 0.0]), h);
+        let (numerator, denominator) =
+            pole_zero_matched_coefficients(&transfer_function(&[1.0], &[1.0, 0.0]), h);
         assert_eq!((numerator, denominator), (vec![h], vec![1.0, -1.0]));
-        let (numerator, denominator) = matched_coefficients(&transfer_function(&[1.0], &[1.0, 0.0, 0.0]), h);
+        let (numerator, denominator) =
+            pole_zero_matched_coefficients(&transfer_function(&[1.0], &[1.0, 0.0, 0.0]), h);
         assert_eq!(denominator, [1.0, -2.0, 1.0]);
         numerator.iter().for_each(|found| assert_relatively_close("1 / s²", *found, 0.5 * h * h, 1e-14));
         // 1 / (s (s + a)): h (1 − e^{−a h}) (z + 1) / (2 a (z − 1) (z − e^{−a h})).
-        let (numerator, _) = matched_coefficients(&transfer_function(&[1.0], &[1.0, a, 0.0]), h);
+        let (numerator, _) = pole_zero_matched_coefficients(&transfer_function(&[1.0], &[1.0, a, 0.0]), h);
         let expected = -0.5 * h * (-a * h).exp_m1() / a;
         numerator.iter().for_each(|found| assert_relatively_close("1 / (s (s + a))", *found, expected, 1e-9));
         // a / (s + a) and s / (s + a), whose gains stay accurate for poles near zero.
-        let (numerator, _) = matched_coefficients(&transfer_function(&[a], &[1.0, a]), h);
+        let (numerator, _) = pole_zero_matched_coefficients(&transfer_function(&[a], &[1.0, a]), h);
         assert_relatively_close("a / (s + a)", numerator[0], -(-a * h).exp_m1(), 1e-12);
-        let (numerator, _) = matched_coefficients(&transfer_function(&[1.0, 0.0], &[1.0, a]), h);
+        let (numerator, _) = pole_zero_matched_coefficients(&transfer_function(&[1.0, 0.0], &[1.0, a]), h);
         assert_relatively_close("s / (s + a)", numerator[0], -(-a * h).exp_m1() / (a * h), 1e-12);
     }
     // An oscillation at the sampling frequency is indistinguishable from a pole at zero.
@@ -339,7 +341,7 @@ fn oscillation_deviation(zeta: f64, t: f64) -> f64 {
 
 /// Returns the first time at which the step response of an oscillator reaches a level, by bisection before
 /// the first peak.
-fn first_rise(zeta: f64, level: f64) -> f64 {
+fn first_rise_time(zeta: f64, level: f64) -> f64 {
     let (mut low, mut high) = (0.0, PI / (1.0 - zeta * zeta).sqrt());
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
@@ -349,7 +351,7 @@ fn first_rise(zeta: f64, level: f64) -> f64 {
 }
 
 #[test]
-fn step_figures_of_second_order_systems() {
+fn second_order_step_responses_match_closed_forms() {
     let mut random = Random(6);
     for _ in 0..1000 {
         let (zeta, omega) = (random.log_uniform_number(1e-6, 0.95), random.log_uniform_number(1e-2, 1e3));
@@ -365,7 +367,7 @@ fn step_figures_of_second_order_systems() {
         assert_relatively_close(
             "rise time",
             figures.rise_time * omega,
-            first_rise(zeta, 0.9) - first_rise(zeta, 0.1),
+            first_rise_time(zeta, 0.9) - first_rise_time(zeta, 0.1),
             1e-8,
         );
         // The last extremum outside the band is at half period k; the response enters the band before the
@@ -388,7 +390,7 @@ fn step_figures_of_second_order_systems() {
 /// with `ω` = 1000 reaches 90 % of its final value within the first half period. The expected times were
 /// computed with 50 digits (mpmath).
 #[test]
-fn step_figures_of_two_time_scales() {
+fn step_response_values_of_two_time_scales_are_found() {
     let slow = transfer_function(&[0.5], &[1.0, 1.0]);
     let both = slow.plus(&transfer_function(&[5e5], &[1.0, 100.0, 1e6])).unwrap();
     let figures = both.step_figures().unwrap();
@@ -399,7 +401,7 @@ fn step_figures_of_two_time_scales() {
 
 /// Checks `1 / (s + 1)⁸`, whose poles coincide: the step response is `1 − (1 + t + … + t⁷ / 7!) e^{−t}`.
 #[test]
-fn step_figures_of_repeated_poles() {
+fn repeated_poles_have_closed_form_step_response() {
     let denominator = Polynomial::from_roots(&[C::new(-1.0, 0.0); 8]);
     let system = TransferFunction::quotient(&Polynomial::constant(1.0), &denominator).unwrap();
     let figures = system.step_figures().unwrap();
@@ -431,7 +433,7 @@ fn step_figures_of_repeated_poles() {
 /// Checks the step-response values of an oscillator discretised with a zero-order hold against samples of the
 /// continuous oscillator.
 #[test]
-fn step_figures_of_sampled_systems() {
+fn sampled_step_figures_match_continuous_oscillator() {
     let mut random = Random(7);
     for _ in 0..200 {
         let (zeta, h) = (random.log_uniform_number(3e-4, 0.9), random.log_uniform_number(1e-2, 2.0));
@@ -469,7 +471,7 @@ fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
 /// `k > −1`, and `s³ + k (s² + 2 s + 1)` for `2 k² > k`. The sum of a stable polynomial and a multiple of
 /// itself is stable for all gains except the one that cancels it.
 #[test]
-fn stable_gains_by_hurwitz() {
+fn stable_gains_satisfy_hurwitz_criterion() {
     let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
     /// Denominator and numerator of a loop, and the expected ranges of stable gains.
     type StableGainCase<'a> = (&'a [f64], &'a [f64], &'a [(f64, f64)]);
@@ -489,12 +491,12 @@ fn stable_gains_by_hurwitz() {
     ];
     for (one, other, expected) in cases {
         let found = stable_gains(one, other);
-        let has_same_limits = |(found, (low, high)): (&GainRange, &(f64, f64))| {
+        let has_same_gain_limits = |(found, (low, high)): (&GainRange, &(f64, f64))| {
             let is_equal_or_close = |a: f64, b: f64| a == b || (a - b).abs() < 1e-10;
             is_equal_or_close(found.low, *low) && is_equal_or_close(found.high, *high)
         };
         assert!(
-            found.len() == expected.len() && found.iter().zip(expected).all(has_same_limits),
+            found.len() == expected.len() && found.iter().zip(expected).all(has_same_gain_limits),
             "{one:?} {other:?}: {found:?}"
         );
     }
@@ -502,7 +504,7 @@ fn stable_gains_by_hurwitz() {
 
 /// Checks that a gain is within a range if and only if all roots are in the left half-plane.
 #[test]
-fn stable_gains_by_roots() {
+fn stable_gain_range_matches_root_locations() {
     let mut random = Random(8);
     for round in 0..600 {
         let mut polynomial = |degree: usize| {

@@ -41,7 +41,7 @@ struct BlownParticle {
 /// `m L² θ̈ + c L² cos² θ θ̇ + L √((m g)² + F²) θ = 0` about `tan θ = F / (m g)`. With `x = L sin θ`, the
 /// coefficients of the form in `x` are these divided by `(L cos θ)²`.
 #[test]
-fn particle_on_rod_in_wind() {
+fn particle_on_rod_in_wind_matches_closed_form() {
     let (mass, length, oil, wind) = (2.0, 0.7, 1.3, 8.0);
     let blown = BlownParticle { mass, length, oil };
     let problem = constrained_equilibrium(&blown).from([0.2, -0.6].into()).with_inputs([wind].into());
@@ -96,7 +96,7 @@ struct SliderCrank {
 /// `x(θ) = r cos θ + √(l² − r² sin² θ)` and the angle `φ(θ)` of the rod, whose centre of mass is at the crank
 /// pin: `M = J + m₁ r² + I φ'² + m x'²`, `D = c x'²`, `K = k_θ + k (x'² + x x'')`.
 #[test]
-fn slider_crank_on_springs() {
+fn slider_crank_on_springs_matches_closed_form() {
     let (r, l) = (0.1, 0.25);
     let machine =
         SliderCrank { r, l, inertia: 0.02, piston: 3.0, winding: 20.0, stiffness: 700.0, oil: 25.0 };
@@ -151,7 +151,7 @@ struct RotatingBowl {
 /// Compares the second-order form with the closed form `M = m`, `D = c`, `G = 2 m Ω [[0, −1], [1, 0]]`,
 /// `K = m (g / a − Ω²)`, `N = c Ω [[0, −1], [1, 0]]`.
 #[test]
-fn particle_in_rotating_bowl() {
+fn particle_in_rotating_bowl_has_closed_form() {
     let (mass, radius, spin, air) = (0.4, 0.3, 5.0, 0.7);
     let bowl = RotatingBowl { mass, radius, spin, air };
     let problem = constrained_equilibrium(&bowl).at_time(0.37);

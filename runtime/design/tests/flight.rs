@@ -79,7 +79,7 @@ struct Wing {
 /// Checks that a glide descends at `tan γ = C_D / C_L`, that level flight needs the thrust `m g C_D / C_L`,
 /// and that with a given sink rate `w` the thrust is the drag minus `m g w / V`.
 #[test]
-fn glide_and_level_flight_without_outputs() {
+fn glide_and_level_flight_match_closed_form() {
     let wing = Wing { mass: 300.0, lift_area: 9.0, drag_area: 0.45 };
     let weight = 300.0 * 9.81;
     let equilibrium_of_wing = || equilibrium(&wing).moving([30.0, 1.0].into()).fix(["place.x", "place.y"]);
@@ -179,23 +179,23 @@ struct DampedRotor {
 /// Compares the poles with those of `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` for `z = x + i y` (Genta,
 /// *Dynamics of Rotating Systems*, 2005, § 2.6). The rotor is unstable above the rate `ω (1 + cₑ / cᵢ)`.
 #[test]
-fn rotor_with_internal_damping() {
+fn internally_damped_rotor_has_genta_poles() {
     let rotor_with_spin =
         |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
-    let system_with_spin = |spin| {
+    let linear_system_of_spinning_rotor = |spin| {
         linear_system(&rotor_with_spin(spin), &[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into()).unwrap()
     };
     for spin in [0.0, 15.0, 40.0] {
         let (m, c) = (3.0, 7.0);
         let root = (Complex::new(c * c - 4.0 * m * 1200.0, 4.0 * m * 5.0 * spin)).sqrt();
         for pole in [(root - c) / (2.0 * m), (-root - c) / (2.0 * m)] {
-            assert_contains_pole(&system_with_spin(spin), pole.re, pole.im);
-            assert_contains_pole(&system_with_spin(spin), pole.re, -pole.im);
+            assert_contains_pole(&linear_system_of_spinning_rotor(spin), pole.re, pole.im);
+            assert_contains_pole(&linear_system_of_spinning_rotor(spin), pole.re, -pole.im);
         }
     }
     let threshold = (1200.0_f64 / 3.0).sqrt() * (1.0 + 2.0 / 5.0);
-    assert!(system_with_spin(threshold * (1.0 - 1e-6)).is_stable().unwrap());
-    assert!(!system_with_spin(threshold * (1.0 + 1e-6)).is_stable().unwrap());
+    assert!(linear_system_of_spinning_rotor(threshold * (1.0 - 1e-6)).is_stable().unwrap());
+    assert!(!linear_system_of_spinning_rotor(threshold * (1.0 + 1e-6)).is_stable().unwrap());
 }
 
 /// Test mechanism: a balanced rotor in massless gimbals.
@@ -219,7 +219,7 @@ struct BalancedRotor {
 
 /// Checks the nutation frequency `C n / A` (Magnus, *Kreisel*, 1971).
 #[test]
-fn gyroscope_nutation_frequency() {
+fn gyroscope_nutation_has_textbook_frequency() {
     let (rotor, n) = (BalancedRotor { axial: 0.03, across: 0.02 }, 70.0);
     let q = [0.0, std::f64::consts::FRAC_PI_2, 0.0].into();
     let system = linear_system(&rotor, &q, &[0.0, 0.0, n].into(), &[].into()).unwrap();

@@ -128,7 +128,7 @@ fn impossible_regulators_are_errors() {
 }
 
 #[test]
-fn eigenvalues_of_hard_matrices() {
+fn eigenvalues_of_hard_matrices_are_accurate() {
     // Known spectra by similarity transformations, and a companion matrix of wide range.
     let mut random = RandomNumbers(3);
     for n in 2..20 {

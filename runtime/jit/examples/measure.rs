@@ -26,8 +26,8 @@ fn main() -> Result<(), Error> {
     println!("{robot:?}");
     println!(
         "loaded in {:.2} ms, first inverse dynamics after {:.2} ms",
-        milliseconds(loaded),
-        milliseconds(start.elapsed())
+        duration_in_milliseconds(loaded),
+        duration_in_milliseconds(start.elapsed())
     );
     let oracle = loader_of_file(&file, &options, name.as_deref()).interpreted().load()?;
     let oracle = fill_missing_parameters(oracle)?;
@@ -37,7 +37,7 @@ fn main() -> Result<(), Error> {
     for f in robot.functions() {
         let start = Instant::now();
         let compiled = f.compile();
-        let code = milliseconds(start.elapsed());
+        let code = duration_in_milliseconds(start.elapsed());
         total += code;
         let lists: Vec<Vec<f64>> = argument_values(&robot, &f.arguments());
         let lists: Vec<&[f64]> = lists.iter().map(Vec::as_slice).collect();
@@ -45,11 +45,11 @@ fn main() -> Result<(), Error> {
         robot.evaluate_into(&f, &lists, &mut out)?;
         let expected = oracle.evaluate(&oracle.function(f.name())?, &lists)?;
         let scale = expected.iter().filter(|x| x.is_finite()).fold(1.0_f64, |most, x| most.max(x.abs()));
-        let both_nan = |a: f64, b: f64| a.is_nan() && b.is_nan() || a == b;
+        let both_nan_or_equal = |a: f64, b: f64| a.is_nan() && b.is_nan() || a == b;
         let deviation = out
             .iter()
             .zip(&expected)
-            .map(|(a, b)| if both_nan(*a, *b) { 0.0 } else { (a - b).abs() / scale });
+            .map(|(a, b)| if both_nan_or_equal(*a, *b) { 0.0 } else { (a - b).abs() / scale });
         let deviation =
             deviation.fold(0.0_f64, |most, x| if x.is_nan() { f64::INFINITY } else { most.max(x) });
         worst = worst.max(deviation);
@@ -101,6 +101,6 @@ fn argument_values(robot: &Robot, list: &[(&str, usize)]) -> Vec<Vec<f64>> {
     each.collect()
 }
 
-fn milliseconds(time: std::time::Duration) -> f64 {
+fn duration_in_milliseconds(time: std::time::Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }

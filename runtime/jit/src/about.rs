@@ -3,24 +3,24 @@
 use crate::robot::Robot;
 use crate::shared::{Quantity, Shared};
 use linkwork_compiler::Source;
-use linkwork_compiler::export::without_links;
+use linkwork_compiler::export::without_doc_links;
 use linkwork_compiler::mechanism::Model;
 
 /// Documentation of a mechanism, and names and units of its outputs.
-pub(crate) struct About {
+pub(crate) struct MechanismDocumentation {
     documentation: String,
     outputs: Vec<Quantity>,
 }
 
-impl About {
+impl MechanismDocumentation {
     /// Collects the documentation and the outputs of a mechanism.
-    pub fn new(source: &Source, model: &Model<'_>) -> About {
+    pub fn new(source: &Source, model: &Model<'_>) -> MechanismDocumentation {
         let outputs = model.outputs.iter().enumerate().map(|(k, output)| Quantity {
             name: output.name.clone(),
             unit: model.units.outputs.get(k).cloned().unwrap_or_default(),
         });
-        About {
-            documentation: without_links(&source.mechanism.shell.documentation_lines()),
+        MechanismDocumentation {
+            documentation: without_doc_links(&source.mechanism.shell.documentation_lines()),
             outputs: outputs.collect(),
         }
     }

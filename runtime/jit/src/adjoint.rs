@@ -3,14 +3,14 @@
 
 use crate::adjoint_steps;
 use crate::error::Error;
-use crate::functions::Plan;
+use crate::functions::ResultAssembly;
 use crate::robot::{Function, Robot};
 use crate::routine::{Routine, Values};
 use crate::shared::Shared;
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::expr::{Extreme, Function as Elementary, Symbol, air};
 use linkwork_compiler::lower::{Op, Operand, Program};
-use linkwork_compiler::mechanism::{Quantity, Supplied};
+use linkwork_compiler::mechanism::{Quantity, SuppliedQuantity};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ pub struct VectorJacobian {
 /// Method by which a vector–Jacobian product is computed: a reversed program, or a function of the
 /// configuration space.
 enum Product {
-    Reversed(Box<Routine>),
+    ReverseModeProgram(Box<Routine>),
     Integrate,
     Difference,
     TangentRate,
@@ -60,9 +60,9 @@ impl Function {
         let sizes = self.shared_mechanism().sizes;
         let arguments: Vec<usize> = entry.arguments.iter().map(|a| sizes.length(*a)).collect();
         let program = match &entry.plan {
-            Plan::Program(routine) => routine.program(),
-            Plan::Frame(access, frame, routine) => {
-                routine.ensure(|| self.shared_mechanism().frames.program(*access, *frame));
+            ResultAssembly::Program(routine) => routine.program(),
+            ResultAssembly::Frame(access, frame, routine) => {
+                routine.build_program_once(|| self.shared_mechanism().frames.program(*access, *frame));
                 routine.program()
             }
             _ => None,
@@ -71,14 +71,14 @@ impl Function {
             (Some(_), _) if entry.takes_features => return Err(missing_adjoint_error()),
             (Some(program), _) => {
                 let inputs = parameters + arguments.iter().sum::<usize>();
-                let given = Argument::Given(FACTORS, Supplied::ResultFactor, entry.length);
+                let given = Argument::Given(FACTORS, SuppliedQuantity::ResultFactor, entry.length);
                 let all: Vec<Argument> = entry.arguments.iter().copied().chain([given]).collect();
                 let symbols = entry.arguments.iter().flat_map(|argument| {
                     (0..sizes.length(*argument)).map(|k| symbol_of_entry(*argument, k)).collect::<Vec<_>>()
                 });
                 let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
                 let reversed = reverse_program(program, symbols).ok_or_else(missing_adjoint_error)?;
-                Product::Reversed(Box::new(
+                Product::ReverseModeProgram(Box::new(
                     Routine::new(reversed, &all, inputs).ok_or_else(missing_adjoint_error)?,
                 ))
             }
@@ -109,8 +109,8 @@ fn symbol_of_entry(argument: Argument, k: usize) -> Option<Symbol> {
         Argument::Tau => Quantity::Force(k),
         Argument::U => Quantity::Input(k),
         Argument::Given(_, block, _) => Quantity::Given(block, k),
-        Argument::Standard(_) => Quantity::Given(Supplied::Inertia, k),
-        Argument::Factors(_) => Quantity::Given(Supplied::Factor, k),
+        Argument::Standard(_) => Quantity::Given(SuppliedQuantity::Inertia, k),
+        Argument::Factors(_) => Quantity::Given(SuppliedQuantity::Factor, k),
         Argument::Momenta(_) => Quantity::Momentum(k),
         Argument::Into(..) | Argument::Called(_) => return None,
     };
@@ -138,7 +138,7 @@ impl VectorJacobian {
         factors: &[f64],
         out: &mut [f64],
     ) -> Result<(), Error> {
-        robot.check_values()?;
+        robot.check_parameter_values()?;
         if !Arc::ptr_eq(&self.shared, &robot.shared) {
             return Err(Error::OtherMechanism(self.name.clone()));
         }
@@ -150,9 +150,9 @@ impl VectorJacobian {
         robot.check_length("derivatives", self.length(), out.len())?;
         let charts = &self.shared.charts;
         match &self.kind {
-            Product::Reversed(routine) => {
+            Product::ReverseModeProgram(routine) => {
                 let arguments: Vec<&[f64]> = arguments.iter().copied().chain([factors]).collect();
-                let (parameters, tables) = (robot.parameter_values(), robot.table_values());
+                let (parameters, tables) = (robot.parameter_values(), robot.interpolation_tables());
                 let values = Values { parameters, arguments: &arguments, tables, interpreted: false };
                 routine.run(values, out, &mut []);
             }
@@ -175,7 +175,7 @@ impl VectorJacobian {
 }
 
 /// Program followed by the instructions of its reverse-mode derivatives, while it is built.
-struct Reversed {
+struct ReverseModeProgram {
     instructions: Vec<Op>,
     /// Derivative with respect to the value of each instruction. The field below has the derivatives with
     /// respect to the inputs.
@@ -187,13 +187,13 @@ struct Reversed {
 /// derivative.
 fn reverse_program(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> Option<Program> {
     let count = program.instructions.len();
-    let mut reversed = Reversed {
+    let mut reversed = ReverseModeProgram {
         instructions: program.instructions.clone(),
         values: vec![None; count],
         inputs: HashMap::new(),
     };
     for (k, output) in program.outputs.iter().enumerate() {
-        reversed.add(*output, Operand::Symbol(Quantity::Given(Supplied::ResultFactor, k).symbol()));
+        reversed.add(*output, Operand::Symbol(Quantity::Given(SuppliedQuantity::ResultFactor, k).symbol()));
     }
     for k in (0..count).rev() {
         if let Some(factor) = reversed.values[k] {
@@ -205,17 +205,17 @@ fn reverse_program(program: &Program, inputs: impl Iterator<Item = Option<Symbol
         inputs.map(|symbol| symbol.and_then(|symbol| reversed.inputs.get(&symbol).copied()).unwrap_or(zero));
     let outputs = outputs.collect();
     let mut program = Program { instructions: reversed.instructions, outputs, ..Program::default() };
-    program.remove_unused();
+    program.remove_unused_instructions();
     Some(program)
 }
 
-impl Reversed {
+impl ReverseModeProgram {
     fn push_instruction(&mut self, op: Op) -> Operand {
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
     }
 
-    fn value_derivative(&mut self, operand: Operand) -> Option<&mut Option<Operand>> {
+    fn derivative_slot(&mut self, operand: Operand) -> Option<&mut Option<Operand>> {
         match operand {
             Operand::Value(k) => self.values.get_mut(k),
             _ => None,
@@ -226,7 +226,7 @@ impl Reversed {
     fn derivative_by_operand(&mut self, operand: Operand) -> Option<Operand> {
         match operand {
             Operand::Symbol(symbol) => self.inputs.get(&symbol).copied(),
-            operand => self.value_derivative(operand).and_then(|known| *known),
+            operand => self.derivative_slot(operand).and_then(|known| *known),
         }
     }
 
@@ -236,7 +236,7 @@ impl Reversed {
                 self.inputs.insert(symbol, derivative);
             }
             operand => {
-                if let Some(known) = self.value_derivative(operand) {
+                if let Some(known) = self.derivative_slot(operand) {
                     *known = Some(derivative);
                 }
             }
@@ -280,7 +280,7 @@ impl Reversed {
     }
 
     /// Subtracts the product `a b` from the derivative with respect to an operand.
-    fn subtract_product(&mut self, operand: Operand, a: Operand, b: Operand) {
+    fn subtract_product_from_derivative(&mut self, operand: Operand, a: Operand, b: Operand) {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;
         }
@@ -323,7 +323,7 @@ impl Reversed {
             Op::Div(a, b) => {
                 let over = self.push_instruction(Op::Div(factor, b));
                 self.add(a, over);
-                self.subtract_product(b, over, value);
+                self.subtract_product_from_derivative(b, over, value);
             }
             Op::MulAdd(a, b, c) => {
                 self.add_product(a, factor, b);
@@ -336,8 +336,8 @@ impl Reversed {
                 self.subtract_from_derivative(c, factor);
             }
             Op::NegMulAdd(a, b, c) => {
-                self.subtract_product(a, factor, b);
-                self.subtract_product(b, factor, a);
+                self.subtract_product_from_derivative(a, factor, b);
+                self.subtract_product_from_derivative(b, factor, a);
                 self.add(c, factor);
             }
             Op::Call(f, x) => {
@@ -349,7 +349,7 @@ impl Reversed {
                 let square = self.push_instruction(Op::MulAdd(x, x, square));
                 let over = self.push_instruction(Op::Div(factor, square));
                 self.add_product(y, over, x);
-                self.subtract_product(x, over, y);
+                self.subtract_product_from_derivative(x, over, y);
             }
             Op::Pow(a, b) => {
                 // b aᵇ⁻¹ and aᵇ ln a.

@@ -35,7 +35,7 @@ impl Gradient {
     }
 
     /// Evaluates the derivatives; arguments are passed by name, and those without a value are empty.
-    fn evaluate_adjoint(
+    fn evaluate_adjoint_derivatives(
         &mut self,
         robot: &Robot,
         known: &[(&str, &[f64])],
@@ -170,14 +170,14 @@ impl AdjointStepper {
             let known = [("t", &time[..]), ("q", &stage.q), ("v", &stage.v), ("tau", &stage.tau), ("u", u)];
             let (mut stage_q, mut stage_v, mut tau) = (vec![0.0; q.len()], vec![0.0; n], vec![0.0; n]);
             let mut by_time = [0.0];
-            self.dynamics.evaluate_adjoint(&robot, &known, &accelerations[i])?;
+            self.dynamics.evaluate_adjoint_derivatives(&robot, &known, &accelerations[i])?;
             self.dynamics.add("q", &mut stage_q);
             self.dynamics.add("v", &mut stage_v);
             self.dynamics.add("tau", &mut tau);
             self.dynamics.add("t", &mut by_time);
             self.dynamics.add(PARAMETERS, derivatives.parameters);
             if let Some(forces) = &mut self.forces {
-                forces.evaluate_adjoint(&robot, &known, &tau)?;
+                forces.evaluate_adjoint_derivatives(&robot, &known, &tau)?;
                 forces.add("q", &mut stage_q);
                 forces.add("v", &mut stage_v);
                 forces.add("u", derivatives.u);
@@ -194,8 +194,8 @@ impl AdjointStepper {
             }
             let mut displacement = vec![0.0; n];
             let [by_dv, by_own] = tangent_rate_derivatives(charts, &stage.displacement, &stage.v);
-            add_transposed(&by_dv, &rates[i], &mut displacement);
-            add_transposed(&by_own, &rates[i], &mut stage_v);
+            add_transposed_product(&by_dv, &rates[i], &mut displacement);
+            add_transposed_product(&by_own, &rates[i], &mut stage_v);
             integrate(charts, q, &stage.displacement, &stage_q, &mut by_q, &mut displacement);
             add(&mut by_v, &stage_v);
             let before = &self.stepper.stages[i - 1];
@@ -213,7 +213,7 @@ impl AdjointStepper {
 }
 
 /// Adds the product of the transposed matrix with the vector `factors` to a list.
-fn add_transposed(matrix: &DMatrix<f64>, factors: &[f64], to: &mut [f64]) {
+fn add_transposed_product(matrix: &DMatrix<f64>, factors: &[f64], to: &mut [f64]) {
     for (j, to) in to.iter_mut().enumerate() {
         *to += matrix.column(j).iter().zip(factors).map(|(a, b)| a * b).sum::<f64>();
     }
@@ -240,36 +240,38 @@ pub(crate) fn integrate(
     for chart in charts {
         match *chart {
             Chart::Plain(InQ(q0), InV(v0)) => tangent[v0] = factors[q0],
-            Chart::Ball(InQ(q0), InV(v0)) => rotation_factors(&end[q0..], &factors[q0..], &mut tangent[v0..]),
+            Chart::Ball(InQ(q0), InV(v0)) => {
+                write_rotation_gradient(&end[q0..], &factors[q0..], &mut tangent[v0..])
+            }
             Chart::Free(InQ(q0), InV(v0)) => {
                 let rotation = UnitQuaternion::from_quaternion(quaternion_from_list(&end[q0 + 3..]));
                 let force = rotation.inverse() * Vector3::from_column_slice(&factors[q0..q0 + 3]);
                 tangent[v0..v0 + 3].copy_from_slice(force.as_slice());
-                rotation_factors(&end[q0 + 3..], &factors[q0 + 3..], &mut tangent[v0 + 3..]);
+                write_rotation_gradient(&end[q0 + 3..], &factors[q0 + 3..], &mut tangent[v0 + 3..]);
             }
         }
     }
     let [at_q, at_dv] = integrate_derivatives(charts, dv);
-    add_transposed(&at_dv, &tangent, by_dv);
+    add_transposed_product(&at_dv, &tangent, by_dv);
     let mut displacement = vec![0.0; dv.len()];
-    add_transposed(&at_q, &tangent, &mut displacement);
-    add_configuration_factors(charts, q, &displacement, by_q);
+    add_transposed_product(&at_q, &tangent, &mut displacement);
+    add_configuration_gradient(charts, q, &displacement, by_q);
 }
 
 /// Converts a gradient with respect to displacements of a configuration to one with respect to its entries,
 /// and adds that to `by_q`.
-fn add_configuration_factors(charts: &[Chart], q: &[f64], displacement: &[f64], by_q: &mut [f64]) {
+fn add_configuration_gradient(charts: &[Chart], q: &[f64], displacement: &[f64], by_q: &mut [f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(InQ(q0), InV(v0)) => by_q[q0] += displacement[v0],
             Chart::Ball(InQ(q0), InV(v0)) => {
-                add_quaternion_factors(&q[q0..], &displacement[v0..], &mut by_q[q0..]);
+                add_quaternion_gradient(&q[q0..], &displacement[v0..], &mut by_q[q0..]);
             }
             Chart::Free(InQ(q0), InV(v0)) => {
                 let rotation = UnitQuaternion::from_quaternion(quaternion_from_list(&q[q0 + 3..]));
                 let force = rotation * Vector3::from_column_slice(&displacement[v0..v0 + 3]);
                 add(&mut by_q[q0..q0 + 3], force.as_slice());
-                add_quaternion_factors(&q[q0 + 3..], &displacement[v0 + 3..], &mut by_q[q0 + 3..]);
+                add_quaternion_gradient(&q[q0 + 3..], &displacement[v0 + 3..], &mut by_q[q0 + 3..]);
             }
         }
     }
@@ -290,12 +292,12 @@ pub(crate) fn difference(
     let [_, inverse] = tangent_rate_derivatives(charts, &dv, &vec![0.0; n]);
     let [by_q, _] = integrate_derivatives(charts, &dv);
     let mut at_end = vec![0.0; n];
-    add_transposed(&inverse, factors, &mut at_end);
-    add_configuration_factors(charts, to, &at_end, by_to);
+    add_transposed_product(&inverse, factors, &mut at_end);
+    add_configuration_gradient(charts, to, &at_end, by_to);
     let mut at_start = vec![0.0; n];
-    add_transposed(&by_q, &at_end, &mut at_start);
+    add_transposed_product(&by_q, &at_end, &mut at_start);
     at_start.iter_mut().for_each(|x| *x = -*x);
-    add_configuration_factors(charts, from, &at_start, by_from);
+    add_configuration_gradient(charts, from, &at_start, by_from);
 }
 
 /// Adds to two lists the gradients, with respect to `dv` and `v`, of a weighted sum of the entries of
@@ -307,20 +309,20 @@ pub(crate) fn tangent_rate(
     [by_dv, by_v]: [&mut [f64]; 2],
 ) {
     let [at_dv, at_v] = tangent_rate_derivatives(charts, dv, v);
-    add_transposed(&at_dv, factors, by_dv);
-    add_transposed(&at_v, factors, by_v);
+    add_transposed_product(&at_dv, factors, by_dv);
+    add_transposed_product(&at_v, factors, by_v);
 }
 
 /// Writes the gradient with respect to a rotation in body axes, given the gradient with respect to the
 /// entries of a unit quaternion, whose rate is half the product of the quaternion with the angular velocity.
-fn rotation_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
+fn write_rotation_gradient(q: &[f64], factors: &[f64], to: &mut [f64]) {
     let product = quaternion_from_list(q).conjugate() * quaternion_from_list(factors);
     to[..3].copy_from_slice(&[0.5 * product.i, 0.5 * product.j, 0.5 * product.k]);
 }
 
 /// Converts a gradient with respect to a rotation vector to one with respect to the entries of a quaternion
 /// of any norm, and adds that to a list.
-fn add_quaternion_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
+fn add_quaternion_gradient(q: &[f64], factors: &[f64], to: &mut [f64]) {
     let q = quaternion_from_list(q);
     let product = q * Quaternion::new(0.0, factors[0], factors[1], factors[2]) * (2.0 / q.norm_squared());
     add(&mut to[..4], &[product.i, product.j, product.k, product.w]);

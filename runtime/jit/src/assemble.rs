@@ -2,14 +2,14 @@
 
 use crate::capacity::Visitor;
 use crate::error::Error;
-use crate::internal::Internal;
+use crate::internal::InternalFunction;
 use crate::padded::Padded;
 use crate::robot::Robot;
 use linkwork::nalgebra::{DVector, SMatrix, SVector};
 use linkwork::{Constrained, ConstraintError, integrate};
 
 /// Computation on constraints: assembly of the mechanism, or projection of a configuration or velocity.
-enum Question<'a> {
+enum ConstraintTask<'a> {
     Assemble(Option<i8>),
     LeastViolation,
     Mode,
@@ -19,19 +19,19 @@ enum Question<'a> {
 }
 
 /// Computation on constraints at a configuration, with the indices of the coordinates that are fixed.
-struct Asked<'a> {
-    question: Question<'a>,
+struct ConstraintQuery<'a> {
+    question: ConstraintTask<'a>,
     q: &'a [f64],
     held: &'a [usize],
 }
 
 /// Result of a computation on constraints: a vector and, where requested, the assembly mode.
-type Answer = Result<(Vec<f64>, Option<i8>), ConstraintError>;
+type AssemblyOutcome = Result<(Vec<f64>, Option<i8>), ConstraintError>;
 
-impl Visitor for Asked<'_> {
-    type Output = Answer;
+impl Visitor for ConstraintQuery<'_> {
+    type Output = AssemblyOutcome;
 
-    fn visit<const N: usize>(self, m: &Padded<N, N, N, &Robot>) -> Answer {
+    fn visit<const N: usize>(self, m: &Padded<N, N, N, &Robot>) -> AssemblyOutcome {
         let (robot, held) = (m.robot(), self.held);
         let t = robot.time();
         let padded_vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
@@ -39,19 +39,22 @@ impl Visitor for Asked<'_> {
         let velocity_result = |v: SVector<f64, N>| (v.as_slice()[..robot.nv()].to_vec(), None);
         let q = padded_vector(self.q);
         match self.question {
-            Question::Assemble(mode) => m.assemble_configuration(t, &q, held, mode).map(configuration_result),
-            Question::LeastViolation => {
-                linkwork::__private::least_violation(&m.assembly_loops(t), &q, held).map(configuration_result)
+            ConstraintTask::Assemble(mode) => {
+                m.assemble_configuration(t, &q, held, mode).map(configuration_result)
             }
-            Question::Mode => Ok((Vec::new(), m.current_assembly_mode(t, &q, held))),
-            Question::Project => {
+            ConstraintTask::LeastViolation => {
+                linkwork::__private::least_violation(&m.assembly_constraints(t), &q, held)
+                    .map(configuration_result)
+            }
+            ConstraintTask::Mode => Ok((Vec::new(), m.current_assembly_mode(t, &q, held))),
+            ConstraintTask::Project => {
                 Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration_result)
             }
-            Question::Velocity(v) => {
+            ConstraintTask::Velocity(v) => {
                 Constrained::<N, N, N, N, N>::complete_velocity(m, t, &q, &padded_vector(v), held)
                     .map(velocity_result)
             }
-            Question::ProjectVelocity(v) => {
+            ConstraintTask::ProjectVelocity(v) => {
                 Constrained::<N, N, N, N, N>::project_velocity(m, t, &q, &padded_vector(v))
                     .map(velocity_result)
             }
@@ -60,18 +63,18 @@ impl Visitor for Asked<'_> {
 }
 
 impl Robot {
-    fn ask_question(
+    fn solve_assembly_question(
         &self,
-        question: Question<'_>,
+        question: ConstraintTask<'_>,
         q: &[f64],
         held: &[usize],
     ) -> Result<(DVector<f64>, Option<i8>), Error> {
         self.check_length("q", self.nq(), q.len())?;
-        if let Question::Velocity(v) | Question::ProjectVelocity(v) = question {
+        if let ConstraintTask::Velocity(v) | ConstraintTask::ProjectVelocity(v) = question {
             self.check_length("v", self.nv(), v.len())?;
         }
         let motion_error_at_time =
-            |reason| self.motion_error(integrate::Error::Constraint { t: self.time(), reason });
+            |reason| self.error_from_integrator(integrate::Error::Constraint { t: self.time(), reason });
         if let Some(index) = held.iter().copied().find(|index| *index >= self.nv()) {
             return Err(motion_error_at_time(ConstraintError::Held { index, velocities: self.nv() }));
         }
@@ -79,7 +82,7 @@ impl Robot {
             return Err(Error::Value(format!("`{}` has no constraints", self.name())));
         }
         let (found, mode) =
-            self.visit_padded_robot(Asked { question, q, held })?.map_err(motion_error_at_time)?;
+            self.visit_padded_robot(ConstraintQuery { question, q, held })?.map_err(motion_error_at_time)?;
         Ok((DVector::from_vec(found), mode))
     }
 
@@ -91,7 +94,7 @@ impl Robot {
     /// There are no constraints, a slice has the wrong length, or no configuration is found
     /// ([`Error::Motion`]).
     pub fn assemble(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask_question(Question::Assemble(None), q, held)?.0)
+        Ok(self.solve_assembly_question(ConstraintTask::Assemble(None), q, held)?.0)
     }
 
     /// Returns a configuration near `q` that satisfies the constraints and has this assembly mode, see
@@ -101,7 +104,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn assemble_in_mode(&self, q: &[f64], held: &[usize], mode: i8) -> Result<DVector<f64>, Error> {
-        Ok(self.ask_question(Question::Assemble(Some(mode)), q, held)?.0)
+        Ok(self.solve_assembly_question(ConstraintTask::Assemble(Some(mode)), q, held)?.0)
     }
 
     /// Returns the configuration of least constraint violation near `q`, which steps of bounded length reach.
@@ -112,7 +115,7 @@ impl Robot {
     /// As [`assemble`](Self::assemble).
     #[doc(hidden)]
     pub fn least_violation(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask_question(Question::LeastViolation, q, held)?.0)
+        Ok(self.solve_assembly_question(ConstraintTask::LeastViolation, q, held)?.0)
     }
 
     /// Returns the heights of the terrains that drawings show, m, at a position along their first two axes,
@@ -120,9 +123,9 @@ impl Robot {
     #[doc(hidden)]
     #[must_use]
     pub fn terrain_heights(&self, place: [f64; 2]) -> Option<Vec<f64>> {
-        let index = self.shared.internal[Internal::DrawingHeights as usize]?;
+        let index = self.shared.internal[InternalFunction::DrawingHeights as usize]?;
         let state = crate::robot::State { other: &[&place], ..crate::robot::State::default() };
-        self.state_call(index, state).ok()
+        self.call_function_at_state(index, state).ok()
     }
 
     /// Returns whether the mechanism has constraints.
@@ -139,7 +142,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn assembly_mode(&self, q: &[f64], held: &[usize]) -> Result<Option<i8>, Error> {
-        Ok(self.ask_question(Question::Mode, q, held)?.1)
+        Ok(self.solve_assembly_question(ConstraintTask::Mode, q, held)?.1)
     }
 
     /// Returns the configuration nearest to `q` (`nq` entries) that satisfies the constraints, in the metric
@@ -149,7 +152,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn project_configuration(&self, q: &[f64]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask_question(Question::Project, q, &[])?.0)
+        Ok(self.solve_assembly_question(ConstraintTask::Project, q, &[])?.0)
     }
 
     /// Returns the velocity nearest to `v` (`nv` entries) that satisfies the constraints at `q`, in the
@@ -159,7 +162,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn project_velocity(&self, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask_question(Question::ProjectVelocity(v), q, &[])?.0)
+        Ok(self.solve_assembly_question(ConstraintTask::ProjectVelocity(v), q, &[])?.0)
     }
 
     /// Returns the velocity (`nv` entries) with the entries `held` of `v` that satisfies the constraints, see
@@ -169,7 +172,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn complete_velocity(&self, q: &[f64], v: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask_question(Question::Velocity(v), q, held)?.0)
+        Ok(self.solve_assembly_question(ConstraintTask::Velocity(v), q, held)?.0)
     }
 
     /// Returns the ratio of the smallest to the largest singular value of the matrix from joint velocities to
@@ -178,10 +181,10 @@ impl Robot {
     #[must_use]
     pub fn regularity_of_speeds(&self, q: &[f64]) -> f64 {
         let n = self.nv();
-        let index = self.shared.internal[Internal::SpeedMatrix as usize];
+        let index = self.shared.internal[InternalFunction::SpeedMatrix as usize];
         let Some(index) = index.filter(|_| n > 0) else { return 1.0 };
         let state = crate::robot::State { q, ..crate::robot::State::default() };
-        let Ok(values) = self.state_call(index, state) else { return 1.0 };
+        let Ok(values) = self.call_function_at_state(index, state) else { return 1.0 };
         let mut speeds = nalgebra::DMatrix::from_vec(n, n, values);
         // Speeds may have different units: rows have the length one, except rows that rounding makes nonzero.
         let largest = speeds.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
@@ -204,15 +207,15 @@ impl<const N: usize> Padded<N, N, N, &Robot> {
         held: &[usize],
         mode: Option<i8>,
     ) -> Result<SVector<f64, N>, ConstraintError> {
-        linkwork::__private::assemble(&self.assembly_loops(t), q, held, mode)
+        linkwork::__private::assemble(&self.assembly_constraints(t), q, held, mode)
     }
 
     fn current_assembly_mode(&self, t: f64, q: &SVector<f64, N>, held: &[usize]) -> Option<i8> {
-        linkwork::__private::assembly_mode(&self.assembly_loops(t), q, held)
+        linkwork::__private::assembly_mode(&self.assembly_constraints(t), q, held)
     }
 
     #[allow(clippy::type_complexity, reason = "closures")]
-    fn assembly_loops(
+    fn assembly_constraints(
         &self,
         t: f64,
     ) -> linkwork::__private::Loops<
@@ -234,7 +237,11 @@ impl<const N: usize> Padded<N, N, N, &Robot> {
             residuals: move |q: &SVector<f64, N>| self.constraint_residuals(t, q),
             jacobian: move |q: &SVector<f64, N>| {
                 let jacobian = self.constraint_jacobian(t, q);
-                if has_speeds { jacobian * self.speed_matrix(Internal::SpeedMatrix, q) } else { jacobian }
+                if has_speeds {
+                    jacobian * self.speed_matrix(InternalFunction::SpeedMatrix, q)
+                } else {
+                    jacobian
+                }
             },
             integrate: move |q: &SVector<f64, N>, dv: &SVector<f64, N>| {
                 let mut moved = *q;

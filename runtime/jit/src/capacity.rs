@@ -39,7 +39,8 @@ const LARGE_STACK: usize = if cfg!(target_pointer_width = "64") { 1 << 30 } else
 fn on_stack<T: Send>(size: usize, run: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(size);
-        let thread = thread.spawn_scoped(scope, run).map_err(|error| Error::Internal(error.to_string()))?;
+        let thread =
+            thread.spawn_scoped(scope, run).map_err(|error| Error::InternalFunction(error.to_string()))?;
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }
@@ -62,7 +63,7 @@ impl Robot {
         }
     }
 
-    fn too_large(&self, what: &str, count: usize, most: usize) -> Error {
+    fn capacity_error(&self, what: &str, count: usize, most: usize) -> Error {
         let name = self.name();
         Error::Value(format!(
             "`{name}` has {count} {what}, but loaded mechanisms move with at most {most}: compile it in a \
@@ -82,7 +83,9 @@ impl Robot {
             ..=LARGEST => on_stack(LARGE_STACK, || {
                 Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?))
             }),
-            count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),
+            count => {
+                Err(self.capacity_error("coordinates, velocities, inputs or constraints", count, LARGEST))
+            }
         }
     }
 
@@ -94,7 +97,7 @@ impl Robot {
         let (count, rates) = (self.shared.contacts.len(), self.shared.contact_rates);
         let is_few = count <= 8 && rates <= 24;
         match self.largest_dimension() {
-            _ if count > MOST_CONTACTS => Err(self.too_large("contacts", count, MOST_CONTACTS)),
+            _ if count > MOST_CONTACTS => Err(self.capacity_error("contacts", count, MOST_CONTACTS)),
             ..=8 if is_few => Ok(visitor.visit(&PaddedContacts::<8, 8, 8, 8, 24, _>::new(self)?)),
             ..=24 if is_few => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 8, 24, _>::new(self)?)),
             ..=24 if count <= 32 => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 32, 96, _>::new(self)?)),
@@ -109,7 +112,9 @@ impl Robot {
                 Ok(visitor
                     .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 192, _>::new(self)?))
             }),
-            count => Err(self.too_large("coordinates, velocities, inputs or constraints", count, LARGEST)),
+            count => {
+                Err(self.capacity_error("coordinates, velocities, inputs or constraints", count, LARGEST))
+            }
         }
     }
 }

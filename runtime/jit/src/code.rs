@@ -50,24 +50,24 @@ type Entry = unsafe extern "C" fn(*const *const f64, *const f64, *const AnyTable
 
 /// Four constants in one line of the cache.
 #[repr(align(32))]
-struct Constants(#[allow(dead_code, reason = "read by generated code")] [f64; 4]);
+struct ConstantCacheLine(#[allow(dead_code, reason = "read by generated code")] [f64; 4]);
 
 /// Machine code of a program.
 pub(crate) struct Code {
     entry: Entry,
     /// Constants that the machine code loads; their address is fixed while the code exists.
-    constants: Box<[Constants]>,
+    constants: Box<[ConstantCacheLine]>,
     /// Minimum number of entries of each input of the program.
     lengths: Box<[usize]>,
     /// Number of lookup tables that the code reads.
     tables: usize,
     /// Number of results of the function, and number of further outputs of the program.
     outputs: [usize; 2],
-    _memory: Executable,
+    _memory: ExecutableMemory,
 }
 
 /// Memory that contains the machine code. No call is in progress when it is dropped, since a call borrows it.
-enum Executable {
+enum ExecutableMemory {
     #[cfg(target_arch = "x86_64")]
     Pages(#[allow(dead_code, reason = "holds the memory")] memmap2::Mmap),
     #[cfg(any(test, target_arch = "aarch64"))]
@@ -80,7 +80,7 @@ impl Code {
         #[cfg(target_arch = "x86_64")]
         return Code::assemble_x86_code(program, layout, results);
         #[cfg(target_arch = "aarch64")]
-        return Code::by_cranelift(program, layout, results);
+        return Code::compile_with_cranelift(program, layout, results);
     }
 
     /// Compiles a program, or its variant with lanes, to instructions of this x86-64 processor.
@@ -99,24 +99,29 @@ impl Code {
         });
         let memory = memory.map_err(|error| error.to_string())?;
         let address = memory.as_ptr();
-        Ok(Code::new(plan, [results, program.outputs.len() - results], address, Executable::Pages(memory)))
+        Ok(Code::new(
+            plan,
+            [results, program.outputs.len() - results],
+            address,
+            ExecutableMemory::Pages(memory),
+        ))
     }
 
     /// Compiles a program to machine code with Cranelift.
     #[cfg(any(test, target_arch = "aarch64"))]
-    fn by_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
+    fn compile_with_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
         let pieces = Pieces::split_program(program, layout)?;
         let plan = Allocation::new(pieces, layout, results, cranelift::REGISTERS)?;
         let (module, address) = cranelift::translate(&plan, results, helper_address)?;
         let outputs = [results, program.outputs.len() - results];
-        Ok(Code::new(plan, outputs, address, Executable::Module(Box::new(module))))
+        Ok(Code::new(plan, outputs, address, ExecutableMemory::Module(Box::new(module))))
     }
 
-    fn new(plan: Allocation, outputs: [usize; 2], address: *const u8, memory: Executable) -> Code {
+    fn new(plan: Allocation, outputs: [usize; 2], address: *const u8, memory: ExecutableMemory) -> Code {
         // SAFETY: the code at this address was generated with this signature.
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
         let four_constants =
-            |list: &[f64]| Constants(std::array::from_fn(|k| list.get(k).copied().unwrap_or(0.0)));
+            |list: &[f64]| ConstantCacheLine(std::array::from_fn(|k| list.get(k).copied().unwrap_or(0.0)));
         let constants = plan.constants.chunks(4).map(four_constants).collect();
         let lengths = plan.lengths.into();
         Code { entry, constants, lengths, tables: plan.tables, outputs, _memory: memory }
@@ -246,7 +251,7 @@ called! {
     fn look_up_table(tables: *const AnyTable, table: u64, orders: u64, x: f64, y: f64, z: f64) -> f64 {
         // SAFETY: generated code passes an index below the number of tables, which `Code::call` checks.
         let table = unsafe { &*tables.add(table as usize) };
-        table.derivative_value([x, y, z], [0, 2, 4].map(|shift| (orders >> shift & 3) as u8))
+        table.value_or_derivative([x, y, z], [0, 2, 4].map(|shift| (orders >> shift & 3) as u8))
     }
 
     /// Writes the sines, then the cosines, of each group of angles into the array after the angles of the
@@ -254,13 +259,13 @@ called! {
     fn write_sines_and_cosines(array: *mut f64, count: u64) {
         // SAFETY: generated code passes an array of `3 * count` numbers on its stack.
         let array = unsafe { std::slice::from_raw_parts_mut(array, 3 * count as usize) };
-        dispatch::<0, f64, _, _>(&SinesAndCosines, array);
+        dispatch::<0, f64, _, _>(&SineCosineEvaluation, array);
     }
 }
 
-struct SinesAndCosines;
+struct SineCosineEvaluation;
 
-impl Evaluate<0, &mut [f64]> for SinesAndCosines {
+impl Evaluate<0, &mut [f64]> for SineCosineEvaluation {
     type Output = ();
 
     #[inline(always)]

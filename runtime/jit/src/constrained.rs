@@ -3,7 +3,7 @@
 
 use crate::capacity::Visitor;
 use crate::error::Error;
-use crate::functions::{Entry, Maker, Matrix, Plan};
+use crate::functions::{CallableFunctionBuilder, Entry, Matrix, ResultAssembly};
 use crate::padded::Padded;
 use crate::robot::Robot;
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -12,7 +12,7 @@ use linkwork_compiler::catalogue::{Argument, Id};
 
 /// Function of a constrained mechanism that the runtime evaluates, instead of a compiled program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ConstrainedFunction {
+pub(crate) enum ConstrainedDynamicsFunction {
     /// Function that returns the accelerations under generalized forces and constraint forces.
     Accelerations,
     /// Function that returns the accelerations and constraint multipliers.
@@ -26,7 +26,7 @@ pub(crate) enum ConstrainedFunction {
 
 /// Adds the functions of constrained dynamics to those of a mechanism, if it has constraints and dynamics,
 /// and the second derivatives of its accelerations, if they are requested.
-pub(crate) fn add(maker: &mut Maker<'_, '_>) {
+pub(crate) fn add(maker: &mut CallableFunctionBuilder<'_, '_>) {
     let has_function = |id: Id| maker.output.functions.iter().any(|f| f.id == id);
     let (nv, nc) = (maker.model.nv(), maker.model.constraints.len());
     let is_constrained = has_function(Id::ConstrainedDynamics);
@@ -38,14 +38,14 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
     let mut functions = Vec::new();
     if is_constrained {
         functions.push((
-            ConstrainedFunction::Accelerations,
+            ConstrainedDynamicsFunction::Accelerations,
             "forward_dynamics",
             "Accelerations under the generalized forces `tau` and the forces of the constraints; NaN where \
              friction jams.",
             vec![vector("result", nv)],
         ));
         functions.push((
-            ConstrainedFunction::Dynamics,
+            ConstrainedDynamicsFunction::Dynamics,
             "constrained_dynamics",
             "Accelerations under the generalized forces `tau`, and the multipliers of the constraints.",
             vec![vector("accelerations", nv), vector("multipliers", nc)],
@@ -53,7 +53,7 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
     }
     if is_constrained && has_function(Id::MotionDerivatives) {
         functions.push((
-            ConstrainedFunction::Derivatives,
+            ConstrainedDynamicsFunction::Derivatives,
             "forward_dynamics_derivatives",
             "Derivatives of the accelerations under the constraints with respect to `q`, `v` and `tau`.",
             ["by_q", "by_v", "by_tau"].map(square).to_vec(),
@@ -63,7 +63,7 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
         && is_constrained == has_function(Id::ConstraintCurvature)
     {
         functions.push((
-            ConstrainedFunction::SecondDerivatives,
+            ConstrainedDynamicsFunction::SecondDerivatives,
             "forward_dynamics_second_derivatives",
             "Second derivatives of the accelerations under the generalized forces `tau`, contracted with the \
              factors `lambda`. Rows of mixed derivatives belong to `q`; all others are zero.",
@@ -72,12 +72,12 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
     }
     for (kind, name, documentation, results) in functions {
         let (rank, further) = match kind {
-            ConstrainedFunction::Accelerations | ConstrainedFunction::Dynamics => (1, None),
-            ConstrainedFunction::Derivatives => (2, None),
-            ConstrainedFunction::SecondDerivatives => (2, Some(Argument::Factors(nv))),
+            ConstrainedDynamicsFunction::Accelerations | ConstrainedDynamicsFunction::Dynamics => (1, None),
+            ConstrainedDynamicsFunction::Derivatives => (2, None),
+            ConstrainedDynamicsFunction::SecondDerivatives => (2, Some(Argument::Factors(nv))),
         };
         let arguments = arguments.iter().copied().chain(further).collect();
-        let plan = Plan::Constrained(kind);
+        let plan = ResultAssembly::Constrained(kind);
         let entry = Entry::new(name, documentation.to_string(), arguments, results, plan);
         maker.entries.push(Entry { rank, ..entry });
     }
@@ -88,12 +88,14 @@ impl Robot {
     /// `q`, `v`, `tau`, and `lambda` for second derivatives.
     pub(crate) fn call_constrained(
         &self,
-        kind: ConstrainedFunction,
+        kind: ConstrainedDynamicsFunction,
         arguments: &[&[f64]],
         out: &mut [f64],
     ) -> Result<(), Error> {
         let (arguments, lambda): (_, &[f64]) = match arguments {
-            [others @ .., lambda] if kind == ConstrainedFunction::SecondDerivatives => (others, lambda),
+            [others @ .., lambda] if kind == ConstrainedDynamicsFunction::SecondDerivatives => {
+                (others, lambda)
+            }
             _ => (arguments, &[]),
         };
         let [time @ .., q, v, tau] = arguments else { return Ok(()) };
@@ -104,7 +106,7 @@ impl Robot {
 
 /// Call of a function of constrained dynamics, with its arguments and results.
 struct Call<'a> {
-    kind: ConstrainedFunction,
+    kind: ConstrainedDynamicsFunction,
     t: f64,
     q: &'a [f64],
     v: &'a [f64],
@@ -126,18 +128,18 @@ impl Visitor for Call<'_> {
             v[n + k] = robot.parameter_values()[one.parameter];
         }
         match self.kind {
-            ConstrainedFunction::Accelerations | ConstrainedFunction::Dynamics => {
+            ConstrainedDynamicsFunction::Accelerations | ConstrainedDynamicsFunction::Dynamics => {
                 let (a, lambda) = Constrained::<N, N, N, N, N>::constrained_dynamics(m, self.t, &q, &v, &tau);
                 let (accelerations, multipliers) = self.out.split_at_mut(n);
                 accelerations.copy_from_slice(&a.as_slice()[..n]);
                 let count = multipliers.len();
                 multipliers.copy_from_slice(&lambda.as_slice()[..count]);
             }
-            ConstrainedFunction::Derivatives => {
+            ConstrainedDynamicsFunction::Derivatives => {
                 let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(self.t, &q, &v, &tau);
                 write_matrices(n, &[by_q, by_v, by_tau], self.out);
             }
-            ConstrainedFunction::SecondDerivatives => {
+            ConstrainedDynamicsFunction::SecondDerivatives => {
                 let lambda = padded_vector(self.lambda);
                 let (qq, qv, vv, q_tau) =
                     m.forward_dynamics_second_derivatives(self.t, &q, &v, &tau, &lambda);

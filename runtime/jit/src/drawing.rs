@@ -4,11 +4,11 @@ use crate::error::Error;
 use crate::load::Loader;
 use crate::robot::Robot;
 use linkwork::drawing::{Kind, Piece, Role};
-use linkwork_compiler::compile_with;
+use linkwork_compiler::compile_with_passes;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Lookup, Symbol};
 use linkwork_compiler::lower::{Program, lower};
-use linkwork_compiler::mechanism::{self, PieceKind, Quantity, Supplied};
+use linkwork_compiler::mechanism::{self, PieceKind, Quantity, SuppliedQuantity};
 use linkwork_compiler::passes::Passes;
 use std::collections::HashSet;
 use std::sync::Mutex;
@@ -28,17 +28,17 @@ impl Loader {
     ///
     /// As [`load`](Self::load).
     pub fn drawing(self) -> Result<Drawing, Error> {
-        Loader::on_thread(move || self.draw_figure())
+        Loader::run_on_compiler_thread(move || self.compile_drawing())
     }
 
-    fn draw_figure(&self) -> Result<Drawing, Error> {
+    fn compile_drawing(&self) -> Result<Drawing, Error> {
         let mut source = self.read_source()?;
         let requests = &mut source.mechanism.requests;
         (requests.prepare, requests.batch, requests.packed) = (false, false, false);
         (requests.drawing, requests.derivatives) = (true, false);
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
         let passes = Passes { lanes: false, ..Passes::default() };
-        let compiled = compile_with(&source, &graph, passes, cx);
+        let compiled = compile_with_passes(&source, &graph, passes, cx);
         let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report_errors(cx)) };
         let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
         for piece in &model.drawing {
@@ -74,7 +74,7 @@ fn evaluate_program(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f6
     let value_of_symbol = |symbol: Symbol| {
         let value = match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => robot.parameter_values().get(k),
-            Quantity::Given(Supplied::Position, k) => given.get(k),
+            Quantity::Given(SuppliedQuantity::Position, k) => given.get(k),
             _ => None,
         };
         value.copied().unwrap_or(f64::NAN)
@@ -82,9 +82,9 @@ fn evaluate_program(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f6
     let value_of_table = |lookup: Lookup, x| {
         let orders = [0, 1, 2].map(|k| lookup.derivative_order(k) as u8);
         robot
-            .table_values()
+            .interpolation_tables()
             .get(lookup.table_index())
-            .map_or(f64::NAN, |table| table.derivative_value(x, orders))
+            .map_or(f64::NAN, |table| table.value_or_derivative(x, orders))
     };
     program.run_with(&value_of_symbol, &value_of_table)
 }
@@ -94,7 +94,7 @@ fn evaluate_program(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f6
 pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
     Piece {
         name: intern_text(&piece.name),
-        role: role_of_piece(piece.role),
+        role: convert_drawing_role(piece.role),
         kind: kind_of_piece(&piece.kind),
         frames: piece.frames,
         first,
@@ -114,7 +114,7 @@ fn intern_text(text: &str) -> &'static str {
     new
 }
 
-fn role_of_piece(role: mechanism::Role) -> Role {
+fn convert_drawing_role(role: mechanism::Role) -> Role {
     match role {
         mechanism::Role::Body => Role::Body,
         mechanism::Role::Link => Role::Link,

@@ -65,7 +65,7 @@ pub enum Error {
         message: String,
     },
     /// Error: Linkwork itself has a defect.
-    Internal(String),
+    InternalFunction(String),
 }
 
 impl fmt::Display for Error {
@@ -87,7 +87,7 @@ impl fmt::Display for Error {
             }
             Error::Value(message) | Error::Motion { message, .. } => f.write_str(message),
             Error::OtherMechanism(name) => write!(f, "`{name}` is a function of another mechanism"),
-            Error::Internal(message) => {
+            Error::InternalFunction(message) => {
                 write!(f, "internal error of Linkwork, please report it with the file: {message}")
             }
         }
@@ -122,7 +122,7 @@ impl Error {
 
 impl Robot {
     /// Converts an error of the integrator to an error with the names of the mechanism.
-    pub(crate) fn motion_error(&self, reason: integrate::Error) -> Error {
+    pub(crate) fn error_from_integrator(&self, reason: integrate::Error) -> Error {
         Error::Motion { message: self.shared.with_names(&reason.to_string()), reason }
     }
 }

@@ -1,13 +1,13 @@
 //! Frames: programs of placements, velocities, accelerations and Jacobians, composed of the steps of
 //! the links between the ground and a frame.
 
-use crate::functions::{Entry, Matrix, Plan};
-use crate::merge::Merged;
+use crate::functions::{Entry, Matrix, ResultAssembly};
+use crate::merge::ProgramMerger;
 use crate::routine::Routine;
 use linkwork_compiler::catalogue::{Argument, Id};
-use linkwork_compiler::derive::{FrameSteps, LinkSteps, Output, PLACEMENT, TWIST};
+use linkwork_compiler::derive::{FrameSteps, LinkRecursionPrograms, Output, PLACEMENT, TWIST};
 use linkwork_compiler::lower::{Op, Operand, Program};
-use linkwork_compiler::mechanism::{Model, Quantity, Supplied};
+use linkwork_compiler::mechanism::{Model, Quantity, SuppliedQuantity};
 
 /// Kinematic quantity of a frame: placement, velocity, acceleration or Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Access {
     pub const ALL: [Access; 4] =
         [Access::Placement, Access::Velocity, Access::Acceleration, Access::Jacobian];
 
-    fn access_name(self) -> &'static str {
+    fn frame_function_name(self) -> &'static str {
         match self {
             Access::Placement => "frame_placement",
             Access::Velocity => "frame_velocity",
@@ -60,7 +60,7 @@ impl Access {
 /// composed.
 pub(crate) struct Frames {
     pub names: Vec<String>,
-    links: Vec<LinkSteps>,
+    links: Vec<LinkRecursionPrograms>,
     frames: Vec<FrameSteps>,
     /// Programs of a mechanism with generalized speeds: the joint velocities, the joint accelerations, and
     /// the matrix from speeds to joint velocities.
@@ -90,7 +90,7 @@ impl Frames {
 
     /// Returns the functions of all frames: placement, velocity, acceleration and Jacobian of each frame.
     pub fn entries(&self, time: bool) -> Vec<Entry> {
-        let entries_of_frame = |frame: usize| {
+        let access_functions_of_frame = |frame: usize| {
             Access::ALL.into_iter().filter_map(move |access| {
                 use Argument::{A, Q, T, V};
                 let state: &[Argument] = match access {
@@ -100,25 +100,25 @@ impl Frames {
                 };
                 let arguments: Vec<Argument> =
                     time.then_some(T).into_iter().chain(state.iter().copied()).collect();
-                let result_matrix = |name, rows, columns| Matrix { name, rows, columns };
+                let result_matrix_shape = |name, rows, columns| Matrix { name, rows, columns };
                 let results = match access {
                     Access::Placement => {
-                        vec![result_matrix("rotation", 3, 3), result_matrix("position", 3, 1)]
+                        vec![result_matrix_shape("rotation", 3, 3), result_matrix_shape("position", 3, 1)]
                     }
-                    Access::Jacobian => vec![result_matrix("result", TWIST, self.nv)],
-                    Access::Velocity | Access::Acceleration => vec![result_matrix("result", TWIST, 1)],
+                    Access::Jacobian => vec![result_matrix_shape("result", TWIST, self.nv)],
+                    Access::Velocity | Access::Acceleration => vec![result_matrix_shape("result", TWIST, 1)],
                 };
                 let length = results.iter().map(Matrix::length).sum();
-                let routine = Routine::deferred(&arguments, length)?;
+                let routine = Routine::routine_built_on_demand(&arguments, length)?;
                 let name = &self.names[frame];
-                let plan = Plan::Frame(access, frame, routine);
+                let plan = ResultAssembly::Frame(access, frame, routine);
                 let documentation = access.access_documentation(name);
                 let rank = if matches!(access, Access::Placement | Access::Jacobian) { 2 } else { 1 };
-                let name = format!("{}({name})", access.access_name());
+                let name = format!("{}({name})", access.frame_function_name());
                 Some(Entry { rank, ..Entry::new(&name, documentation, arguments, results, plan) })
             })
         };
-        (0..self.names.len()).flat_map(entries_of_frame).collect()
+        (0..self.names.len()).flat_map(access_functions_of_frame).collect()
     }
 
     /// Returns the indices of the links on the path from the ground to a frame, the link nearest to the
@@ -133,7 +133,7 @@ impl Frames {
     /// Returns the program that computes the placements of all frames: for each frame a rotation matrix row
     /// by row, and a position.
     pub fn placements(&self) -> Program {
-        let mut merged = Merged::default();
+        let mut merged = ProgramMerger::default();
         let mut links: Vec<Option<Vec<Operand>>> = vec![None; self.links.len()];
         let mut outputs = Vec::new();
         for (frame, steps) in self.frames.iter().enumerate() {
@@ -141,18 +141,18 @@ impl Frames {
             for link in self.links_to_frame(frame) {
                 placement = links[link]
                     .get_or_insert_with(|| {
-                        append_given(&mut merged, &[&placement], &self.links[link].placement)
+                        append_program_with_inputs(&mut merged, &[&placement], &self.links[link].placement)
                     })
                     .clone();
             }
-            outputs.extend(append_given(&mut merged, &[&placement], &steps.placement));
+            outputs.extend(append_program_with_inputs(&mut merged, &[&placement], &steps.placement));
         }
         merged.finish(outputs)
     }
 
     /// Returns the program that computes a kinematic quantity of a frame.
     pub fn program(&self, access: Access, frame: usize) -> Program {
-        let mut merged = Merged::default();
+        let mut merged = ProgramMerger::default();
         if let Some([rates, accelerations, _]) = &self.speeds {
             // Steps are in joint velocities. Both programs take speeds: they come before the exchange.
             let accelerations = match access {
@@ -161,48 +161,51 @@ impl Frames {
             };
             let rates = merged.append(rates);
             for (k, rate) in rates.into_iter().enumerate() {
-                merged.bind(Quantity::Velocity(k).symbol(), rate);
+                merged.bind_symbol(Quantity::Velocity(k).symbol(), rate);
             }
             for (k, acceleration) in accelerations.into_iter().enumerate() {
-                merged.bind(Quantity::Acceleration(k).symbol(), acceleration);
+                merged.bind_symbol(Quantity::Acceleration(k).symbol(), acceleration);
             }
         }
         let mut placement = identity();
         let mut twist = vec![Operand::Const(0.0); TWIST];
         let mut acceleration = twist.clone();
         let mut placements = Vec::new();
-        let path: Vec<&LinkSteps> =
+        let path: Vec<&LinkRecursionPrograms> =
             self.links_to_frame(frame).into_iter().map(|link| &self.links[link]).collect();
         for link in &path {
-            placement = append_given(&mut merged, &[&placement], &link.placement);
+            placement = append_program_with_inputs(&mut merged, &[&placement], &link.placement);
             placements.push(placement.clone());
             if access == Access::Acceleration {
-                acceleration = append_given(&mut merged, &[&twist, &acceleration], &link.acceleration);
+                acceleration =
+                    append_program_with_inputs(&mut merged, &[&twist, &acceleration], &link.acceleration);
             }
             if matches!(access, Access::Velocity | Access::Acceleration) {
-                twist = append_given(&mut merged, &[&twist], &link.twist);
+                twist = append_program_with_inputs(&mut merged, &[&twist], &link.twist);
             }
         }
         let steps = &self.frames[frame];
         let outputs = match access {
             Access::Placement => {
-                let placed = append_given(&mut merged, &[&placement], &steps.placement);
+                let placed = append_program_with_inputs(&mut merged, &[&placement], &steps.placement);
                 // Steps have rotations row by row.
                 let rotation = (0..9).map(|k| placed[3 * (k % 3) + k / 3]);
                 rotation.chain(placed[9..].iter().copied()).collect()
             }
-            Access::Velocity => append_given(&mut merged, &[&placement, &twist], &steps.twist),
-            Access::Acceleration => {
-                append_given(&mut merged, &[&placement, &twist, &acceleration], &steps.acceleration)
-            }
+            Access::Velocity => append_program_with_inputs(&mut merged, &[&placement, &twist], &steps.twist),
+            Access::Acceleration => append_program_with_inputs(
+                &mut merged,
+                &[&placement, &twist, &acceleration],
+                &steps.acceleration,
+            ),
             Access::Jacobian => {
-                let placed = append_given(&mut merged, &[&placement], &steps.placement);
+                let placed = append_program_with_inputs(&mut merged, &[&placement], &steps.placement);
                 let mut jacobian = vec![Operand::Const(0.0); TWIST * self.nv];
                 for (link, placement) in path.iter().zip(&placements) {
                     for (k, value) in placed[9..].iter().enumerate() {
-                        merged.bind(Quantity::Given(Supplied::Origin, k).symbol(), *value);
+                        merged.bind_symbol(Quantity::Given(SuppliedQuantity::Origin, k).symbol(), *value);
                     }
-                    let columns = append_given(&mut merged, &[placement], &link.columns);
+                    let columns = append_program_with_inputs(&mut merged, &[placement], &link.columns);
                     for (column, v) in columns.chunks_exact(TWIST).zip(&link.velocities) {
                         for (i, entry) in column.iter().enumerate() {
                             // Joints that follow one coordinate share a column.
@@ -211,7 +214,7 @@ impl Frames {
                         }
                     }
                 }
-                self.in_speeds(&mut merged, jacobian)
+                self.jacobian_in_speeds(&mut merged, jacobian)
             }
         };
         merged.finish(outputs)
@@ -219,7 +222,7 @@ impl Frames {
 
     /// Multiplies a Jacobian by the matrix from generalized speeds to joint velocities, if the mechanism
     /// declares speeds.
-    fn in_speeds(&self, merged: &mut Merged, jacobian: Vec<Operand>) -> Vec<Operand> {
+    fn jacobian_in_speeds(&self, merged: &mut ProgramMerger, jacobian: Vec<Operand>) -> Vec<Operand> {
         let Some([.., matrix]) = &self.speeds else { return jacobian };
         let matrix = merged.append(matrix);
         let mut product = vec![Operand::Const(0.0); TWIST * self.nv];
@@ -246,14 +249,18 @@ fn identity() -> Vec<Operand> {
 
 /// Appends a program that takes kinematic quantities of the parent as inputs, which are bound to `values`.
 /// Returns the outputs of the program.
-fn append_given(merged: &mut Merged, values: &[&[Operand]], program: &Program) -> Vec<Operand> {
+fn append_program_with_inputs(
+    merged: &mut ProgramMerger,
+    values: &[&[Operand]],
+    program: &Program,
+) -> Vec<Operand> {
     for (k, value) in values.iter().copied().flatten().enumerate() {
-        merged.bind(Quantity::Given(Supplied::Parent, k).symbol(), *value);
+        merged.bind_symbol(Quantity::Given(SuppliedQuantity::Parent, k).symbol(), *value);
     }
     merged.append(program)
 }
 
-fn sum_of_operands(merged: &mut Merged, a: Operand, b: Operand) -> Operand {
+fn sum_of_operands(merged: &mut ProgramMerger, a: Operand, b: Operand) -> Operand {
     match (a, b) {
         (Operand::Const(0.0), other) | (other, Operand::Const(0.0)) => other,
         (a, b) => merged.push(Op::Add(a, b)),

@@ -1,10 +1,10 @@
 //! Functions of a loaded mechanism: their signatures, and the computation of their results by programs.
 
-use crate::constrained::ConstrainedFunction;
+use crate::constrained::ConstrainedDynamicsFunction;
 use crate::frames::Access;
 use crate::inverse::Inverse;
 use crate::kernels::{self, Columns};
-use crate::merge::Merged;
+use crate::merge::ProgramMerger;
 use crate::polytopes::takes_features;
 use crate::routine::{Routine, Values};
 use crate::shared::Shared;
@@ -12,7 +12,7 @@ use crate::space::Space;
 use linkwork_compiler::catalogue::{Argument, Called, Id, REACTION, Record, Shape};
 use linkwork_compiler::derive::{self, Output};
 use linkwork_compiler::lower::{Operand, Program};
-use linkwork_compiler::mechanism::{Model, Quantity, Supplied};
+use linkwork_compiler::mechanism::{Model, Quantity, SuppliedQuantity};
 use linkwork_compiler::syntax::RATE_OF_STATE;
 
 /// Result of a function: a matrix, which is stored by columns behind the previous results.
@@ -52,11 +52,11 @@ pub(crate) struct Entry {
     pub work: usize,
     /// Whether the programs take features of polytopes in contact as their last input.
     pub takes_features: bool,
-    pub plan: Plan,
+    pub plan: ResultAssembly,
 }
 
 /// Method by which the results of a function are assembled from the outputs of programs.
-pub(crate) enum Plan {
+pub(crate) enum ResultAssembly {
     /// The results are the outputs of one program.
     Program(Routine),
     /// The results are the outputs of a program that is composed of the steps of links between the ground and
@@ -85,7 +85,7 @@ pub(crate) enum Plan {
     },
     Space(Space),
     /// The results are computed by the runtime, for a mechanism with constraints.
-    Constrained(ConstrainedFunction),
+    Constrained(ConstrainedDynamicsFunction),
 }
 
 /// Computation of the derivatives of forward dynamics by calls of other functions.
@@ -104,27 +104,27 @@ pub(crate) struct CalledForward {
     n: usize,
 }
 
-impl Plan {
+impl ResultAssembly {
     /// Returns the compiled programs that the plan evaluates.
     pub fn routines(&self) -> Vec<&Routine> {
         match self {
-            Plan::Program(routine)
-            | Plan::Frame(_, _, routine)
-            | Plan::Inverse(routine, _)
-            | Plan::Forward { routine, .. }
-            | Plan::Linear { routine, .. }
-            | Plan::CalledLinear { routine, .. } => vec![routine],
-            Plan::CalledForward(called) => vec![&called.accelerations, &called.known],
-            Plan::Space(_) | Plan::Constrained(_) => Vec::new(),
+            ResultAssembly::Program(routine)
+            | ResultAssembly::Frame(_, _, routine)
+            | ResultAssembly::Inverse(routine, _)
+            | ResultAssembly::Forward { routine, .. }
+            | ResultAssembly::Linear { routine, .. }
+            | ResultAssembly::CalledLinear { routine, .. } => vec![routine],
+            ResultAssembly::CalledForward(called) => vec![&called.accelerations, &called.known],
+            ResultAssembly::Space(_) | ResultAssembly::Constrained(_) => Vec::new(),
         }
     }
 
     /// Returns the indices of the functions that the plan calls.
     pub fn calls(&self) -> Vec<usize> {
         match self {
-            Plan::CalledForward(called) => vec![called.forces],
-            Plan::CalledLinear { derivatives, .. } => vec![*derivatives],
-            Plan::Space(space) => space.calls(),
+            ResultAssembly::CalledForward(called) => vec![called.forces],
+            ResultAssembly::CalledLinear { derivatives, .. } => vec![*derivatives],
+            ResultAssembly::Space(space) => space.calls(),
             _ => Vec::new(),
         }
     }
@@ -143,33 +143,41 @@ impl Entry {
     pub fn run(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
         match self.takes_features {
             true => shared.with_features(values, &self.arguments, |values| {
-                self.run_plan(shared, values, out, work);
+                self.run_called_forward_dynamics(shared, values, out, work);
             }),
-            false => self.run_plan(shared, values, out, work),
+            false => self.run_called_forward_dynamics(shared, values, out, work),
         }
     }
 
-    fn run_plan(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
+    fn run_called_forward_dynamics(
+        &self,
+        shared: &Shared,
+        values: Values<'_>,
+        out: &mut [f64],
+        work: &mut [f64],
+    ) {
         match &self.plan {
-            Plan::Program(routine) => routine.run(values, out, &mut []),
-            Plan::Frame(access, frame, routine) => {
-                routine.ensure(|| shared.frames.program(*access, *frame));
+            ResultAssembly::Program(routine) => routine.run(values, out, &mut []),
+            ResultAssembly::Frame(access, frame, routine) => {
+                routine.build_program_once(|| shared.frames.program(*access, *frame));
                 routine.run(values, out, &mut []);
             }
-            Plan::Inverse(routine, inverse) => {
-                let (beside, work) = work.split_at_mut(inverse.further_length());
+            ResultAssembly::Inverse(routine, inverse) => {
+                let (beside, work) = work.split_at_mut(inverse.output_count_after_columns());
                 routine.run(values, out, beside);
                 inverse.complete(out, beside, work);
             }
-            Plan::Forward { routine, inverse, columns, n } => {
-                let (more, work) = work.split_at_mut(inverse.further_length());
+            ResultAssembly::Forward { routine, inverse, columns, n } => {
+                let (more, work) = work.split_at_mut(inverse.output_count_after_columns());
                 routine.run(values, out, more);
                 let (forces, matrix) = out.split_at_mut(2 * n * n);
                 inverse.complete(matrix, more, work);
                 solve_for_accelerations(*n, matrix, forces, columns, work);
             }
-            Plan::CalledForward(called) => called.run_plan(shared, values, &self.arguments, out, work),
-            Plan::Linear { routine, columns, n, m } => {
+            ResultAssembly::CalledForward(called) => {
+                called.run_called_forward_dynamics(shared, values, &self.arguments, out, work)
+            }
+            ResultAssembly::Linear { routine, columns, n, m } => {
                 let (all, work) = work.split_at_mut(4 * n * n + n * m);
                 routine.run(values, all, &mut []);
                 let (forces, rest) = all.split_at_mut(2 * n * n);
@@ -177,10 +185,10 @@ impl Entry {
                 let (inputs, turning) = rest.split_at_mut(n * m);
                 let (by_q, by_v) = forces.split_at_mut(n * n);
                 let matrices = [&mut *by_q, &mut *by_v, &mut *inputs];
-                kernels::minus_products(*n, inverse, matrices, columns, work);
+                kernels::replace_by_negative_products(*n, inverse, matrices, columns, work);
                 assemble(*n, *m, [by_q, by_v, inputs, turning], out);
             }
-            Plan::CalledLinear { routine, derivatives, columns, n, m } => {
+            ResultAssembly::CalledLinear { routine, derivatives, columns, n, m } => {
                 let square = n * n;
                 let (all, rest) = work.split_at_mut(n + 3 * square + n * m);
                 let (found, work) = rest.split_at_mut(3 * square);
@@ -192,20 +200,20 @@ impl Entry {
                 let (by, inverse) = found.split_at_mut(2 * square);
                 let (by_q, by_v) = forces.split_at_mut(square);
                 let matrices = [&mut *by_q, &mut *by_v, &mut *inputs];
-                kernels::minus_products(*n, inverse, matrices, columns, work);
+                kernels::replace_by_negative_products(*n, inverse, matrices, columns, work);
                 by.iter_mut().zip(&*forces).for_each(|(by, more)| *by -= more);
                 let (by_q, by_v) = by.split_at(square);
                 assemble(*n, *m, [by_q, by_v, inputs, turning], out);
             }
-            Plan::Space(space) => space.run(shared, values, &self.arguments, out, work),
+            ResultAssembly::Space(space) => space.run(shared, values, &self.arguments, out, work),
             // The robot calls these functions itself.
-            Plan::Constrained(_) => out.fill(f64::NAN),
+            ResultAssembly::Constrained(_) => out.fill(f64::NAN),
         }
     }
 }
 
 impl CalledForward {
-    fn run_plan(
+    fn run_called_forward_dynamics(
         &self,
         shared: &Shared,
         values: Values<'_>,
@@ -215,7 +223,7 @@ impl CalledForward {
     ) {
         let n = self.n;
         let (a, rest) = work.split_at_mut(n);
-        let (more, rest) = rest.split_at_mut(n * n + self.inverse.further_length());
+        let (more, rest) = rest.split_at_mut(n * n + self.inverse.output_count_after_columns());
         let (forces, matrix) = out.split_at_mut(2 * n * n);
         self.accelerations.run(values, a, more);
         let (columns, beside) = more.split_at_mut(n * n);
@@ -242,7 +250,7 @@ fn solve_for_accelerations(
     work: &mut [f64],
 ) {
     let (by_q, by_v) = forces.split_at_mut(n * n);
-    kernels::minus_products(n, inverse, [by_q, by_v], columns, work);
+    kernels::replace_by_negative_products(n, inverse, [by_q, by_v], columns, work);
 }
 
 /// Assembles the matrices `A` and `B` of a linearised system. The inputs are the derivatives of the
@@ -268,13 +276,13 @@ fn assemble(n: usize, m: usize, [by_q, by_v, inputs, turning]: [&[f64]; 4], out:
 }
 
 /// Builder of the callable functions of a mechanism.
-pub(crate) struct Maker<'a, 'g> {
+pub(crate) struct CallableFunctionBuilder<'a, 'g> {
     pub model: &'a Model<'g>,
     pub output: &'a Output,
     pub entries: Vec<Entry>,
 }
 
-impl Maker<'_, '_> {
+impl CallableFunctionBuilder<'_, '_> {
     fn find_function(&self, id: Id) -> Option<&derive::Function> {
         self.output.functions.iter().find(|f| f.id == id)
     }
@@ -285,17 +293,17 @@ impl Maker<'_, '_> {
     }
 
     /// Adds the functions that the compiler has derived to the callable functions.
-    pub fn add_derived(&mut self) {
+    pub fn add_derived_functions(&mut self) {
         let output = self.output;
         for f in &output.functions {
-            let made = self.entry_of_function(f);
+            let made = self.callable_function_entry(f);
             self.entries.extend(made);
         }
     }
 
     /// Returns the name by which callers find a derived function; `None` for a function that callers cannot
     /// call.
-    fn name_of_function<'f>(&self, f: &'f derive::Function) -> Option<&'f str> {
+    fn callable_name_of_function<'f>(&self, f: &'f derive::Function) -> Option<&'f str> {
         match f.id {
             Id::InputDerivatives => Some("generalized_forces_derivatives"),
             // Variants that write to several matrices: here all functions do.
@@ -310,46 +318,47 @@ impl Maker<'_, '_> {
     }
 
     /// Returns the callable function for a derived function; `None` for a function that callers cannot call.
-    fn entry_of_function(&self, f: &derive::Function) -> Option<Entry> {
+    fn callable_function_entry(&self, f: &derive::Function) -> Option<Entry> {
         let hidden = is_internal(f.id);
         let has_dynamics = self.find_function(Id::ForwardDynamics).is_some();
-        if f.id == Id::Reaction && has_dynamics && !f.arguments.iter().any(is_contact_forces) {
+        if f.id == Id::Reaction && has_dynamics && !f.arguments.iter().any(is_contact_forces_argument) {
             return self.reaction_entry(f);
         }
-        let name = self.name_of_function(f)?;
+        let name = self.callable_name_of_function(f)?;
         let arguments: Vec<Argument> = f.arguments.iter().copied().filter(is_passed).collect();
         let (n, m) = (self.model.nv(), self.model.nu());
         let program = self.whole(&f.program);
         let takes_features = takes_features(&program);
         let features = takes_features.then_some(Argument::Called(Called::ContactFeatures));
         let inputs: Vec<Argument> = arguments.iter().copied().chain(features).collect();
-        let routine_with_results = |results: usize| Routine::new(program.clone(), &inputs, results);
+        let routine_with_result_count = |results: usize| Routine::new(program.clone(), &inputs, results);
         let outputs = program.outputs.len();
-        let new_inverse = || Inverse::new(&f.structure.inverse, n);
+        let inverse_assembly_of_function = || Inverse::new(&f.structure.inverse, n);
         let is_zero_entry = |first: usize| {
             let program = &program;
             move |j: usize, i: usize| program.outputs[first + j * n + i] == Operand::Const(0.0)
         };
         // Columns of derivatives by `q`, `v` and `u` that begin at these outputs.
-        let linear_columns = |[q, v, u]: [usize; 3]| {
+        let columns_by_q_v_and_u = |[q, v, u]: [usize; 3]| {
             [(n, q), (n, v), (m, u)].map(|(count, first)| {
                 Columns::group(n, &(0..count).collect::<Vec<_>>(), is_zero_entry(first))
             })
         };
         let (plan, work) = match f.shape {
             Shape::Inverse(_) => {
-                let inverse = new_inverse();
-                let work = inverse.further_length() + inverse.work();
-                (Plan::Inverse(routine_with_results(n * n)?, inverse), work)
+                let inverse = inverse_assembly_of_function();
+                let work = inverse.output_count_after_columns() + inverse.work();
+                (ResultAssembly::Inverse(routine_with_result_count(n * n)?, inverse), work)
             }
             Shape::Forward(_) => {
-                let inverse = new_inverse();
-                let work = inverse.further_length() + inverse.work().max(kernels::work_space_size(n));
-                let columns = self.multiplied_columns(f, &is_zero_entry(0));
+                let inverse = inverse_assembly_of_function();
+                let work =
+                    inverse.output_count_after_columns() + inverse.work().max(kernels::work_space_size(n));
+                let columns = self.columns_multiplied_by_inverse(f, &is_zero_entry(0));
                 // The accelerations, which come last, have a function of their own.
-                let kept: Vec<usize> = (0..3 * n * n + inverse.further_length()).collect();
-                let routine = Routine::new(program.clone().with_outputs(&kept), &inputs, 3 * n * n)?;
-                (Plan::Forward { routine, inverse, columns, n }, work)
+                let kept: Vec<usize> = (0..3 * n * n + inverse.output_count_after_columns()).collect();
+                let routine = Routine::new(program.clone().with_selected_outputs(&kept), &inputs, 3 * n * n)?;
+                (ResultAssembly::Forward { routine, inverse, columns, n }, work)
             }
             Shape::Accelerated(_) | Shape::Symmetric(_) => return None,
             Shape::CalledForward(_) => {
@@ -359,33 +368,34 @@ impl Maker<'_, '_> {
                 let known = f.structure.known.iter().zip([0, n]);
                 let places: Vec<usize> =
                     known.flat_map(|(known, first)| known.iter().map(move |k| first + k)).collect();
-                let columns = self.multiplied_columns(f, &|_, _| false);
+                let columns = self.columns_multiplied_by_inverse(f, &|_, _| false);
                 let rest = inverse.work().max(kernels::work_space_size(n)).max(n * places.len());
-                let work = n + n * n + inverse.further_length() + rest.max(self.entries[forces].work);
+                let work =
+                    n + n * n + inverse.output_count_after_columns() + rest.max(self.entries[forces].work);
                 let called = CalledForward {
                     accelerations: Routine::new(self.whole(&accelerations.program), &arguments, n)?,
                     inverse,
                     forces,
-                    known: routine_with_results(outputs)?,
+                    known: routine_with_result_count(outputs)?,
                     places,
                     columns,
                     n,
                 };
-                (Plan::CalledForward(Box::new(called)), work)
+                (ResultAssembly::CalledForward(Box::new(called)), work)
             }
             Shape::Linear(..) => {
-                let columns = linear_columns([0, n * n, 3 * n * n]);
+                let columns = columns_by_q_v_and_u([0, n * n, 3 * n * n]);
                 let work = 4 * n * n + n * m + kernels::work_space_size(n);
-                (Plan::Linear { routine: routine_with_results(outputs)?, columns, n, m }, work)
+                (ResultAssembly::Linear { routine: routine_with_result_count(outputs)?, columns, n, m }, work)
             }
             Shape::CalledLinear(..) => {
-                let columns = linear_columns([n, n + n * n, n + 2 * n * n]);
+                let columns = columns_by_q_v_and_u([n, n + n * n, n + 2 * n * n]);
                 let derivatives = self.index("forward_dynamics_derivatives")?;
                 let rest = kernels::work_space_size(n).max(self.entries[derivatives].work);
                 let work = n + 6 * n * n + n * m + rest;
                 (
-                    Plan::CalledLinear {
-                        routine: routine_with_results(outputs)?,
+                    ResultAssembly::CalledLinear {
+                        routine: routine_with_result_count(outputs)?,
                         derivatives,
                         columns,
                         n,
@@ -396,12 +406,12 @@ impl Maker<'_, '_> {
             }
             Shape::Record(Record::InputDerivatives(..)) => {
                 // The forces have a function of their own.
-                let program = program.clone().with_outputs(&(n..outputs).collect::<Vec<_>>());
-                (Plan::Program(Routine::new(program, &inputs, outputs - n)?), 0)
+                let program = program.clone().with_selected_outputs(&(n..outputs).collect::<Vec<_>>());
+                (ResultAssembly::Program(Routine::new(program, &inputs, outputs - n)?), 0)
             }
-            _ => (Plan::Program(routine_with_results(outputs)?), 0),
+            _ => (ResultAssembly::Program(routine_with_result_count(outputs)?), 0),
         };
-        let results = matrices_of_shape(f.shape, outputs);
+        let results = result_matrix_shapes(f.shape, outputs);
         let documentation = f.docs.join("\n\n");
         let rank = rank_of_shape(f.shape);
         let entry = Entry::new(name, documentation, arguments, results, plan);
@@ -409,7 +419,7 @@ impl Maker<'_, '_> {
     }
 
     /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse mass matrix.
-    fn multiplied_columns(
+    fn columns_multiplied_by_inverse(
         &self,
         f: &derive::Function,
         is_zero: &dyn Fn(usize, usize) -> bool,
@@ -435,14 +445,14 @@ impl Maker<'_, '_> {
                 .iter()
                 .any(|symbol| Argument::Called(called).index(Quantity::from_symbol(*symbol)).is_some())
         };
-        let mut merged = Merged::default();
+        let mut merged = ProgramMerger::default();
         for (called, id, quantity) in [
             (Called::PassiveForces, Id::PassiveForces, Quantity::PassiveForce as fn(usize) -> Quantity),
             (Called::PassiveDerivatives, Id::PassiveDerivatives, Quantity::PassiveDerivative),
         ] {
             let Some(f) = self.find_function(id).filter(|_| takes_called_argument(called)) else { continue };
             for (k, output) in merged.append(&f.program).into_iter().enumerate() {
-                merged.bind(quantity(k).symbol(), output);
+                merged.bind_symbol(quantity(k).symbol(), output);
             }
         }
         let outputs = merged.append(program);
@@ -454,16 +464,16 @@ impl Maker<'_, '_> {
     /// determine.
     fn reaction_entry(&self, f: &derive::Function) -> Option<Entry> {
         let name = f.name.strip_prefix(REACTION)?;
-        let mut merged = Merged::default();
+        let mut merged = ProgramMerger::default();
         let inputs = self.find_function(Id::GeneralizedForces).filter(|_| self.model.nu() > 0);
         let n = self.model.nv();
         let tau = match inputs {
             Some(f) => merged.append(&self.whole(&f.program)),
             None => vec![Operand::Const(0.0); n],
         };
-        (0..n).zip(tau).for_each(|(k, tau)| merged.bind(Quantity::Force(k).symbol(), tau));
+        (0..n).zip(tau).for_each(|(k, tau)| merged.bind_symbol(Quantity::Force(k).symbol(), tau));
         let a = merged.append(&self.whole(&self.find_function(Id::ForwardDynamics)?.program));
-        (0..n).zip(a).for_each(|(k, a)| merged.bind(Quantity::Acceleration(k).symbol(), a));
+        (0..n).zip(a).for_each(|(k, a)| merged.bind_symbol(Quantity::Acceleration(k).symbol(), a));
         let outputs = merged.append(&self.whole(&f.program));
         let time = self.model.time.then_some(Argument::T);
         let u = (self.model.nu() > 0).then_some(Argument::U);
@@ -475,8 +485,8 @@ impl Maker<'_, '_> {
             name,
             documentation,
             arguments,
-            matrices_of_shape(f.shape, length),
-            Plan::Program(routine),
+            result_matrix_shapes(f.shape, length),
+            ResultAssembly::Program(routine),
         );
         Some(Entry { rank: rank_of_shape(f.shape), ..entry })
     }
@@ -489,7 +499,7 @@ impl Entry {
         documentation: String,
         arguments: Vec<Argument>,
         results: Vec<Matrix>,
-        plan: Plan,
+        plan: ResultAssembly,
     ) -> Entry {
         let length = results.iter().map(Matrix::length).sum();
         Entry {
@@ -509,7 +519,7 @@ impl Entry {
 }
 
 /// Returns names and dimensions of the results of a function. Scalars and plain arrays are named `result`.
-fn matrices_of_shape(shape: Shape, outputs: usize) -> Vec<Matrix> {
+fn result_matrix_shapes(shape: Shape, outputs: usize) -> Vec<Matrix> {
     let arrays = shape.result_arrays();
     match arrays.is_empty() {
         true => vec![Matrix { name: "result", rows: outputs, columns: 1 }],
@@ -557,6 +567,6 @@ pub(crate) fn is_passed(argument: &Argument) -> bool {
     !matches!(argument, Argument::Into(..) | Argument::Called(_))
 }
 
-fn is_contact_forces(argument: &Argument) -> bool {
-    matches!(argument, Argument::Given(_, Supplied::ContactForces, _))
+fn is_contact_forces_argument(argument: &Argument) -> bool {
+    matches!(argument, Argument::Given(_, SuppliedQuantity::ContactForces, _))
 }

@@ -2,7 +2,7 @@
 
 use crate::capacity::Visitor;
 use crate::error::Error;
-use crate::internal::Internal;
+use crate::internal::InternalFunction;
 use crate::padded::Padded;
 use crate::robot::Robot;
 use linkwork::__private::Motion;
@@ -68,13 +68,13 @@ impl Robot {
         u: &[f64],
         preferred: &[usize],
     ) -> Result<IndependentMotion, Error> {
-        self.check_values()?;
+        self.check_parameter_values()?;
         let lists = [("q", self.nq(), q.len()), ("v", self.nv(), v.len()), ("u", self.nu(), u.len())];
         lists.into_iter().try_for_each(|(name, expected, found)| self.check_length(name, expected, found))?;
         if self.shared.constraints.names.is_empty() {
             return Err(Error::Value(format!("`{}` has no constraints: call `linearize`", self.name())));
         }
-        if self.shared.internal[Internal::MotionDerivatives as usize].is_none()
+        if self.shared.internal[InternalFunction::MotionDerivatives as usize].is_none()
             || !self.shared.states.is_empty()
         {
             let message =
@@ -82,7 +82,9 @@ impl Robot {
             return Err(Error::Value(message));
         }
         let found = self.visit_padded_robot(Linearised { q, v, u, preferred })?;
-        found.map_err(|reason| self.motion_error(integrate::Error::Constraint { t: self.time(), reason }))
+        found.map_err(|reason| {
+            self.error_from_integrator(integrate::Error::Constraint { t: self.time(), reason })
+        })
     }
 }
 

@@ -4,11 +4,11 @@ macro_rules! internal {
     ($($function:ident = $name:literal,)*) => {
         /// Functions of the mechanism that the runtime calls by index.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub(crate) enum Internal {
+        pub(crate) enum InternalFunction {
             $($function,)*
         }
 
-        /// Names of the functions that the runtime calls, in the order of [`Internal`].
+        /// Names of the functions that the runtime calls, in the order of [`InternalFunction`].
         pub(crate) const INTERNAL: &[&str] = &[$($name,)*];
     };
 }

@@ -26,7 +26,7 @@ impl Inverse {
     }
 
     /// Returns the number of the program's outputs after the columns.
-    pub fn further_length(&self) -> usize {
+    pub fn output_count_after_columns(&self) -> usize {
         self.n * self.trunk.len()
     }
 
@@ -40,13 +40,18 @@ impl Inverse {
     /// outputs.
     pub fn complete(&self, matrix: &mut [f64], beside: &[f64], work: &mut [f64]) {
         if !self.trunk.is_empty() || self.limbs.is_some() {
-            kernels::run_kernel(self.n, Completion { inverse: self, matrix, beside, work });
+            kernels::run_kernel(self.n, InverseCompletion { inverse: self, matrix, beside, work });
         }
     }
 
     /// Adds to every column of the inverse its combination of the columns of the trunk.
     #[inline(always)]
-    fn add_trunk(&self, matrix: &mut [f64], factors: &[f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
+    fn add_trunk_columns(
+        &self,
+        matrix: &mut [f64],
+        factors: &[f64],
+        mul_add: impl Fn(f64, f64, f64) -> f64 + Copy,
+    ) {
         let (n, width) = (self.n, self.trunk.len());
         for j in 0..n {
             for (trunk, by) in self.trunk.iter().zip(&factors[j * width..]).filter(|(_, by)| **by != 0.0) {
@@ -102,7 +107,7 @@ impl Inverse {
             }
         }
         let g = &work[..n * width];
-        self.add_trunk(matrix, g, mul_add);
+        self.add_trunk_columns(matrix, g, mul_add);
     }
 
     /// Converts a column of generalized forces to accelerations in place, if the program computes forces, as
@@ -118,19 +123,19 @@ impl Inverse {
 }
 
 /// Completion of an inverse mass matrix from the columns that a program computes.
-struct Completion<'a> {
+struct InverseCompletion<'a> {
     inverse: &'a Inverse,
     matrix: &'a mut [f64],
     beside: &'a [f64],
     work: &'a mut [f64],
 }
 
-impl Kernel for Completion<'_> {
+impl Kernel for InverseCompletion<'_> {
     #[inline(always)]
     fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
-        let Completion { inverse, matrix, beside, work } = self;
+        let InverseCompletion { inverse, matrix, beside, work } = self;
         match &inverse.limbs {
-            None => inverse.add_trunk(matrix, beside, mul_add),
+            None => inverse.add_trunk_columns(matrix, beside, mul_add),
             Some(limbs) => inverse.invert_with_limbs(limbs, matrix, beside, work, mul_add),
         }
     }
@@ -199,7 +204,7 @@ mod tests {
     /// velocity each. Initially, the columns of the limbs hold the inverses of their blocks, and the borders
     /// hold the row of the trunk.
     #[test]
-    fn arrows_are_inverted() {
+    fn block_arrow_matrix_is_inverted() {
         let form = InverseForm::BlockArrow { trunk: vec![0], limbs: vec![vec![1], vec![2]] };
         let inverse = Inverse::new(&form, 3);
         let mass = [4.0, 1.0, 2.0, 1.0, 2.0, 0.0, 2.0, 0.0, 5.0];

@@ -95,7 +95,7 @@ pub(crate) fn work_space_size(n: usize) -> usize {
 
 /// Replaces the given columns of each matrix by minus their products with a square matrix of `n` rows. All
 /// matrices are stored by columns.
-pub(crate) fn minus_products<const K: usize>(
+pub(crate) fn replace_by_negative_products<const K: usize>(
     n: usize,
     square: &[f64],
     matrices: [&mut [f64]; K],
@@ -125,7 +125,9 @@ impl<const K: usize> Kernel for Products<'_, K> {
         macro_rules! small {
             ($($n:literal)*) => {
                 match n {
-                    $($n => return multiply_small::<$n>(square, matrices, columns, mul_add),)*
+                    $($n => {
+                    return negative_products_of_fixed_size::<$n>(square, matrices, columns, mul_add);
+                })*
                     _ => {}
                 }
             };
@@ -146,7 +148,7 @@ impl<const K: usize> Kernel for Products<'_, K> {
 
 /// Replaces columns of matrices with `N` rows by minus their products with a square matrix.
 #[inline(always)]
-fn multiply_small<'a, const N: usize>(
+fn negative_products_of_fixed_size<'a, const N: usize>(
     square: &[f64],
     matrices: impl IntoIterator<Item = &'a mut [f64]>,
     columns: &[Vec<Columns>],
@@ -229,7 +231,7 @@ mod tests {
             let columns: Vec<usize> = (0..n).filter(|j| j % 7 != 3).collect();
             let groups = [1, 2].map(|_| Columns::group(n, &columns, is_zero));
             let mut work = vec![f64::NAN; work_space_size(n)];
-            minus_products(n, &square, [&mut first, &mut second], &groups, &mut work);
+            replace_by_negative_products(n, &square, [&mut first, &mut second], &groups, &mut work);
             for (which, found) in [(1, first), (2, second)] {
                 let before = matrix(which);
                 for k in 0..n * n {

@@ -47,7 +47,7 @@ pub use independent::IndependentMotion;
 pub use linkwork::simulate::Overlaps;
 pub use load::{Loader, declare, load};
 #[doc(hidden)]
-pub use load::{compiled, without_rust};
+pub use load::{compiled, remove_rust_only_options};
 pub use padded::{Padded, PaddedContacts};
 pub use robot::{Function, Limit, Robot};
 pub use shared::Quantity;

@@ -1,10 +1,10 @@
 //! Loading of mechanisms from files and texts.
 
-use crate::about::About;
+use crate::about::MechanismDocumentation;
 use crate::constrained;
 use crate::error::Error;
 use crate::frames::Frames;
-use crate::functions::Maker;
+use crate::functions::CallableFunctionBuilder;
 use crate::internal::INTERNAL;
 use crate::methods::METHODS;
 use crate::polytopes::Polytopes;
@@ -16,10 +16,10 @@ use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, Model};
 use linkwork_compiler::passes::Passes;
-use linkwork_compiler::syntax::{Printed, RATE_OF_STATE};
+use linkwork_compiler::syntax::{EquationsOption, RATE_OF_STATE};
 use linkwork_compiler::{
-    DeclaredStruct, Source, compile_with, derive_above, import, mechanism_declarations, read_source,
-    reject_reproducible,
+    DeclaredStruct, Source, compile_with_passes, derive_above_attribute_error, import,
+    mechanism_declarations, read_source, reject_reproducible_arithmetic,
 };
 use proc_macro2::TokenStream;
 use std::collections::HashMap;
@@ -130,35 +130,35 @@ impl Loader {
     /// The file cannot be read, or its mechanism is wrong.
     pub fn load(self) -> Result<Robot, Error> {
         let interpreted = self.interpreted;
-        let shared = Loader::on_thread(move || self.compile())?;
+        let shared = Loader::run_on_compiler_thread(move || self.compile())?;
         Ok(Robot::new(Arc::new(shared), interpreted))
     }
 
     /// Runs the compiler on a new thread, because source positions of tokens occupy memory of their thread.
-    pub(crate) fn on_thread<T: Send + 'static>(
+    pub(crate) fn run_on_compiler_thread<T: Send + 'static>(
         run: impl FnOnce() -> Result<T, Error> + Send + 'static,
     ) -> Result<T, Error> {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
-        let thread = thread.spawn(run).map_err(|error| Error::Internal(error.to_string()))?;
-        thread.join().map_err(|panic| Error::Internal(panic_message(&*panic)))?
+        let thread = thread.spawn(run).map_err(|error| Error::InternalFunction(error.to_string()))?;
+        thread.join().map_err(|panic| Error::InternalFunction(panic_message(&*panic)))?
     }
 
     fn compile(self) -> Result<Shared, Error> {
         let mut source = self.read_source()?;
-        without_rust(&mut source);
+        remove_rust_only_options(&mut source);
         let requests = &mut source.mechanism.requests;
         requests.drawing = false;
-        if requests.equations == Printed::Readable && !self.readable_equations {
-            requests.equations = Printed::Structure;
+        if requests.equations == EquationsOption::Readable && !self.readable_equations {
+            requests.equations = EquationsOption::Structure;
         }
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
         let passes = Passes { lanes: cfg!(target_arch = "x86_64"), ..Passes::default() };
-        let allowed = reject_reproducible(&source, "loaded mechanisms", cx);
-        let compiled = allowed.and_then(|()| compile_with(&source, &graph, passes, cx));
+        let allowed = reject_reproducible_arithmetic(&source, "loaded mechanisms", cx);
+        let compiled = allowed.and_then(|()| compile_with_passes(&source, &graph, passes, cx));
         let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else {
             return Err(self.report_errors(cx));
         };
-        Ok(shared_mechanism(&source, &model, output))
+        Ok(extract_shared_data(&source, &model, output))
     }
 
     /// Reads the declaration of the mechanism and adds the options of the loader.
@@ -170,8 +170,8 @@ impl Loader {
             .map_err(|error| Error::Syntax(format!("options `{}`: {error}", self.options)))?;
         declaration.add(options);
         let cx = &mut Diagnostics::new();
-        if let Some(attribute) = declaration.derive_above {
-            cx.add(derive_above(attribute));
+        if let Some(attribute) = declaration.derive_above_attribute_error {
+            cx.add(derive_above_attribute_error(attribute));
         }
         let DeclaredStruct { arguments, item, .. } = declaration;
         let source = read_source(arguments, item, &folder, cx);
@@ -180,17 +180,17 @@ impl Loader {
 
     /// Returns the declaration of the mechanism, and the folder of the files that it names.
     fn read_declaration(&self) -> Result<(DeclaredStruct, PathBuf), Error> {
-        let current_folder = || match &self.folder {
+        let base_folder = || match &self.folder {
             Some(folder) => Ok(folder.clone()),
             None => std::env::current_dir()
                 .map_err(|error| Error::File { path: PathBuf::from("."), reason: error.to_string() }),
         };
         match &self.origin {
-            Origin::Text(text) => Ok((self.choose_declaration(text, "the text")?, current_folder()?)),
+            Origin::Text(text) => Ok((self.choose_declaration(text, "the text")?, base_folder()?)),
             Origin::File(path) => {
                 let text = text_of(path)?;
                 if !is_rust(path) {
-                    return Ok((DeclaredStruct::of_file(path, &text), current_folder()?));
+                    return Ok((DeclaredStruct::of_file(path, &text), base_folder()?));
                 }
                 let folder = match &self.folder {
                     Some(folder) => folder.clone(),
@@ -227,7 +227,7 @@ impl Loader {
     pub(crate) fn report_errors(&self, cx: &Diagnostics) -> Error {
         let messages: Vec<String> = cx.distinct_errors().map(|one| self.diagnostic_message(one)).collect();
         match messages.is_empty() {
-            true => Error::Internal("the mechanism could not be compiled".to_string()),
+            true => Error::InternalFunction("the mechanism could not be compiled".to_string()),
             false => Error::Mechanism(messages),
         }
     }
@@ -242,8 +242,9 @@ impl Loader {
             (None, Origin::File(path)) => path.display().to_string(),
         };
         let notes = one.notes().iter().map(|line| ("note", line));
-        let helps = one.helps().iter().map(|line| ("help", line));
-        let lines: String = notes.chain(helps).map(|(kind, line)| format!("\n  = {kind}: {line}")).collect();
+        let help_lines = one.help_lines().iter().map(|line| ("help", line));
+        let lines: String =
+            notes.chain(help_lines).map(|(kind, line)| format!("\n  = {kind}: {line}")).collect();
         format!("{position}: error: {}{lines}", one.message())
     }
 }
@@ -279,25 +280,25 @@ fn text_of(path: &Path) -> Result<String, Error> {
 #[doc(hidden)]
 #[must_use]
 pub fn compiled(source: &Source, model: &Model<'_>, output: linkwork_compiler::derive::Output) -> Robot {
-    Robot::new(Arc::new(shared_mechanism(source, model, output)), false)
+    Robot::new(Arc::new(extract_shared_data(source, model, output)), false)
 }
 
 /// Removes options that only apply to generated Rust code.
 #[doc(hidden)]
-pub fn without_rust(source: &mut Source) {
+pub fn remove_rust_only_options(source: &mut Source) {
     let requests = &mut source.mechanism.requests;
     (requests.prepare, requests.batch, requests.packed) = (false, false, false);
 }
 
 /// Extracts the data of a compiled mechanism that its robots share.
-fn shared_mechanism(
+fn extract_shared_data(
     source: &Source,
     model: &Model<'_>,
     mut output: linkwork_compiler::derive::Output,
 ) -> Shared {
     let frames = Frames::new(model, &mut output);
-    let mut maker = Maker { model, output: &output, entries: Vec::new() };
-    maker.add_derived();
+    let mut maker = CallableFunctionBuilder { model, output: &output, entries: Vec::new() };
+    maker.add_derived_functions();
     Space::add(&mut maker);
     constrained::add(&mut maker);
     maker.entries.extend(frames.entries(model.time));
@@ -342,13 +343,13 @@ fn shared_mechanism(
         defaults,
         tables: source.tables_with_variable_counts(),
         limits: model.limits.iter().map(|limit| (limit.v.0, limit.bounds().map(|b| b.is_some()))).collect(),
-        requirements: model.requirements.iter().map(|r| requirement_of_model(model, r)).collect(),
+        requirements: model.requirements.iter().map(|r| convert_requirement(model, r)).collect(),
         equations: output.equations.plain.clone(),
         time: model.time,
         kinematic: model.kinematic,
         has_speeds: model.speeds.is_some(),
         has_feedback: !model.acceleration_forces.is_empty(),
-        constraints: constraints_of(model),
+        constraints: constraint_data_of_model(model),
         contact_rates: model.contacts.iter().map(|contact| contact.rates.len()).sum(),
         contacts: contacts_of_model(model),
         polytopes: Polytopes::of_model(model),
@@ -359,11 +360,11 @@ fn shared_mechanism(
         index,
         methods,
         internal,
-        about: About::new(source, model),
+        about: MechanismDocumentation::new(source, model),
     }
 }
 
-fn constraints_of(model: &Model<'_>) -> Constraints {
+fn constraint_data_of_model(model: &Model<'_>) -> Constraints {
     let matching_constraint_indices = |is: fn(&mechanism::Constraint<'_>) -> bool| {
         let all = model.constraints.iter().enumerate();
         all.filter(|(_, constraint)| is(constraint)).map(|(k, _)| k).collect()
@@ -384,7 +385,7 @@ fn constraints_of(model: &Model<'_>) -> Constraints {
 
 fn contacts_of_model(model: &Model<'_>) -> Vec<Contact> {
     let mut first = 0;
-    let numbered_contact = |(k, contact): (usize, &mechanism::Contact<'_>)| {
+    let contact_with_row_range = |(k, contact): (usize, &mechanism::Contact<'_>)| {
         let count = contact.rates.len();
         first += count;
         Contact {
@@ -394,10 +395,10 @@ fn contacts_of_model(model: &Model<'_>) -> Vec<Contact> {
             of_impulses: contact.of_impulses,
         }
     };
-    model.contacts.iter().enumerate().map(numbered_contact).collect()
+    model.contacts.iter().enumerate().map(contact_with_row_range).collect()
 }
 
-fn requirement_of_model(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {
+fn convert_requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {
     use mechanism::Rule as Known;
     let rule = match requirement.rule {
         Known::Finite => Rule::Finite,

@@ -6,14 +6,14 @@ use std::collections::HashMap;
 
 /// Program under construction, with replacements of symbols in the programs that are appended.
 #[derive(Default)]
-pub(crate) struct Merged {
+pub(crate) struct ProgramMerger {
     program: Program,
     bound: HashMap<Symbol, Operand>,
     /// Calls of elementary functions, which several programs may have in common.
     calls: Vec<(Op, Operand)>,
 }
 
-impl Merged {
+impl ProgramMerger {
     /// Appends the instructions of a program; returns the outputs of that program.
     pub fn append(&mut self, program: &Program) -> Vec<Operand> {
         let mut values: Vec<Operand> = Vec::with_capacity(program.instructions.len());
@@ -34,12 +34,12 @@ impl Merged {
     fn renamed_operand(&self, operand: Operand, values: &[Operand]) -> Operand {
         match operand {
             Operand::Symbol(symbol) => self.bound.get(&symbol).copied().unwrap_or(operand),
-            other => other.translate_value(values),
+            other => other.operand_in_other_program(values),
         }
     }
 
     /// Replaces a symbol in the programs that are appended after this call.
-    pub fn bind(&mut self, symbol: Symbol, operand: Operand) {
+    pub fn bind_symbol(&mut self, symbol: Symbol, operand: Operand) {
         self.bound.insert(symbol, operand);
     }
 
@@ -52,7 +52,7 @@ impl Merged {
     /// Completes the merged program with the given outputs.
     pub fn finish(mut self, outputs: Vec<Operand>) -> Program {
         self.program.outputs = outputs;
-        self.program.remove_unused();
+        self.program.remove_unused_instructions();
         self.program
     }
 }
@@ -62,19 +62,19 @@ mod tests {
     use super::*;
     use linkwork_compiler::expr::Graph;
     use linkwork_compiler::lower::lower;
-    use linkwork_compiler::mechanism::{Quantity, Supplied};
+    use linkwork_compiler::mechanism::{Quantity, SuppliedQuantity};
 
     /// Checks that a program `2 x`, followed by a program `sin(y)` whose `y` is bound to its result, is
     /// `sin(2 x)`.
     #[test]
-    fn results_replace_symbols() {
+    fn bound_symbols_are_replaced_by_results() {
         let graph = Graph::new();
-        let (x, y) = (Quantity::Configuration(0), Quantity::Given(Supplied::Parent, 0));
+        let (x, y) = (Quantity::Configuration(0), Quantity::Given(SuppliedQuantity::Parent, 0));
         let twice = lower(&[x.expr(&graph) * graph.num(2.0)]);
         let sine = lower(&[y.expr(&graph).sin()]);
-        let mut merged = Merged::default();
+        let mut merged = ProgramMerger::default();
         let outputs = merged.append(&twice);
-        merged.bind(y.symbol(), outputs[0]);
+        merged.bind_symbol(y.symbol(), outputs[0]);
         let outputs = merged.append(&sine);
         let program = merged.finish(outputs);
         let found = program.interpret_program(&|symbol| if symbol == x.symbol() { 0.3 } else { f64::NAN });

@@ -19,7 +19,7 @@ impl Robot {
     }
 
     fn vector_of_method(&self, method: Method, state: State<'_>) -> Result<DVector<f64>, Error> {
-        self.state_call(self.index_of(method)?, state).map(DVector::from_vec)
+        self.call_function_at_state(self.index_of(method)?, state).map(DVector::from_vec)
     }
 
     fn matrices_of_function<const N: usize>(
@@ -27,7 +27,7 @@ impl Robot {
         index: usize,
         state: State<'_>,
     ) -> Result<[DMatrix<f64>; N], Error> {
-        let values = self.state_call(index, state)?;
+        let values = self.call_function_at_state(index, state)?;
         let results = &self.shared.entries[index].results;
         let mut first = 0;
         Ok(std::array::from_fn(|k| {
@@ -46,7 +46,7 @@ impl Robot {
     pub fn frame_placement(&self, frame: &str, q: &[f64]) -> Result<Isometry3<f64>, Error> {
         let index = self.frame_index("frame_placement", frame)?;
         let mut values = [0.0; 12];
-        self.state_call_into(index, State { q, ..State::default() }, &mut values)?;
+        self.call_with_state_into(index, State { q, ..State::default() }, &mut values)?;
         let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&values[..9]));
         let position = Translation3::from(Vector3::from_column_slice(&values[9..]));
         Ok(Isometry3::from_parts(position, rotation.into()))
@@ -59,7 +59,7 @@ impl Robot {
     /// The mechanism has no such frame, or a slice has the wrong length.
     pub fn frame_velocity(&self, frame: &str, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
         let index = self.frame_index("frame_velocity", frame)?;
-        self.state_call(index, State { q, v, ..State::default() }).map(DVector::from_vec)
+        self.call_function_at_state(index, State { q, v, ..State::default() }).map(DVector::from_vec)
     }
 
     /// Returns the acceleration of a frame in ground axes: that of its origin, then the angular acceleration.
@@ -75,7 +75,7 @@ impl Robot {
         a: &[f64],
     ) -> Result<DVector<f64>, Error> {
         let index = self.frame_index("frame_acceleration", frame)?;
-        self.state_call(index, State { q, v, a, ..State::default() }).map(DVector::from_vec)
+        self.call_function_at_state(index, State { q, v, a, ..State::default() }).map(DVector::from_vec)
     }
 
     /// Returns the Jacobian of a frame, whose product with the velocity of the mechanism is the velocity of
@@ -128,7 +128,9 @@ macro_rules! methods {
                 ///
                 #[doc = concat!("As [`", stringify!($name), "`](Self::", stringify!($name), ").")]
                 pub fn $into(&self, $($argument: &[f64],)* out: &mut [f64]) -> Result<(), Error> {
-                    self.state_call_into(self.index_of(Method::$name)?, methods!(@state $($argument)*), out)
+                    self.call_with_state_into(
+                        self.index_of(Method::$name)?, methods!(@state $($argument)*), out,
+                    )
                 }
             )*
         }
@@ -140,7 +142,7 @@ macro_rules! methods {
     (@type three) => { Result<[DMatrix<f64>; 3], Error> };
     (@body scalar $self:ident $name:ident $state:ident) => {{
         let mut value = [0.0];
-        $self.state_call_into($self.index_of(Method::$name)?, $state, &mut value)?;
+        $self.call_with_state_into($self.index_of(Method::$name)?, $state, &mut value)?;
         Ok(value[0])
     }};
     (@body vector $self:ident $name:ident $state:ident) => { $self.vector_of_method(Method::$name, $state) };
@@ -206,7 +208,7 @@ macro_rules! others {
                 ///
                 #[doc = concat!("As [`", stringify!($name), "`](Self::", stringify!($name), ").")]
                 pub fn $into(&self, $($argument: &[f64],)* out: &mut [f64]) -> Result<(), Error> {
-                    self.state_call_into(self.index_of(Method::$name)?, $state, out)
+                    self.call_with_state_into(self.index_of(Method::$name)?, $state, out)
                 }
             )*
         }

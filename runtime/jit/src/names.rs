@@ -35,7 +35,7 @@ const fn digit_table() -> [[u8; DIGITS]; 5 * COUNT] {
 }
 
 /// Returns the placeholder numbers for the first names of a list.
-pub(crate) const fn numbers_of_names<const N: usize>(list: List) -> [&'static str; N] {
+pub(crate) const fn placeholder_numbers<const N: usize>(list: List) -> [&'static str; N] {
     let mut all = [""; N];
     let mut k = 0;
     while k < N && k < COUNT {
@@ -48,8 +48,8 @@ pub(crate) const fn numbers_of_names<const N: usize>(list: List) -> [&'static st
 }
 
 impl Shared {
-    /// Returns the name that a placeholder number of [`numbers_of_names`] represents.
-    fn name_of_number(&self, number: usize) -> Option<&str> {
+    /// Returns the name that a placeholder number of [`placeholder_numbers`] represents.
+    fn name_of_placeholder(&self, number: usize) -> Option<&str> {
         let k = number % COUNT;
         match number / COUNT {
             0 => self.configuration.get(k).map(|one| one.name.as_str()),
@@ -66,7 +66,8 @@ impl Shared {
         let mut text = parts.next().unwrap_or_default().to_string();
         for part in parts {
             let is_number = part.len() == DIGITS && part.bytes().all(|digit| digit.is_ascii_digit());
-            let name = part.parse().ok().filter(|_| is_number).and_then(|number| self.name_of_number(number));
+            let name =
+                part.parse().ok().filter(|_| is_number).and_then(|number| self.name_of_placeholder(number));
             text.push('`');
             text.push_str(name.unwrap_or(part));
         }

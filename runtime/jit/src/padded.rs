@@ -20,8 +20,8 @@ mod second;
 pub use contacts::PaddedContacts;
 
 use crate::error::Error;
-use crate::internal::Internal;
-use crate::names::{List, numbers_of_names};
+use crate::internal::InternalFunction;
+use crate::names::{List, placeholder_numbers};
 use crate::robot::{Robot, State};
 use linkwork::constraint::Projected;
 use linkwork::integrate::{Features, Hooks};
@@ -123,7 +123,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns the number of velocities, and the number of velocities and first-order states together.
-    fn velocity_counts(&self) -> [usize; 2] {
+    fn velocity_and_state_counts(&self) -> [usize; 2] {
         let robot = self.robot();
         [robot.nv(), robot.nv() + robot.shared.states.len()]
     }
@@ -141,29 +141,29 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     fn state_with_velocity<'a>(&self, t: f64, q: &'a SVector<f64, NQ>, v: &'a SVector<f64, NV>) -> State<'a> {
-        let [n, all] = self.velocity_counts();
+        let [n, all] = self.velocity_and_state_counts();
         State { v: self.velocity_entries(v), x: &v.as_slice()[n..all], ..self.state_without_velocity(t, q) }
     }
 
     /// Returns whether the robot has a function.
-    fn has_function(&self, f: Internal) -> bool {
+    fn has_function(&self, f: InternalFunction) -> bool {
         self.robot().shared.internal[f as usize].is_some()
     }
 
     /// Evaluates a function of the robot. After an error, such as an absent function, the results are NaN.
-    fn call_function(&self, f: Internal, state: State<'_>, out: &mut [f64]) {
+    fn call_function(&self, f: InternalFunction, state: State<'_>, out: &mut [f64]) {
         let robot = self.robot();
         let index = robot.shared.internal[f as usize];
-        if index.is_none_or(|index| robot.state_call_into(index, state, out).is_err()) {
+        if index.is_none_or(|index| robot.call_with_state_into(index, state, out).is_err()) {
             out.fill(f64::NAN);
         }
     }
 
     /// Returns a vector whose first `count` entries are the results of a function, and whose other entries
     /// are those of `all`.
-    fn fill_vector<const N: usize>(
+    fn vector_with_results<const N: usize>(
         &self,
-        f: Internal,
+        f: InternalFunction,
         state: State<'_>,
         count: usize,
         mut all: SVector<f64, N>,
@@ -176,7 +176,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     /// are those of `all`.
     fn fill_matrix<const N: usize, const M: usize>(
         &self,
-        f: Internal,
+        f: InternalFunction,
         state: State<'_>,
         (rows, columns): (usize, usize),
         mut all: SMatrix<f64, N, M>,
@@ -200,7 +200,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         for (k, one) in robot.shared.states.iter().enumerate() {
             let mut rate = [f64::NAN];
             if let Some(index) = one.rate {
-                let _ = robot.state_call_into(index, state, &mut rate);
+                let _ = robot.call_with_state_into(index, state, &mut rate);
             }
             to[n + k] += factor * rate[0];
         }
@@ -208,7 +208,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Adds the rates of the first-order states without inputs, times a factor, to the entries behind the
     /// velocities.
-    fn add_free_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
+    fn add_first_order_state_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
         if !self.robot().shared.states.is_empty() {
             let u = SVector::<f64, NU>::zeros();
             self.add_state_rates(State { u: self.input_entries(&u), ..state }, factor, to);
@@ -232,7 +232,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
 {
     #[inline]
     fn features(&self) -> Features {
-        let (robot, [_, velocities]) = (self.robot(), self.velocity_counts());
+        let (robot, [_, velocities]) = (self.robot(), self.velocity_and_state_counts());
         let shared = &robot.shared;
         Features {
             constrained: !shared.constraints.names.is_empty(),
@@ -270,7 +270,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
     }
 
     fn is_nearly_singular(&self, t: f64, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> bool {
-        self.is_constrained() && self.constraints_nearly_singular(t, q, dv)
+        self.is_constrained() && self.are_constraints_nearly_singular(t, q, dv)
     }
 
     fn acceleration_derivatives(
@@ -300,7 +300,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         let n = self.robot().nv();
         let at = State { q: self.configuration_entries(q), ..State::default() };
         let coordinate_rates = |state: State<'_>, v: &SVector<f64, NV>| {
-            self.fill_vector(Internal::RatesOfSpeeds, State { v: self.velocity_entries(v), ..state }, n, *v)
+            self.vector_with_results(
+                InternalFunction::RatesOfSpeeds,
+                State { v: self.velocity_entries(v), ..state },
+                n,
+                *v,
+            )
         };
         let way = coordinate_rates(at, dv);
         let mut there = *q;
@@ -312,14 +317,24 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
             out.as_mut_slice(),
         );
         let at = State { q: self.configuration_entries(&there), ..State::default() };
-        self.fill_vector(Internal::SpeedsOfRates, State { v: self.velocity_entries(&out), ..at }, n, out)
+        self.vector_with_results(
+            InternalFunction::SpeedsOfRates,
+            State { v: self.velocity_entries(&out), ..at },
+            n,
+            out,
+        )
     }
 
     fn carry_rate(&self, _t: f64, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         let mut out = SVector::<f64, NV>::zeros();
         if !self.robot().shared.has_speeds {
             let charts = &self.robot().shared.charts;
-            crate::space::transport_rate(charts, dv.as_slice(), v.as_slice(), out.as_mut_slice());
+            crate::space::write_transported_velocity_rate(
+                charts,
+                dv.as_slice(),
+                v.as_slice(),
+                out.as_mut_slice(),
+            );
         }
         out
     }
@@ -338,16 +353,21 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
 {
     type Scalar = f64;
 
-    const CONFIGURATION: [&'static str; NQ] = numbers_of_names(List::Configuration);
-    const VELOCITIES: [&'static str; NV] = numbers_of_names(List::Velocities);
-    const INPUTS: [&'static str; NU] = numbers_of_names(List::Inputs);
+    const CONFIGURATION: [&'static str; NQ] = placeholder_numbers(List::Configuration);
+    const VELOCITIES: [&'static str; NV] = placeholder_numbers(List::Velocities);
+    const INPUTS: [&'static str; NU] = placeholder_numbers(List::Inputs);
 
     fn neutral(&self) -> SVector<f64, NQ> {
-        self.fill_vector(Internal::Neutral, State::default(), self.robot().nq(), SVector::zeros())
+        self.vector_with_results(
+            InternalFunction::Neutral,
+            State::default(),
+            self.robot().nq(),
+            SVector::zeros(),
+        )
     }
 
     fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
-        let (nq, [_, nv]) = (self.robot().nq(), self.velocity_counts());
+        let (nq, [_, nv]) = (self.robot().nq(), self.velocity_and_state_counts());
         let mut all = *q;
         for (to, by) in all.iter_mut().skip(nq).zip(dv.iter().skip(nv)) {
             *to += by;
@@ -363,17 +383,17 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             other: &[self.velocity_entries(dv)],
             ..State::default()
         };
-        self.fill_vector(Internal::Integrate, state, nq, all)
+        self.vector_with_results(InternalFunction::Integrate, state, nq, all)
     }
 
     fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
-        let (nq, [n, nv]) = (self.robot().nq(), self.velocity_counts());
+        let (nq, [n, nv]) = (self.robot().nq(), self.velocity_and_state_counts());
         let mut all = SVector::<f64, NV>::zeros();
         for (entry, (to, from)) in all.iter_mut().skip(nv).zip(to.iter().zip(from).skip(nq)) {
             *entry = to - from;
         }
         let other = &[self.configuration_entries(from), self.configuration_entries(to)];
-        self.fill_vector(Internal::Difference, State { other, ..State::default() }, n, all)
+        self.vector_with_results(InternalFunction::Difference, State { other, ..State::default() }, n, all)
     }
 
     fn tangent_rate(&self, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
@@ -403,18 +423,28 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             other: &[self.velocity_entries(dv)],
             ..State::default()
         };
-        self.fill_vector(Internal::DisplacementRate, state, self.robot().nv(), *v)
+        self.vector_with_results(InternalFunction::DisplacementRate, state, self.robot().nv(), *v)
     }
 
     fn mass_matrix(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let n = self.robot().nv();
-        self.fill_matrix(Internal::MassMatrix, self.state_without_velocity(t, q), (n, n), SMatrix::identity())
+        self.fill_matrix(
+            InternalFunction::MassMatrix,
+            self.state_without_velocity(t, q),
+            (n, n),
+            SMatrix::identity(),
+        )
     }
 
     fn bias_forces(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         let state = self.state_with_velocity(t, q, v);
-        let mut all = self.fill_vector(Internal::BiasForces, state, self.robot().nv(), SVector::zeros());
-        self.add_free_rates(state, -1.0, &mut all);
+        let mut all = self.vector_with_results(
+            InternalFunction::BiasForces,
+            state,
+            self.robot().nv(),
+            SVector::zeros(),
+        );
+        self.add_first_order_state_rates(state, -1.0, &mut all);
         all
     }
 
@@ -426,8 +456,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         a: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
         let state = State { a: self.velocity_entries(a), ..self.state_with_velocity(t, q, v) };
-        let mut all = self.fill_vector(Internal::InverseDynamics, state, self.robot().nv(), *a);
-        self.add_free_rates(state, -1.0, &mut all);
+        let mut all =
+            self.vector_with_results(InternalFunction::InverseDynamics, state, self.robot().nv(), *a);
+        self.add_first_order_state_rates(state, -1.0, &mut all);
         all
     }
 
@@ -442,8 +473,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             return Constrained::<NQ, NV, NU, NV, NV>::constrained_dynamics(self, t, q, v, tau).0;
         }
         let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
-        let mut all = self.fill_vector(Internal::ForwardDynamics, state, self.robot().nv(), *tau);
-        self.add_free_rates(state, 1.0, &mut all);
+        let mut all =
+            self.vector_with_results(InternalFunction::ForwardDynamics, state, self.robot().nv(), *tau);
+        self.add_first_order_state_rates(state, 1.0, &mut all);
         all
     }
 
@@ -472,30 +504,30 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             return all;
         }
         let state = State { u: self.input_entries(u), ..self.state_with_velocity(t, q, v) };
-        all = self.fill_vector(Internal::GeneralizedForces, state, self.robot().nv(), all);
+        all = self.vector_with_results(InternalFunction::GeneralizedForces, state, self.robot().nv(), all);
         if !self.robot().shared.states.is_empty() {
             self.add_state_rates(state, 1.0, &mut all);
-            self.add_free_rates(state, -1.0, &mut all);
+            self.add_first_order_state_rates(state, -1.0, &mut all);
         }
         all
     }
 
     fn kinetic_energy(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
-        let further: f64 = v.iter().skip(self.velocity_counts()[1]).map(|v| 0.5 * v * v).sum();
+        let further: f64 = v.iter().skip(self.velocity_and_state_counts()[1]).map(|v| 0.5 * v * v).sum();
         let mut energy = [f64::NAN];
-        self.call_function(Internal::KineticEnergy, self.state_with_velocity(t, q, v), &mut energy);
+        self.call_function(InternalFunction::KineticEnergy, self.state_with_velocity(t, q, v), &mut energy);
         energy[0] + further
     }
 
     fn potential_energy(&self, t: f64, q: &SVector<f64, NQ>) -> f64 {
         let mut energy = [f64::NAN];
-        self.call_function(Internal::PotentialEnergy, self.state_without_velocity(t, q), &mut energy);
+        self.call_function(InternalFunction::PotentialEnergy, self.state_without_velocity(t, q), &mut energy);
         energy[0]
     }
 
     fn generalized_momentum(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.fill_vector(
-            Internal::GeneralizedMomentum,
+        self.vector_with_results(
+            InternalFunction::GeneralizedMomentum,
             self.state_with_velocity(t, q, v),
             self.robot().nv(),
             *v,
@@ -504,8 +536,13 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
 
     fn momentum_rate(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         let state = self.state_with_velocity(t, q, v);
-        let mut all = self.fill_vector(Internal::MomentumRate, state, self.robot().nv(), SVector::zeros());
-        self.add_free_rates(state, 1.0, &mut all);
+        let mut all = self.vector_with_results(
+            InternalFunction::MomentumRate,
+            state,
+            self.robot().nv(),
+            SVector::zeros(),
+        );
+        self.add_first_order_state_rates(state, 1.0, &mut all);
         all
     }
 }

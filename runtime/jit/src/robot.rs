@@ -2,7 +2,7 @@
 
 use crate::AnyTable;
 use crate::error::Error;
-use crate::functions::{Entry, Matrix, Plan};
+use crate::functions::{Entry, Matrix, ResultAssembly};
 use crate::layout::Layout;
 use crate::routine::Values;
 use crate::shared::{Quantity, Shared};
@@ -205,7 +205,7 @@ impl Robot {
     }
 
     /// Returns the interpolation tables of the mechanism, in the order of their declaration.
-    pub(crate) fn table_values(&self) -> &[AnyTable] {
+    pub(crate) fn interpolation_tables(&self) -> &[AnyTable] {
         &self.tables
     }
 
@@ -332,9 +332,9 @@ impl Robot {
     ///
     /// The first value that none can have.
     pub fn validate(&self) -> Result<(), Error> {
-        self.check_values()?;
+        self.check_parameter_values()?;
         let Some(index) = self.shared.index.get("figures") else { return Ok(()) };
-        let values = self.state_call(*index, State::default())?;
+        let values = self.call_function_at_state(*index, State::default())?;
         let mut rest = values.as_slice();
         for requirement in &self.shared.requirements {
             let (own, others) = rest.split_at(requirement.count.min(rest.len()));
@@ -361,7 +361,7 @@ impl Robot {
     /// A parameter has no value.
     pub fn limits(&self) -> Result<Vec<Limit>, Error> {
         let Some(index) = self.shared.index.get("limits") else { return Ok(Vec::new()) };
-        let mut values = self.state_call(*index, State::default())?.into_iter();
+        let mut values = self.call_function_at_state(*index, State::default())?.into_iter();
         let mut bound = |present: bool, default: f64| match present {
             true => values.next().unwrap_or(default),
             false => default,
@@ -458,7 +458,7 @@ impl Robot {
         out: &mut [f64],
     ) -> Result<(), Error> {
         // Most functions are one program with machine code.
-        if let Plan::Program(routine) = &entry.plan
+        if let ResultAssembly::Program(routine) = &entry.plan
             && let Some(code) = routine.code()
             && out.len() == entry.length
             && self.missing == 0
@@ -500,8 +500,8 @@ impl Robot {
     ) -> Result<(), Error> {
         let values = Values { parameters, arguments, tables: &self.tables, interpreted: self.interpreted };
         match &entry.plan {
-            Plan::Program(routine) if !entry.takes_features => routine.run(values, out, &mut []),
-            Plan::Constrained(kind) => return self.call_constrained(*kind, arguments, out),
+            ResultAssembly::Program(routine) if !entry.takes_features => routine.run(values, out, &mut []),
+            ResultAssembly::Constrained(kind) => return self.call_constrained(*kind, arguments, out),
             _ => WORK.with_borrow_mut(|work| {
                 if work.len() < entry.work {
                     work.resize(entry.work, 0.0);
@@ -515,12 +515,12 @@ impl Robot {
     /// Returns the error for a call with missing values, or with arguments or results of the wrong length.
     #[cold]
     fn call_error(&self, entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
-        let missing = self.check_values().err();
-        missing.unwrap_or_else(|| length_error(entry, count, arguments, out))
+        let missing = self.check_parameter_values().err();
+        missing.unwrap_or_else(|| argument_length_error(entry, count, arguments, out))
     }
 
     /// Evaluates a function, given by its index, with the arguments that it takes from the state.
-    pub(crate) fn state_call_into(
+    pub(crate) fn call_with_state_into(
         &self,
         index: usize,
         state: State<'_>,
@@ -552,9 +552,9 @@ impl Robot {
         self.call_entry(entry, &parameters, arguments, out)
     }
 
-    pub(crate) fn state_call(&self, index: usize, state: State<'_>) -> Result<Vec<f64>, Error> {
+    pub(crate) fn call_function_at_state(&self, index: usize, state: State<'_>) -> Result<Vec<f64>, Error> {
         let mut out = vec![0.0; self.shared.entries[index].length];
-        self.state_call_into(index, state, &mut out)?;
+        self.call_with_state_into(index, state, &mut out)?;
         Ok(out)
     }
 
@@ -567,7 +567,7 @@ impl Robot {
         }
     }
 
-    pub(crate) fn check_values(&self) -> Result<(), Error> {
+    pub(crate) fn check_parameter_values(&self) -> Result<(), Error> {
         if self.missing == 0 {
             return Ok(());
         }
@@ -583,7 +583,7 @@ impl Robot {
 
 /// Returns the error for a call whose arguments or results have the wrong length.
 #[cold]
-fn length_error(entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
+fn argument_length_error(entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
     let of = entry.name.clone();
     if arguments.len() != entry.arguments.len() {
         let expected = entry.arguments.iter().map(|argument| argument.argument_name()).collect();

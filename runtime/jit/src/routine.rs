@@ -34,18 +34,18 @@ impl Routine {
     /// Returns the routine of a program whose first `results` outputs are results of the function; `None` if
     /// the function has too many arguments.
     pub fn new(program: Program, arguments: &[Argument], results: usize) -> Option<Routine> {
-        let routine = Routine::deferred(arguments, results)?;
+        let routine = Routine::routine_built_on_demand(arguments, results)?;
         Some(Routine { program: OnceLock::from(program), ..routine })
     }
 
     /// Returns the routine of a program that is built at the first call.
-    pub fn deferred(arguments: &[Argument], results: usize) -> Option<Routine> {
+    pub fn routine_built_on_demand(arguments: &[Argument], results: usize) -> Option<Routine> {
         let layout = Layout::new(arguments)?;
         Some(Routine { program: OnceLock::new(), layout, results, code: OnceLock::new() })
     }
 
     /// Builds the program of the routine by `make`, unless it exists already.
-    pub fn ensure(&self, make: impl FnOnce() -> Program) {
+    pub fn build_program_once(&self, make: impl FnOnce() -> Program) {
         self.program.get_or_init(make);
     }
 
@@ -100,7 +100,7 @@ impl Routine {
         let value_of_table = |lookup: Lookup, x| {
             let table = values.tables.get(lookup.table_index());
             table.map_or(f64::NAN, |table| {
-                table.derivative_value(x, [0, 1, 2].map(|k| lookup.derivative_order(k) as u8))
+                table.value_or_derivative(x, [0, 1, 2].map(|k| lookup.derivative_order(k) as u8))
             })
         };
         let outputs = program.run_with(&value_of_symbol, &value_of_table);

@@ -1,6 +1,6 @@
 //! Data that all robots of one loaded mechanism share, such as functions and names.
 
-use crate::about::About;
+use crate::about::MechanismDocumentation;
 use crate::frames::Frames;
 use crate::functions::Entry;
 use crate::layout::Layout;
@@ -124,7 +124,7 @@ pub(crate) struct Shared {
     pub methods: Vec<Option<usize>>,
     /// Indices of the functions that the runtime calls.
     pub internal: Vec<Option<usize>>,
-    pub about: About,
+    pub about: MechanismDocumentation,
 }
 
 impl Shared {
@@ -164,8 +164,8 @@ impl Shared {
         let plan = &self.entries[function].plan;
         // All are prepared, whether one before is interpreted or not.
         let interpreted = plan.calls().into_iter().filter(|k| !self.prepare(*k)).count();
-        if let crate::functions::Plan::Frame(access, frame, routine) = plan {
-            routine.ensure(|| self.frames.program(*access, *frame));
+        if let crate::functions::ResultAssembly::Frame(access, frame, routine) = plan {
+            routine.build_program_once(|| self.frames.program(*access, *frame));
         }
         interpreted + plan.routines().into_iter().filter(|routine| !routine.prepare()).count() == 0
     }

@@ -7,7 +7,7 @@ use linkwork::simulate::Overlaps;
 mod driver;
 mod method;
 
-use driver::{Driver, Given, Moving, Settings};
+use driver::{Driver, InputSource, Moving, Settings};
 pub use method::Method;
 use method::STEP;
 
@@ -185,7 +185,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
         let mut last = None;
         let every = self.every.or(Some(self.duration).filter(|duration| *duration > 0.0));
         Self { every, ..self }.each(&mut |sample| last = Some(sample))?;
-        last.ok_or_else(|| Error::Internal("a run without samples".to_string()))
+        last.ok_or_else(|| Error::InternalFunction("a run without samples".to_string()))
     }
 
     /// Checks the start, the duration and the interval between samples.
@@ -277,11 +277,11 @@ impl<'a, 'i> Simulation<'a, 'i> {
             )));
         }
         let (inputs, controller) = match self.inputs {
-            Inputs::Zero => (Given::Zero, None),
-            Inputs::Constant(u) => (Given::Constant(u), None),
-            Inputs::Samples { times, values } => (Given::Samples(times, values), None),
-            Inputs::Function(function) => (Given::Zero, Some((None, function))),
-            Inputs::Sampled(period, function) => (Given::Zero, Some((Some(period), function))),
+            Inputs::Zero => (InputSource::Zero, None),
+            Inputs::Constant(u) => (InputSource::Constant(u), None),
+            Inputs::Samples { times, values } => (InputSource::Samples(times, values), None),
+            Inputs::Function(function) => (InputSource::Zero, Some((None, function))),
+            Inputs::Sampled(period, function) => (InputSource::Zero, Some((Some(period), function))),
         };
         let settings = Settings {
             robot,

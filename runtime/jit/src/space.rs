@@ -1,7 +1,7 @@
 //! Functions of the configuration space: motions along velocities, differences of configurations, rates of
 //! displacements.
 
-use crate::functions::{Entry, Maker, Matrix, Plan};
+use crate::functions::{CallableFunctionBuilder, Entry, Matrix, ResultAssembly};
 use crate::routine::Values;
 use crate::shared::Shared;
 use linkwork::__private::{
@@ -9,7 +9,7 @@ use linkwork::__private::{
     free_carry_rate, free_difference, free_integrate, free_tangent_rate,
 };
 use linkwork_compiler::catalogue::Argument;
-use linkwork_compiler::mechanism::{Chart, InQ, InV, Supplied};
+use linkwork_compiler::mechanism::{Chart, InQ, InV, SuppliedQuantity};
 
 /// Function of the configuration space, such as integration or difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +108,7 @@ pub(crate) fn translation(charts: &[Chart], dv: &[f64], out: &mut [f64]) {
 
 /// Writes the rate of [`transport_velocity`] for a displacement that begins at zero and grows at the rate
 /// `dv`.
-pub(crate) fn transport_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
+pub(crate) fn write_transported_velocity_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(_, InV(v0)) => out[v0] = 0.0,
@@ -126,17 +126,17 @@ pub(crate) fn transport_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut 
 
 impl Space {
     /// Adds the functions of the configuration space to those of a mechanism.
-    pub fn add(maker: &mut Maker<'_, '_>) {
+    pub fn add(maker: &mut CallableFunctionBuilder<'_, '_>) {
         let (nq, nv) = (maker.model.nq(), maker.model.nv());
         let speeds = match [maker.index("rates_of_speeds"), maker.index("speeds_of_rates")] {
             [Some(rates), Some(speeds)] => Some([rates, speeds]),
             _ => None,
         };
-        let velocity_argument = |name| Argument::Given(name, Supplied::State, nv);
-        let configuration_argument = |name| Argument::Given(name, Supplied::State, nq);
+        let velocity_argument = |name| Argument::Given(name, SuppliedQuantity::State, nv);
+        let configuration_argument = |name| Argument::Given(name, SuppliedQuantity::State, nq);
         let mut add = |kind, name, documentation: &str, arguments: Vec<Argument>, rows| {
             let results = vec![Matrix { name: "result", rows, columns: 1 }];
-            let plan = Plan::Space(Space { kind, speeds });
+            let plan = ResultAssembly::Space(Space { kind, speeds });
             let calls = speeds.map_or(0, |all| all.map(|k| maker.entries[k].work).into_iter().sum());
             let entry = Entry::new(name, documentation.to_string(), arguments, results, plan);
             let work = 4 * nv + nq + calls;

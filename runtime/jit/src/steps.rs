@@ -45,7 +45,7 @@ pub(crate) const STAGES: [(f64, f64); 4] = [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), 
 pub struct Stepper {
     pub(crate) robot: Robot,
     pub(crate) functions: Functions,
-    pub(crate) stages: [Stage; 4],
+    pub(crate) stages: [RungeKuttaStage; 4],
     displacement: Vec<f64>,
 }
 
@@ -62,7 +62,7 @@ pub(crate) struct Functions {
 
 /// State at which a stage of a Runge–Kutta step is evaluated, with its time derivatives.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Stage {
+pub(crate) struct RungeKuttaStage {
     pub displacement: Vec<f64>,
     pub q: Vec<f64>,
     pub v: Vec<f64>,
@@ -93,22 +93,23 @@ impl Stepper {
         if let Some(reason) = robot.shared.step_obstacle() {
             return Err(Error::Value(format!("`{}` has no steps: {reason}", robot.name())));
         }
-        robot.check_values()?;
+        robot.check_parameter_values()?;
         let function_index = |name: &str| robot.shared.index.get(name).copied();
-        let needed = |name: &str| {
+        let required_function_index = |name: &str| {
             function_index(name)
                 .ok_or_else(|| Error::unknown_name_error("function", name, robot.shared.names()))
         };
         let functions = Functions {
-            dynamics: needed("forward_dynamics")?,
-            forces: if robot.nu() > 0 { Some(needed("generalized_forces")?) } else { None },
-            integrate: needed("integrate")?,
-            rate: function_index("tangent_rate").map_or_else(|| needed("displacement_rate"), Ok)?,
+            dynamics: required_function_index("forward_dynamics")?,
+            forces: if robot.nu() > 0 { Some(required_function_index("generalized_forces")?) } else { None },
+            integrate: required_function_index("integrate")?,
+            rate: function_index("tangent_rate")
+                .map_or_else(|| required_function_index("displacement_rate"), Ok)?,
             linearize: function_index("linearize"),
         };
         let (nq, nv) = (robot.nq(), robot.nv());
         let zero_vector = |n: usize| vec![0.0; n];
-        let stage = Stage {
+        let stage = RungeKuttaStage {
             displacement: zero_vector(nv),
             q: zero_vector(nq),
             v: zero_vector(nv),
@@ -146,7 +147,7 @@ impl Stepper {
             v_end[k] = v[k] + h / 6.0 * change;
         }
         let state = State { q, other: &[&self.displacement], ..State::default() };
-        self.robot.state_call_into(self.functions.integrate, state, q_end)?;
+        self.robot.call_with_state_into(self.functions.integrate, state, q_end)?;
         match q_end.iter().chain(&*v_end).all(|x| x.is_finite()) {
             true => Ok(()),
             false => Err(Error::Value("the motion does not remain finite".to_string())),
@@ -177,17 +178,17 @@ impl Stepper {
                     }
                     let dv = &stage.displacement;
                     let state = State { q, v: &stage.v, other: &[dv], ..State::default() };
-                    robot.state_call_into(functions.integrate, state, &mut stage.q)?;
-                    robot.state_call_into(functions.rate, state, &mut stage.rate)?;
+                    robot.call_with_state_into(functions.integrate, state, &mut stage.q)?;
+                    robot.call_with_state_into(functions.rate, state, &mut stage.rate)?;
                 }
             }
             robot.set_time(t + c);
             if let Some(forces) = functions.forces {
                 let state = State { q: &stage.q, v: &stage.v, u, ..State::default() };
-                robot.state_call_into(forces, state, &mut stage.tau)?;
+                robot.call_with_state_into(forces, state, &mut stage.tau)?;
             }
             let state = State { q: &stage.q, v: &stage.v, tau: &stage.tau, ..State::default() };
-            robot.state_call_into(functions.dynamics, state, &mut stage.acceleration)?;
+            robot.call_with_state_into(functions.dynamics, state, &mut stage.acceleration)?;
         }
         for k in 0..v.len() {
             let rate: f64 = self.stages.iter().zip(STAGES).map(|(s, (_, w))| w * s.rate[k]).sum();
@@ -227,15 +228,18 @@ impl Stepper {
         let (n, m) = (self.robot.nv(), self.robot.nu());
         let charts = self.robot.shared.charts.clone();
         let mut system = vec![0.0; 4 * n * n + 2 * n * m];
-        let mut stages: Vec<[Sensitive; 2]> = Vec::with_capacity(STAGES.len());
+        let mut stages: Vec<[TangentVectorDerivatives; 2]> = Vec::with_capacity(STAGES.len());
         for (i, (fraction, _)) in STAGES.into_iter().enumerate() {
             let stage = &self.stages[i];
             let c = h * fraction;
             let (displacement, v) = match stages.last() {
-                None => (Sensitive::displacement_derivatives(n, m), Sensitive::velocity_derivatives(n, m)),
+                None => (
+                    TangentVectorDerivatives::zero_displacement_derivatives(n, m),
+                    TangentVectorDerivatives::velocity_derivatives(n, m),
+                ),
                 Some([rate, acceleration]) => (
                     rate.scaled_derivatives(c),
-                    Sensitive::velocity_derivatives(n, m).plus_scaled(c, acceleration),
+                    TangentVectorDerivatives::velocity_derivatives(n, m).plus_scaled(c, acceleration),
                 ),
             };
             let rate = match i {
@@ -247,11 +251,11 @@ impl Stepper {
             };
             let motion = match i {
                 0 => displacement,
-                _ => end_derivatives(&charts, &stage.displacement, &displacement),
+                _ => end_configuration_derivatives(&charts, &stage.displacement, &displacement),
             };
             self.robot.set_time(t + c);
             let state = State { q: &stage.q, v: &stage.v, u, ..State::default() };
-            self.robot.state_call_into(linearize, state, &mut system)?;
+            self.robot.call_with_state_into(linearize, state, &mut system)?;
             let entry_of_system = |i: usize, j: usize| system[2 * n * j + n + i];
             let by_q = DMatrix::from_fn(n, n, entry_of_system);
             let by_v = DMatrix::from_fn(n, n, |i, j| entry_of_system(i, n + j));
@@ -261,62 +265,71 @@ impl Stepper {
             stages.push([rate, acceleration]);
         }
         let weighted_sum_of_stages = |which: usize| {
-            let mut all = Sensitive::zero(n, m);
+            let mut all = TangentVectorDerivatives::zero(n, m);
             for (stage, (_, weight)) in stages.iter().zip(STAGES) {
                 all = all.plus_scaled(h / 6.0 * weight, &stage[which]);
             }
             all
         };
-        let motion = end_derivatives(&charts, &self.displacement, &weighted_sum_of_stages(0));
-        let v = Sensitive::velocity_derivatives(n, m).plus_scaled(1.0, &weighted_sum_of_stages(1));
+        let motion = end_configuration_derivatives(&charts, &self.displacement, &weighted_sum_of_stages(0));
+        let v =
+            TangentVectorDerivatives::velocity_derivatives(n, m).plus_scaled(1.0, &weighted_sum_of_stages(1));
         Ok(Jacobians { q: [motion.by_q, motion.by_v, motion.by_u], v: [v.by_q, v.by_v, v.by_u] })
     }
 }
 
 /// Derivatives of a tangent vector with respect to configuration, velocity and inputs at the start of a step.
 #[derive(Clone)]
-struct Sensitive {
+struct TangentVectorDerivatives {
     by_q: DMatrix<f64>,
     by_v: DMatrix<f64>,
     by_u: DMatrix<f64>,
 }
 
-impl Sensitive {
-    fn zero(n: usize, m: usize) -> Sensitive {
-        Sensitive { by_q: DMatrix::zeros(n, n), by_v: DMatrix::zeros(n, n), by_u: DMatrix::zeros(n, m) }
+impl TangentVectorDerivatives {
+    fn zero(n: usize, m: usize) -> TangentVectorDerivatives {
+        TangentVectorDerivatives {
+            by_q: DMatrix::zeros(n, n),
+            by_v: DMatrix::zeros(n, n),
+            by_u: DMatrix::zeros(n, m),
+        }
     }
 
     /// Returns the derivatives of the velocity at the start of the step: the identity with respect to itself,
     /// otherwise zero.
-    fn velocity_derivatives(n: usize, m: usize) -> Sensitive {
-        Sensitive { by_v: DMatrix::identity(n, n), ..Sensitive::zero(n, m) }
+    fn velocity_derivatives(n: usize, m: usize) -> TangentVectorDerivatives {
+        TangentVectorDerivatives { by_v: DMatrix::identity(n, n), ..TangentVectorDerivatives::zero(n, m) }
     }
 
     /// Returns the derivatives of a zero displacement, which moves with the configuration at the start.
-    fn displacement_derivatives(n: usize, m: usize) -> Sensitive {
-        Sensitive { by_q: DMatrix::identity(n, n), ..Sensitive::zero(n, m) }
+    fn zero_displacement_derivatives(n: usize, m: usize) -> TangentVectorDerivatives {
+        TangentVectorDerivatives { by_q: DMatrix::identity(n, n), ..TangentVectorDerivatives::zero(n, m) }
     }
 
-    fn plus_scaled(&self, s: f64, other: &Sensitive) -> Sensitive {
-        Sensitive {
+    fn plus_scaled(&self, s: f64, other: &TangentVectorDerivatives) -> TangentVectorDerivatives {
+        TangentVectorDerivatives {
             by_q: &self.by_q + &other.by_q * s,
             by_v: &self.by_v + &other.by_v * s,
             by_u: &self.by_u + &other.by_u * s,
         }
     }
 
-    fn scaled_derivatives(&self, s: f64) -> Sensitive {
-        Sensitive { by_q: &self.by_q * s, by_v: &self.by_v * s, by_u: &self.by_u * s }
+    fn scaled_derivatives(&self, s: f64) -> TangentVectorDerivatives {
+        TangentVectorDerivatives { by_q: &self.by_q * s, by_v: &self.by_v * s, by_u: &self.by_u * s }
     }
 
     /// Returns the products of the matrix `by` with the derivatives.
-    fn multiplied_by_matrix(&self, by: &DMatrix<f64>) -> Sensitive {
-        Sensitive { by_q: by * &self.by_q, by_v: by * &self.by_v, by_u: by * &self.by_u }
+    fn multiplied_by_matrix(&self, by: &DMatrix<f64>) -> TangentVectorDerivatives {
+        TangentVectorDerivatives { by_q: by * &self.by_q, by_v: by * &self.by_v, by_u: by * &self.by_u }
     }
 }
 
 /// Returns the derivatives of the configuration that a displacement from the start leads to.
-fn end_derivatives(charts: &[Chart], displacement: &[f64], derivatives: &Sensitive) -> Sensitive {
+fn end_configuration_derivatives(
+    charts: &[Chart],
+    displacement: &[f64],
+    derivatives: &TangentVectorDerivatives,
+) -> TangentVectorDerivatives {
     let [by_q, by_dv] = integrate_derivatives(charts, displacement);
     let mut motion = derivatives.multiplied_by_matrix(&by_dv);
     motion.by_q += by_q;
@@ -391,7 +404,7 @@ impl Robot {
     ///
     /// The slice has the wrong length, or the mechanism has generalized speeds.
     pub fn integrate_derivatives(&self, dv: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
-        self.check_joint_velocities(dv)?;
+        self.check_joint_displacement(dv)?;
         Ok(integrate_derivatives(&self.shared.charts, dv))
     }
 
@@ -401,12 +414,12 @@ impl Robot {
     ///
     /// A slice has the wrong length, or the mechanism has generalized speeds.
     pub fn tangent_rate_derivatives(&self, dv: &[f64], v: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
-        self.check_joint_velocities(dv)?;
-        self.check_joint_velocities(v)?;
+        self.check_joint_displacement(dv)?;
+        self.check_joint_displacement(v)?;
         Ok(tangent_rate_derivatives(&self.shared.charts, dv, v))
     }
 
-    fn check_joint_velocities(&self, dv: &[f64]) -> Result<(), Error> {
+    fn check_joint_displacement(&self, dv: &[f64]) -> Result<(), Error> {
         if self.shared.has_speeds {
             return Err(Error::Value(format!("the velocities of `{}` are generalized speeds", self.name())));
         }

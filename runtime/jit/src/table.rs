@@ -91,7 +91,7 @@ impl AnyTable {
     }
 
     /// Returns the value of the table, or its partial derivative of the given orders, at a point.
-    pub(crate) fn derivative_value(&self, [x, y, z]: [f64; 3], [a, b, c]: [u8; 3]) -> f64 {
+    pub(crate) fn value_or_derivative(&self, [x, y, z]: [f64; 3], [a, b, c]: [u8; 3]) -> f64 {
         match self {
             AnyTable::Missing => f64::NAN,
             AnyTable::One(table) => table.derivative([x], [a]),

@@ -3,7 +3,7 @@
 mod module;
 
 use crate::error::Error;
-use crate::functions::{Entry, Plan};
+use crate::functions::{Entry, ResultAssembly};
 use crate::layout::Layout;
 use crate::robot::Robot;
 use crate::shared::Quantity;
@@ -76,7 +76,7 @@ impl WebModule {
 
     fn add_entry(&mut self, robot: &Robot, entry: &Entry) -> Result<(), String> {
         match &entry.plan {
-            Plan::Program(routine) => match routine.program() {
+            ResultAssembly::Program(routine) => match routine.program() {
                 Some(program) => self.add(robot, &entry.name, program, &entry.arguments),
                 None => Ok(()),
             },
@@ -105,7 +105,7 @@ impl Robot {
         if !shared.polytopes.is_empty() {
             return Err(refused("it has contacts of hulls with hulls, boxes, capsules or cylinders"));
         }
-        let module = self.web_module(drawing).map_err(Error::Internal)?;
+        let module = self.web_module(drawing).map_err(Error::InternalFunction)?;
         let mut fields = self.web_structure();
         let parameters = self.parameter_values();
         for (name, list) in
@@ -115,7 +115,7 @@ impl Robot {
         }
         fields.push((
             "tables",
-            json_list(self.table_values().iter().filter_map(AnyTable::grid).map(table_json)),
+            json_list(self.interpolation_tables().iter().filter_map(AnyTable::grid).map(table_json)),
         ));
         fields.push(("functions", format!("{{{}}}", module.signatures.join(","))));
         let fields: Vec<String> =
@@ -153,7 +153,7 @@ impl Robot {
                 list.iter().map(|one| format!("[{},{}]", json_string(&one.name), json_string(&one.unit))),
             )
         };
-        let encode_indices = |list: &[usize]| json_list(list.iter().map(ToString::to_string));
+        let indices_as_json = |list: &[usize]| json_list(list.iter().map(ToString::to_string));
         let charts = json_list(shared.charts.iter().map(|chart| match chart {
             Chart::Plain(InQ(q), InV(v)) => format!("[0,{q},{v}]"),
             Chart::Ball(InQ(q), InV(v)) => format!("[1,{q},{v}]"),
@@ -186,7 +186,7 @@ impl Robot {
             ("stateNames", json_list(states_of.map(|name| json_string(name)))),
             ("constraints", constraints.names.len().to_string()),
             ("holonomic", constraints.holonomic.to_string()),
-            ("slipping", encode_indices(&constraints.slipping)),
+            ("slipping", indices_as_json(&constraints.slipping)),
             ("contacts", contacts),
         ]
     }

@@ -202,7 +202,7 @@ fn linear_systems_in_independent_coordinates_equal_compiled_ones() -> Result<(),
     Ok(())
 }
 
-/// Where links are aligned, the constraints lose rank; mechanisms without constraints have another function.
+/// If links are aligned, the constraints lose rank; mechanisms without constraints have another function.
 #[test]
 fn linear_systems_that_do_not_exist_are_errors() -> Result<(), Failure> {
     let robot = Loader::text(FOUR_BAR).options("derivatives").load()?;

@@ -82,7 +82,7 @@ fn assert_close_entries(found: &[f64], expected: &[f64], what: &str) {
 }
 
 /// Checks that every compiled function of a robot equals that of an interpreted robot.
-fn agree_with_interpreter(robot: &Robot, oracle: &Robot) -> Result<(), Error> {
+fn assert_agrees_with_interpreter(robot: &Robot, oracle: &Robot) -> Result<(), Error> {
     let neutral = robot.neutral()?;
     for f in robot.functions() {
         let lists: Vec<Vec<f64>> = (f.arguments().iter().enumerate())
@@ -134,7 +134,10 @@ fn cart_poles_agree_with_generated_rust() -> Result<(), Error> {
     let [state, input] = robot.linearize(&q, &v, &[0.7])?;
     assert_close_entries(state.as_slice(), a.as_slice(), "the system");
     assert_close_entries(input.as_slice(), b.as_slice(), "the inputs");
-    agree_with_interpreter(&robot, &Loader::text(CART_POLE).interpreted().load()?.with_parameters(&set)?)
+    assert_agrees_with_interpreter(
+        &robot,
+        &Loader::text(CART_POLE).interpreted().load()?.with_parameters(&set)?,
+    )
 }
 
 #[test]
@@ -169,7 +172,7 @@ fn free_bodies_agree_with_generated_rust() -> Result<(), Error> {
         Spinner.frame_jacobian(arm, &q).as_slice(),
         "J",
     );
-    agree_with_interpreter(&robot, &Loader::text(SPINNER).interpreted().load()?)
+    assert_agrees_with_interpreter(&robot, &Loader::text(SPINNER).interpreted().load()?)
 }
 
 #[test]
@@ -224,7 +227,7 @@ fn robots_are_loaded_again_and_again() -> Result<(), Error> {
 }
 
 #[test]
-fn errors_are_typed() -> Result<(), Error> {
+fn load_errors_report_their_cause() -> Result<(), Error> {
     let told =
         |result: Result<Robot, Error>| result.map(|_| String::new()).map_err(|error| error.to_string());
     for (text, part) in [
@@ -278,10 +281,10 @@ fn robots_of_files_have_names_and_limits() -> Result<(), Error> {
         <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/>
         <limit lower="-1" upper="2" velocity="3" effort="4"/></joint></robot>"#;
     let path = std::env::temp_dir().join(format!("linkwork_jit_{}.urdf", std::process::id()));
-    std::fs::write(&path, urdf).map_err(|error| Error::Internal(error.to_string()))?;
+    std::fs::write(&path, urdf).map_err(|error| Error::InternalFunction(error.to_string()))?;
     let robot = linkwork_jit::load(&path);
     let parameters = Loader::file(&path).options("parameters = inertial(\"b\")").load();
-    std::fs::remove_file(&path).map_err(|error| Error::Internal(error.to_string()))?;
+    std::fs::remove_file(&path).map_err(|error| Error::InternalFunction(error.to_string()))?;
     let (robot, parameters) = (robot?, parameters?);
     assert_eq!((robot.velocities()[0].name.as_str(), robot.velocities()[0].unit.as_str()), ("j", "rad/s"));
     let limit = &robot.limits()?[0];

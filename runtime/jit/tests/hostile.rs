@@ -52,7 +52,7 @@ fn load_and_call() -> Result<(), Error> {
 }
 
 #[test]
-fn memory_is_returned() -> Result<(), Error> {
+fn loading_and_dropping_robots_returns_memory() -> Result<(), Error> {
     let _turn = TURN.lock();
     let loads = number_from_environment("LINKWORK_LOADS", LOADS);
     (0..loads / 4).try_for_each(|_| load_and_call())?;
@@ -299,7 +299,7 @@ fn no_input_crashes() -> Result<(), Box<dyn std::error::Error>> {
                     Err(_) => wrong.push(format!("seed {seed}: a call panicked")),
                 }
             }
-            Err(Error::Internal(message)) => wrong.push(format!("seed {seed}, {options}: {message}")),
+            Err(Error::InternalFunction(message)) => wrong.push(format!("seed {seed}, {options}: {message}")),
             Err(_) => {}
         }
         if start.elapsed() > PATIENCE {

@@ -72,7 +72,7 @@ macro_rules! agree {
 }
 
 #[test]
-fn constrained_models_agree() -> Result<(), Failure> {
+fn loaded_constrained_models_agree_with_structs() -> Result<(), Failure> {
     agree! {
         FourBar "four_bar" [1.0, -0.2072, 2.0069]
             { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 }

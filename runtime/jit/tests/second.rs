@@ -32,13 +32,13 @@ fn second_derivatives_are_differences_of_first_derivatives() -> Result<(), Error
     let found = crane.evaluate(&f, &[&q, &v, &a, &lambda])?;
     let first = crane.function("inverse_dynamics_derivatives")?;
     // λᵀ ∂τ/∂q, then λᵀ ∂τ/∂v.
-    let contracted = |q: &[f64], v: &[f64], a: &[f64]| -> Result<Vec<f64>, Error> {
+    let contracted_torque_derivatives = |q: &[f64], v: &[f64], a: &[f64]| -> Result<Vec<f64>, Error> {
         let all = crane.evaluate(&first, &[q, v, a])?;
         Ok(all.chunks(N).map(|column| column.iter().zip(&lambda).map(|(x, l)| x * l).sum()).collect())
     };
     let e = 1e-6;
     for j in 0..N {
-        let moved = |x: [f64; N], by: f64| {
+        let with_displaced_entry = |x: [f64; N], by: f64| {
             let mut x = x;
             x[j] += by;
             x
@@ -46,9 +46,18 @@ fn second_derivatives_are_differences_of_first_derivatives() -> Result<(), Error
         let slope = |ahead: Vec<f64>, behind: Vec<f64>| -> Vec<f64> {
             ahead.iter().zip(behind).map(|(a, b)| (a - b) / (2.0 * e)).collect()
         };
-        let by_q = slope(contracted(&moved(q, e), &v, &a)?, contracted(&moved(q, -e), &v, &a)?);
-        let by_v = slope(contracted(&q, &moved(v, e), &a)?, contracted(&q, &moved(v, -e), &a)?);
-        let by_a = slope(contracted(&q, &v, &moved(a, e))?, contracted(&q, &v, &moved(a, -e))?);
+        let by_q = slope(
+            contracted_torque_derivatives(&with_displaced_entry(q, e), &v, &a)?,
+            contracted_torque_derivatives(&with_displaced_entry(q, -e), &v, &a)?,
+        );
+        let by_v = slope(
+            contracted_torque_derivatives(&q, &with_displaced_entry(v, e), &a)?,
+            contracted_torque_derivatives(&q, &with_displaced_entry(v, -e), &a)?,
+        );
+        let by_a = slope(
+            contracted_torque_derivatives(&q, &v, &with_displaced_entry(a, e))?,
+            contracted_torque_derivatives(&q, &v, &with_displaced_entry(a, -e))?,
+        );
         for i in 0..N {
             let entry = |block: usize| found[block * N * N + j * N + i];
             for (found, expected) in

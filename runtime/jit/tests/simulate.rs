@@ -50,7 +50,7 @@ both! {
 both! {
     WEDGE,
     #[mechanism(gravity = -9.81 * y)]
-    struct Wedge {
+    struct SlippingBall {
         #[body(mass = 1, inertia = sphere(1, 0.1))]
         ball: Body,
         #[joint(ground -> ball, about = z)]
@@ -199,7 +199,7 @@ fn sliding_constraints_have_friction() -> Result<(), Error> {
     let robot = Loader::text(WEDGE).load()?;
     let (q, v, mu_g) = ([0.0, 0.1, 0.0], [2.0, 0.0, 0.0], 0.3 * 9.81);
     let a = robot.forward_dynamics(&q, &v, &[0.0; 3])?;
-    let own = Wedge.forward_dynamics(&q.into(), &v.into(), &SVector::zeros());
+    let own = SlippingBall.forward_dynamics(&q.into(), &v.into(), &SVector::zeros());
     assert_close_entries(a.as_slice(), own.as_slice(), 1e-12);
     assert_close_entries(&a.as_slice()[..2], &[-mu_g, 0.0], 1e-6);
     let end = robot.simulate().from(&q, &v).duration(0.1).finish()?;

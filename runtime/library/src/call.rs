@@ -22,7 +22,7 @@ impl Failure {
     }
 
     /// Creates a failure with the message of a panic, which is an internal error.
-    pub(crate) fn of_panic(panic: &(dyn Any + Send)) -> Failure {
+    pub(crate) fn failure_from_panic(panic: &(dyn Any + Send)) -> Failure {
         let text = panic.downcast_ref::<&str>().copied();
         let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
         Failure(format!("internal error: {}", text.unwrap_or("a panic")))
@@ -90,7 +90,7 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
             let all: Vec<_> =
                 parts.into_iter().map(|part| scope.spawn(move || evaluate_states(m, f, part))).collect();
             let ends = all.into_iter().map(|thread| {
-                thread.join().unwrap_or_else(|panic| Some((0, Failure::of_panic(panic.as_ref()))))
+                thread.join().unwrap_or_else(|panic| Some((0, Failure::failure_from_panic(panic.as_ref()))))
             });
             ends.flatten().min_by_key(|(state, _)| *state)
         }),
@@ -186,7 +186,7 @@ fn call_guarded<M: Library>(
     results: &mut [&mut [M::Number]],
 ) -> Result<(), Failure> {
     let done = catch_unwind(AssertUnwindSafe(|| body(m, Given(arguments), &mut Sink::new(results))));
-    let done = done.unwrap_or_else(|panic| Err(Failure::of_panic(panic.as_ref())));
+    let done = done.unwrap_or_else(|panic| Err(Failure::failure_from_panic(panic.as_ref())));
     if done.is_err() {
         results.iter_mut().for_each(|array| array.fill(M::Number::NAN));
     }

@@ -148,7 +148,7 @@ where
     let (every, samples) = (motion.every, &mut *motion.samples);
     let (control, count) = (&mut *motion.control, &mut motion.count);
     let failure = std::cell::RefCell::new(None);
-    let query_control = |t: N, q: &SVector<N, NQ>, v: &SVector<N, NV>| {
+    let call_controller = |t: N, q: &SVector<N, NQ>, v: &SVector<N, NV>| {
         let mut u = SVector::<N, NU>::zeros();
         let mut failed = failure.borrow_mut();
         if failed.is_none()
@@ -161,8 +161,10 @@ where
         if failed.is_some() { u.map(|_| N::NAN) } else { u }
     };
     let ended = match every {
-        Every::Evaluation => collect_samples(begun.inputs(query_control), samples, count),
-        Every::Period(period) => collect_samples(begun.control_every(period, query_control), samples, count),
+        Every::Evaluation => collect_samples(begun.inputs(call_controller), samples, count),
+        Every::Period(period) => {
+            collect_samples(begun.control_every(period, call_controller), samples, count)
+        }
     };
     match failure.into_inner() {
         Some(failure) => Err(failure),

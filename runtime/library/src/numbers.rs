@@ -129,20 +129,20 @@ macro_rules! scalars {
         }
 
         impl Results<$number> for i8 {
-            fn give(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
-                <$number>::from(self).give(to)
+            fn write_to_sink(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
+                <$number>::from(self).write_to_sink(to)
             }
         }
 
         impl Results<$number> for $number {
-            fn give(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
+            fn write_to_sink(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
                 self.write(to.next(), 0, 1);
                 Ok(())
             }
         }
 
         impl<const L: usize> Results<$number> for Lanes<$number, L> {
-            fn give(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
+            fn write_to_sink(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
                 self.write(to.next(), 0, 1);
                 Ok(())
             }
@@ -226,40 +226,40 @@ pub trait Results<N> {
     /// # Errors
     ///
     /// The error of the function, if the result is one.
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure>;
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure>;
 }
 
 impl<N, E: Entry<N>, const R: usize, const C: usize> Results<N> for SMatrix<E, R, C> {
     #[inline(always)]
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
         E::write_all(self.data.0.as_flattened(), to.next());
         Ok(())
     }
 }
 
 impl<N: Number> Results<N> for IsometryMatrix3<N> {
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.to_homogeneous().give_entries(to.next(), 0);
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.to_homogeneous().copy_entries_to_array(to.next(), 0);
         Ok(())
     }
 }
 
 impl<N: Number, const F: usize> Results<N> for [IsometryMatrix3<N>; F] {
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
         let array = to.next();
         for (k, placement) in self.into_iter().enumerate() {
-            placement.to_homogeneous().give_entries(array, 16 * k);
+            placement.to_homogeneous().copy_entries_to_array(array, 16 * k);
         }
         Ok(())
     }
 }
 
-trait Entries<N> {
-    fn give_entries(&self, array: &mut [N], first: usize);
+trait EntrySource<N> {
+    fn copy_entries_to_array(&self, array: &mut [N], first: usize);
 }
 
-impl<N: Number> Entries<N> for SMatrix<N, 4, 4> {
-    fn give_entries(&self, array: &mut [N], first: usize) {
+impl<N: Number> EntrySource<N> for SMatrix<N, 4, 4> {
+    fn copy_entries_to_array(&self, array: &mut [N], first: usize) {
         for (place, entry) in array.iter_mut().skip(first).zip(self.iter()) {
             *place = *entry;
         }
@@ -270,8 +270,8 @@ macro_rules! tuples {
     ($(($($part:ident $k:tt),*))*) => {$(
         impl<N, $($part: Results<N>),*> Results<N> for ($($part),*) {
             #[inline(always)]
-            fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-                $(self.$k.give(to)?;)*
+            fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+                $(self.$k.write_to_sink(to)?;)*
                 Ok(())
             }
         }
@@ -287,25 +287,25 @@ tuples! {
 }
 
 impl<N, A: Results<N>, E: Display> Results<N> for Result<A, E> {
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.map_err(Failure::new)?.give(to)
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.map_err(Failure::new)?.write_to_sink(to)
     }
 }
 
 impl<N, A: Results<N>> Results<N> for Option<A> {
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.ok_or_else(|| Failure::new("there is no frame with this number"))?.give(to)
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.ok_or_else(|| Failure::new("there is no frame with this number"))?.write_to_sink(to)
     }
 }
 
 impl<N, E: Entry<N>, const R: usize, const V: usize, const U: usize> Results<N>
     for OutputJacobians<E, R, V, U>
 {
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.by_q.give(to)?;
-        self.by_v.give(to)?;
-        self.by_a.give(to)?;
-        self.by_u.give(to)
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.by_q.write_to_sink(to)?;
+        self.by_v.write_to_sink(to)?;
+        self.by_a.write_to_sink(to)?;
+        self.by_u.write_to_sink(to)
     }
 }
 
@@ -314,9 +314,9 @@ impl<N: Number, const X: usize, const U: usize, const P: usize, const S: usize> 
 where
     N: Entry<N>,
 {
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.a.give(to)?;
-        self.b.give(to)?;
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.a.write_to_sink(to)?;
+        self.b.write_to_sink(to)?;
         for indices in [&self.coordinates[..], &self.speeds[..]] {
             for (place, index) in to.next().iter_mut().zip(indices) {
                 *place = linkwork::nalgebra::convert(*index as f64);
@@ -329,14 +329,14 @@ where
 impl<N: Number + Entry<N>, const NQ: usize, const NV: usize, const NU: usize> Results<N>
     for Transition<N, NQ, NV, NU>
 {
-    fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
-        self.q.give(to)?;
-        self.v.give(to)?;
-        self.q_by_q.give(to)?;
-        self.q_by_v.give(to)?;
-        self.q_by_u.give(to)?;
-        self.v_by_q.give(to)?;
-        self.v_by_v.give(to)?;
-        self.v_by_u.give(to)
+    fn write_to_sink(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure> {
+        self.q.write_to_sink(to)?;
+        self.v.write_to_sink(to)?;
+        self.q_by_q.write_to_sink(to)?;
+        self.q_by_v.write_to_sink(to)?;
+        self.q_by_u.write_to_sink(to)?;
+        self.v_by_q.write_to_sink(to)?;
+        self.v_by_v.write_to_sink(to)?;
+        self.v_by_u.write_to_sink(to)
     }
 }

@@ -24,7 +24,7 @@ pub fn message() -> *const c_char {
 }
 
 fn return_code_of_result(result: std::thread::Result<Result<(), Failure>>) -> c_int {
-    let result = result.unwrap_or_else(|panic| Err(Failure::of_panic(panic.as_ref())));
+    let result = result.unwrap_or_else(|panic| Err(Failure::failure_from_panic(panic.as_ref())));
     let Err(Failure(why)) = result else { return DONE };
     let text = CString::new(why.replace('\0', " ")).unwrap_or_default();
     MESSAGE.with_borrow_mut(|message| *message = text);

@@ -149,7 +149,7 @@ fn distribute_states<N: Number>(
         _ => std::thread::scope(|scope| {
             let all: Vec<_> = parts.into_iter().map(|part| scope.spawn(move || work(plan, part))).collect();
             let ends = all.into_iter().map(|thread| {
-                thread.join().unwrap_or_else(|panic| Some((0, Failure::of_panic(panic.as_ref()))))
+                thread.join().unwrap_or_else(|panic| Some((0, Failure::failure_from_panic(panic.as_ref()))))
             });
             ends.flatten().min_by_key(|(state, _)| *state)
         }),

@@ -7,12 +7,12 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
 /// Returns the Python exception `linkwork.Error` with a message.
-pub fn failure(py: Python<'_>, message: String) -> PyErr {
+pub fn python_error_from_message(py: Python<'_>, message: String) -> PyErr {
     static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    raise(py, &CLASS, "Error", message)
+    new_exception(py, &CLASS, "Error", message)
 }
 
-fn raise(
+fn new_exception(
     py: Python<'_>,
     class: &'static PyOnceLock<Py<PyType>>,
     name: &'static str,
@@ -25,15 +25,15 @@ fn raise(
 }
 
 /// Returns the Python exception for an error. `state` is the index of the failed state in a batch.
-pub fn exception(py: Python<'_>, error: &Error, state: Option<usize>) -> PyErr {
+pub fn python_exception_of_error(py: Python<'_>, error: &Error, state: Option<usize>) -> PyErr {
     static UNKNOWN: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let text = match state {
         Some(state) => format!("state {state}: {error}"),
         None => error.to_string(),
     };
     match error {
-        Error::Unknown { .. } => raise(py, &UNKNOWN, "UnknownName", text),
+        Error::Unknown { .. } => new_exception(py, &UNKNOWN, "UnknownName", text),
         Error::Length { .. } | Error::Arguments { .. } => PyValueError::new_err(text),
-        _ => failure(py, text),
+        _ => python_error_from_message(py, text),
     }
 }

@@ -1,9 +1,9 @@
 //! Functions of mechanisms as methods of Python classes.
 
 use crate::arrays;
-use crate::error::exception;
+use crate::error::python_exception_of_error;
 use crate::robot::{Robot, set_parameters};
-use crate::shared::{Failed, distribute};
+use crate::shared::{FirstFailedState, process_shares_in_parallel};
 use numpy::{PyArray1, PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -62,12 +62,12 @@ enum Kind {
     Transition,
     IntegrateDerivatives,
     TangentRateDerivatives,
-    Constraint(OnConstraints),
+    Constraint(ConstraintProjection),
 }
 
 /// Function that finds a configuration or velocity which satisfies the constraints.
 #[derive(Clone, Copy)]
-pub enum OnConstraints {
+pub enum ConstraintProjection {
     Assemble,
     ProjectConfiguration,
     ProjectVelocity,
@@ -108,7 +108,7 @@ thread_local! {
 impl BoundFunction {
     /// Evaluates the function for one state if all arrays can be used without conversion; returns `None`
     /// otherwise.
-    fn single<'py>(
+    fn evaluate_single_state<'py>(
         &self,
         py: Python<'py>,
         given: &Bound<'py, PyTuple>,
@@ -166,12 +166,12 @@ impl BoundFunction {
                 Kind::Placements(all) => placement(&robot.robot, &all[frame], slices, results),
                 _ => signature.evaluator(&robot.robot, frame).and_then(|mut e| e.evaluate(slices, results)),
             };
-            done.map_err(|error| exception(py, &error, None))?;
+            done.map_err(|error| python_exception_of_error(py, &error, None))?;
             let mut first = 0;
             let mut next = |output: &Output| {
                 let own = &results[first..first + output.length()];
                 first += output.length();
-                object(py, &output.shape, own)
+                python_object_of_values(py, &output.shape, own)
             };
             match signature.results.as_slice() {
                 [one] => Ok(Some(next(one))),
@@ -182,7 +182,7 @@ impl BoundFunction {
 }
 
 /// Returns a number, vector or matrix as an object of Python.
-fn object<'py>(py: Python<'py>, shape: &[usize], values: &[f64]) -> Bound<'py, PyAny> {
+fn python_object_of_values<'py>(py: Python<'py>, shape: &[usize], values: &[f64]) -> Bound<'py, PyAny> {
     match *shape {
         [] => PyFloat::new(py, values[0]).into_any(),
         [_] => PyArray1::from_slice(py, values).into_any(),
@@ -269,11 +269,13 @@ impl Function {
                 rest = others;
                 own
             };
-            distribute(states, threads, split_leading_states, |first, count, own| {
+            process_shares_in_parallel(states, threads, split_leading_states, |first, count, own| {
                 signature.differentiate(robot, frame, &lists, first..first + count, factors, own)
             })
         });
-        failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
+        failed.map_or(Ok(()), |(state, error)| {
+            Err(python_exception_of_error(py, &error, (states > 1).then_some(state)))
+        })
     }
 
     /// Evaluates the function for many states. Arguments and results are contiguous arrays. An argument with
@@ -294,8 +296,8 @@ impl Function {
         let lists = arguments.iter().map(|array| array.as_slice()).collect::<Result<Vec<_>, _>>()?;
         let mut outs = results.iter_mut().map(|array| array.as_slice_mut()).collect::<Result<Vec<_>, _>>()?;
         let lengths: Vec<usize> = signature.results.iter().map(Output::length).collect();
-        let evaluate_states = |first: usize, count: usize, mut outs: Vec<&mut [f64]>| -> Failed {
-            signature.many(robot, frame, &lists, first..first + count, &mut outs, &lengths)
+        let evaluate_states = |first: usize, count: usize, mut outs: Vec<&mut [f64]>| -> FirstFailedState {
+            signature.evaluate_state_range(robot, frame, &lists, first..first + count, &mut outs, &lengths)
         };
         let failed = py.detach(|| {
             let split_leading_states = |count: usize| {
@@ -307,15 +309,17 @@ impl Function {
                 })
                 .collect::<Vec<_>>()
             };
-            distribute(states, threads, split_leading_states, evaluate_states)
+            process_shares_in_parallel(states, threads, split_leading_states, evaluate_states)
         });
-        failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, (states > 1).then_some(state))))
+        failed.map_or(Ok(()), |(state, error)| {
+            Err(python_exception_of_error(py, &error, (states > 1).then_some(state)))
+        })
     }
 }
 
 impl Signature {
     /// Evaluates the function for a range of consecutive states.
-    fn many(
+    fn evaluate_state_range(
         &self,
         robot: &Robot,
         frame: usize,
@@ -323,14 +327,14 @@ impl Signature {
         states: Range<usize>,
         outs: &mut [&mut [f64]],
         lengths: &[usize],
-    ) -> Failed {
+    ) -> FirstFailedState {
         let mut evaluator = match self.evaluator(&robot.robot, frame) {
             Ok(evaluator) => evaluator,
             Err(error) => return Some((states.start, error)),
         };
         let total: usize = lengths.iter().sum();
         let mut values = vec![0.0; total];
-        let mut failed: Failed = None;
+        let mut failed: FirstFailedState = None;
         let mut slices: [&[f64]; ARGUMENTS] = [&[]; ARGUMENTS];
         let count = self.arguments.len();
         for (k, state) in states.enumerate() {
@@ -399,7 +403,7 @@ impl BoundFunction {
         named: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         if named.is_none()
-            && let Some(found) = self.single(py, given)?
+            && let Some(found) = self.evaluate_single_state(py, given)?
         {
             return Ok(found);
         }

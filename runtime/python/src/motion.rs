@@ -1,6 +1,6 @@
 //! Simulations of mechanisms for Python.
 
-use crate::error::exception;
+use crate::error::python_exception_of_error;
 use crate::robot::Robot;
 use linkwork::simulate::Overlaps;
 use linkwork_jit::{Inputs, Method, Sample};
@@ -29,7 +29,8 @@ pub fn simulate<'py>(
     control: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, Option<String>, Option<PyErr>)> {
     let robot = &robot.robot;
-    let method = Method::from_name(method, Some(setting)).map_err(|error| exception(py, &error, None))?;
+    let method = Method::from_name(method, Some(setting))
+        .map_err(|error| python_exception_of_error(py, &error, None))?;
     let overlaps = match method {
         Method::TimeStepping(_) | Method::TimeSteppingMidpoint(_) | Method::TimeSteppingLeapfrog(_) => {
             Overlaps::Keep

@@ -1,6 +1,6 @@
 //! HTML pages that show motions of mechanisms.
 
-use crate::error::{exception, failure};
+use crate::error::{python_error_from_message, python_exception_of_error};
 use crate::robot::{Robot, loader};
 use linkwork::nalgebra::IsometryMatrix3;
 use linkwork_jit::{Error, Quantity};
@@ -57,15 +57,15 @@ pub fn write_page(
                 [("Coordinates", robot.configuration(), q), ("Inputs", robot.inputs(), u)]
             {
                 if many && list.len() <= PLOTTED {
-                    motion = motion.plots(title, curves(list, values))?;
+                    motion = motion.plots(title, plot_curves_of_quantities(list, values))?;
                 }
             }
             Page::new(robot.name()).text(robot.documentation()).motion(motion).write(&path)
         };
         Ok(write_motion())
     });
-    let written = written.map_err(|error| exception(py, &error, None))?;
-    written.map_err(|error| failure(py, error.to_string()))
+    let written = written.map_err(|error| python_exception_of_error(py, &error, None))?;
+    written.map_err(|error| python_error_from_message(py, error.to_string()))
 }
 
 fn placement(robot: &linkwork_jit::Robot, frame: &str, q: &[f64]) -> Result<IsometryMatrix3<f64>, Error> {
@@ -74,7 +74,7 @@ fn placement(robot: &linkwork_jit::Robot, frame: &str, q: &[f64]) -> Result<Isom
 }
 
 /// Returns the unit, the name and the values of each quantity, as curves of a plot.
-fn curves<'a>(list: &'a [Quantity], values: &[f64]) -> Vec<(&'a str, &'a str, Vec<f64>)> {
+fn plot_curves_of_quantities<'a>(list: &'a [Quantity], values: &[f64]) -> Vec<(&'a str, &'a str, Vec<f64>)> {
     let column_of_values =
         |k: usize| values.iter().skip(k).step_by(list.len()).copied().collect::<Vec<f64>>();
     let all = list

@@ -1,8 +1,8 @@
 //! Loaded mechanisms as Python objects.
 
-use crate::error::{exception, failure};
+use crate::error::{python_error_from_message, python_exception_of_error};
 use crate::function::Function;
-use crate::shared::{Failed, distribute};
+use crate::shared::{FirstFailedState, process_shares_in_parallel};
 use linkwork_jit::{AdjointStepper, AnyTable, Error, Loader, Quantity, Sensitivity, Stepper};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyReadwriteArray2,
@@ -53,7 +53,7 @@ pub fn load(
     if equations {
         loader = loader.readable_equations();
     }
-    let robot = py.detach(|| loader.load()).map_err(|error| exception(py, &error, None))?;
+    let robot = py.detach(|| loader.load()).map_err(|error| python_exception_of_error(py, &error, None))?;
     Ok(Robot { robot, sets: None })
 }
 
@@ -100,7 +100,7 @@ impl Robot {
     /// Returns the limits of each limited coordinate: the index of its velocity, then the lower, upper,
     /// velocity and effort limit.
     fn limits(&self, py: Python<'_>) -> PyResult<Vec<LimitValues>> {
-        let limits = self.robot.limits().map_err(|error| exception(py, &error, None))?;
+        let limits = self.robot.limits().map_err(|error| python_exception_of_error(py, &error, None))?;
         let tuple_of_limit = |limit: linkwork_jit::Limit| {
             (limit.index, limit.lower, limit.upper, limit.velocity, limit.effort)
         };
@@ -138,7 +138,7 @@ impl Robot {
         for state in 0..count {
             let set = robot.set_parameters(&values[state * width..(state + 1) * width]);
             set.and_then(|()| robot.validate())
-                .map_err(|error| exception(py, &error, many.then_some(state)))?;
+                .map_err(|error| python_exception_of_error(py, &error, many.then_some(state)))?;
         }
         let sets = many.then(|| (count, values.to_vec()));
         Ok(Robot { robot, sets })
@@ -157,10 +157,10 @@ impl Robot {
     ) -> PyResult<Robot> {
         let mut robot = self.robot.clone();
         let table = AnyTable::from_grid(&axes, &values)
-            .map_err(|error| failure(py, format!("table {name:?}: {error}")))?;
+            .map_err(|error| python_error_from_message(py, format!("table {name:?}: {error}")))?;
         let table = if smooth { table.smooth() } else { table };
         let table = if extrapolated { table.extrapolated() } else { table };
-        robot.set_table(name, table).map_err(|error| exception(py, &error, None))?;
+        robot.set_table(name, table).map_err(|error| python_exception_of_error(py, &error, None))?;
         Ok(Robot { robot, sets: self.sets.clone() })
     }
 
@@ -186,44 +186,46 @@ impl Robot {
         // Steps between constraints and contacts are those of simulations.
         let is_free = self.robot.constraints() == 0 && self.robot.contacts() == 0;
         let stepper = is_free.then(|| Stepper::new(&self.robot)).transpose();
-        let stepper = stepper.map_err(|error| exception(py, &error, None))?;
+        let stepper = stepper.map_err(|error| python_exception_of_error(py, &error, None))?;
         let sets = self.sets.as_ref();
         let zeros = vec![0.0; nu];
-        let simulate_states = |first: usize, _: usize, (q, v): (&mut [f64], &mut [f64])| -> Failed {
-            let (mut stepper, mut robot) = (stepper.clone(), self.robot.clone());
-            let mut failed = None;
-            let states = q.chunks_exact_mut((rows * nq).max(1)).zip(v.chunks_exact_mut((rows * nv).max(1)));
-            for (k, (q, v)) in states.enumerate() {
-                let state = first + k;
-                let set =
-                    set_parameters(stepper.as_mut().map_or(&mut robot, Stepper::robot_mut), sets, state);
-                let motion = set.and_then(|()| {
-                    let Some(stepper) = &mut stepper else {
-                        let row = if own { state * (rows - 1) } else { 0 };
-                        let inputs = inputs.get(row * nu..(row + rows - 1) * nu).unwrap_or(&[]);
-                        return robot.roll_out(start, h, inputs, [q, v]);
-                    };
-                    for step in 0..rows - 1 {
-                        let row = if own { state * (rows - 1) + step } else { step };
-                        let u = inputs.get(row * nu..(row + 1) * nu).unwrap_or(&zeros);
-                        let (q, next_q) = q[step * nq..].split_at_mut(nq);
-                        let (v, next_v) = v[step * nv..].split_at_mut(nv);
-                        let end = [&mut next_q[..nq], &mut next_v[..nv]];
-                        let done = stepper.step(start + step as f64 * h, [q, v, u], h, end);
-                        if done.is_err() {
-                            next_q.fill(f64::NAN);
-                            next_v.fill(f64::NAN);
-                            return done;
+        let simulate_states =
+            |first: usize, _: usize, (q, v): (&mut [f64], &mut [f64])| -> FirstFailedState {
+                let (mut stepper, mut robot) = (stepper.clone(), self.robot.clone());
+                let mut failed = None;
+                let states =
+                    q.chunks_exact_mut((rows * nq).max(1)).zip(v.chunks_exact_mut((rows * nv).max(1)));
+                for (k, (q, v)) in states.enumerate() {
+                    let state = first + k;
+                    let set =
+                        set_parameters(stepper.as_mut().map_or(&mut robot, Stepper::robot_mut), sets, state);
+                    let motion = set.and_then(|()| {
+                        let Some(stepper) = &mut stepper else {
+                            let row = if own { state * (rows - 1) } else { 0 };
+                            let inputs = inputs.get(row * nu..(row + rows - 1) * nu).unwrap_or(&[]);
+                            return robot.roll_out(start, h, inputs, [q, v]);
+                        };
+                        for step in 0..rows - 1 {
+                            let row = if own { state * (rows - 1) + step } else { step };
+                            let u = inputs.get(row * nu..(row + 1) * nu).unwrap_or(&zeros);
+                            let (q, next_q) = q[step * nq..].split_at_mut(nq);
+                            let (v, next_v) = v[step * nv..].split_at_mut(nv);
+                            let end = [&mut next_q[..nq], &mut next_v[..nv]];
+                            let done = stepper.step(start + step as f64 * h, [q, v, u], h, end);
+                            if done.is_err() {
+                                next_q.fill(f64::NAN);
+                                next_v.fill(f64::NAN);
+                                return done;
+                            }
                         }
+                        Ok(())
+                    });
+                    if let Err(error) = motion {
+                        failed.get_or_insert((state, error));
                     }
-                    Ok(())
-                });
-                if let Err(error) = motion {
-                    failed.get_or_insert((state, error));
                 }
-            }
-            failed
-        };
+                failed
+            };
         let failed = py.detach(|| {
             let split_leading_states = |count: usize| {
                 let (own_q, rest_q) = std::mem::take(&mut q).split_at_mut(count * rows * nq);
@@ -231,9 +233,9 @@ impl Robot {
                 (q, v) = (rest_q, rest_v);
                 (own_q, own_v)
             };
-            distribute(states, threads, split_leading_states, simulate_states)
+            process_shares_in_parallel(states, threads, split_leading_states, simulate_states)
         });
-        failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
+        failed.map_or(Ok(()), |(state, error)| Err(python_exception_of_error(py, &error, Some(state))))
     }
 }
 
@@ -268,8 +270,11 @@ pub fn roll_back(
         by_inputs.as_slice_mut()?,
         by_parameters.as_slice_mut()?,
     );
-    type Share<'a> = (&'a mut [f64], &'a mut [f64], &'a mut [f64], &'a mut [f64]);
-    let pull_back_states = |first: usize, count: usize, (by_q, by_v, by_u, by_p): Share<'_>| -> Failed {
+    type GradientShare<'a> = (&'a mut [f64], &'a mut [f64], &'a mut [f64], &'a mut [f64]);
+    let pull_back_states = |first: usize,
+                            count: usize,
+                            (by_q, by_v, by_u, by_p): GradientShare<'_>|
+     -> FirstFailedState {
         let mut stepper = match AdjointStepper::new(jit) {
             Ok(stepper) => stepper,
             Err(error) => return Some((first, error)),
@@ -315,9 +320,9 @@ pub fn roll_back(
             rest = (other_q, other_v, other_u, other_p);
             (q, v, u, p)
         };
-        distribute(states, threads, split_leading_states, pull_back_states)
+        process_shares_in_parallel(states, threads, split_leading_states, pull_back_states)
     });
-    failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
+    failed.map_or(Ok(()), |(state, error)| Err(python_exception_of_error(py, &error, Some(state))))
 }
 
 /// Sets the parameters of the mechanism to those of one state of a batch, if each state has its own.

@@ -37,7 +37,7 @@ impl<A: Registers, T: Real, const N: usize> Number<A> for Vector<A, T, N> {
 
     #[inline(always)]
     fn fused(a: Self, b: Self, c: Self) -> Self {
-        Self::from_array(A::fused(a.numbers_of_lanes(), b.numbers_of_lanes(), c.numbers_of_lanes()))
+        Self::from_array(A::fused(a.lane_numbers(), b.lane_numbers(), c.lane_numbers()))
     }
 }
 
@@ -85,62 +85,62 @@ macro_rules! elementary {
                 }
                 let (mut s, mut c) = (x, x);
                 for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
-                    let (sines, cosines) = trigonometry::sin_cos_all::<A, T, L>(*x.numbers_of_lanes());
+                    let (sines, cosines) = trigonometry::sin_cos_all::<A, T, L>(*x.lane_numbers());
                     (*s, *c) = (Self::from_array(sines), Self::from_array(cosines));
                 }
                 (s, c)
             }
 
             fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self {
-                let numbers_of_lane = |k: usize| x.each_ref().map(|x| x.numbers_of_lanes()[k]);
+                let numbers_of_lane = |k: usize| x.each_ref().map(|x| x.lane_numbers()[k]);
                 Self::from_array(core::array::from_fn(|k| table.derivative(numbers_of_lane(k), orders)))
             }
         }
     };
     (@number min $x:ident $y:ident) => {
-        smaller($x, $y)
+        minimum_ignoring_nan($x, $y)
     };
     (@number max $x:ident $y:ident) => {
-        larger($x, $y)
+        maximum_ignoring_nan($x, $y)
     };
     (@number $name:ident $x:ident $($y:ident)?) => {
         $x.$name($($y)?)
     };
     (@vector min $x:ident $y:ident) => {
-        elementary!(@vector_of smaller min $x $y);
+        elementary!(@vector_of minimum_ignoring_nan min $x $y);
     };
     (@vector max $x:ident $y:ident) => {
-        elementary!(@vector_of larger max $x $y);
+        elementary!(@vector_of maximum_ignoring_nan max $x $y);
     };
     (@vector_of $function:ident $name:ident $x:ident $y:ident) => {
         #[inline(always)]
         fn $name($x: Self, $y: Self) -> Self {
-            let ($x, $y) = ($x.numbers_of_lanes(), $y.numbers_of_lanes());
+            let ($x, $y) = ($x.lane_numbers(), $y.lane_numbers());
             Self::from_array(core::array::from_fn(|k| $function($x[k], $y[k])))
         }
     };
     (@vector sqrt $x:ident) => {
         #[inline(always)]
         fn sqrt($x: Self) -> Self {
-            Self::from_array(A::root($x.numbers_of_lanes()))
+            Self::from_array(A::root($x.lane_numbers()))
         }
     };
     (@vector abs $x:ident) => {
         #[inline(always)]
         fn abs($x: Self) -> Self {
-            Self::from_array(A::magnitude($x.numbers_of_lanes()))
+            Self::from_array(A::magnitude($x.lane_numbers()))
         }
     };
     (@vector $name:ident $x:ident) => {
         #[inline(always)]
         fn $name($x: Self) -> Self {
-            Self::from_array($x.numbers_of_lanes().map(|x| x.$name()))
+            Self::from_array($x.lane_numbers().map(|x| x.$name()))
         }
     };
     (@vector $name:ident $x:ident $y:ident) => {
         #[inline(always)]
         fn $name($x: Self, $y: Self) -> Self {
-            let ($x, $y) = ($x.numbers_of_lanes(), $y.numbers_of_lanes());
+            let ($x, $y) = ($x.lane_numbers(), $y.lane_numbers());
             Self::from_array(core::array::from_fn(|k| $x[k].$name($y[k])))
         }
     };
@@ -151,16 +151,17 @@ elementary_functions!(elementary);
 /// Returns the smaller of two numbers; if one is NaN, the other one. With the feature `reproducible`, a zero
 /// has a positive sign; otherwise the sign of the minimum of two zeros depends on the target.
 #[inline(always)]
-fn smaller<T: Real>(x: T, y: T) -> T {
+fn minimum_ignoring_nan<T: Real>(x: T, y: T) -> T {
     match cfg!(feature = "reproducible") {
         true => T::min(x, y) + T::zero(),
         false => T::min(x, y),
     }
 }
 
-/// Returns the larger of two numbers; if one is NaN, the other one. Zeros are treated as by [`smaller`].
+/// Returns the larger of two numbers; if one is NaN, the other one. Zeros are treated as by
+/// [`minimum_ignoring_nan`].
 #[inline(always)]
-fn larger<T: Real>(x: T, y: T) -> T {
+fn maximum_ignoring_nan<T: Real>(x: T, y: T) -> T {
     match cfg!(feature = "reproducible") {
         true => T::max(x, y) + T::zero(),
         false => T::max(x, y),

@@ -2,7 +2,7 @@
 
 use crate::lanes::Registers;
 #[cfg(feature = "std")]
-use crate::trigonometry::same_type_reference;
+use crate::trigonometry::reference_if_same_type;
 use crate::{Lanes, Real};
 use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -43,7 +43,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
     }
 
     #[inline(always)]
-    pub(crate) fn numbers_of_lanes(&self) -> &[T; N] {
+    pub(crate) fn lane_numbers(&self) -> &[T; N] {
         &self.0.0
     }
 
@@ -67,10 +67,10 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         const { assert!(N > 0 && M == 2 * N, "half of the lanes come from either") };
         let mut numbers = [a.0.0[0]; M];
         let mut places = numbers.iter_mut();
-        for (x, place) in a.numbers_of_lanes().iter().zip(places.by_ref()) {
+        for (x, place) in a.lane_numbers().iter().zip(places.by_ref()) {
             *place = *x;
         }
-        for (x, place) in b.numbers_of_lanes().iter().zip(places) {
+        for (x, place) in b.lane_numbers().iter().zip(places) {
             *place = *x;
         }
         Vector::from_array(numbers)
@@ -93,7 +93,7 @@ impl<A, T: Real, const N: usize> Vector<A, T, N> {
         other: &Vector<A, T, M>,
         j: usize,
     ) -> Option<[T; 2]> {
-        let (a, b) = (self.numbers_of_lanes(), other.numbers_of_lanes());
+        let (a, b) = (self.lane_numbers(), other.lane_numbers());
         // Through registers: lanes used more than once would otherwise be stored one by one.
         #[cfg(feature = "std")]
         if i % 2 == j % 2
@@ -102,12 +102,12 @@ impl<A, T: Real, const N: usize> Vector<A, T, N> {
             && N.is_multiple_of(2)
             && M.is_multiple_of(2)
             && let (Some(a), Some(b)) =
-                (same_type_reference::<_, [f64; N]>(a), same_type_reference::<_, [f64; M]>(b))
+                (reference_if_same_type::<_, [f64; N]>(a), reference_if_same_type::<_, [f64; M]>(b))
         {
             let (k, l) = (i - i % 2, j - j % 2);
             let (a, b) = (wide::f64x2::new([a[k], a[k + 1]]), wide::f64x2::new([b[l], b[l + 1]]));
             let two = wide::f64x2::transpose([a, b])[i % 2].to_array();
-            if let Some(two) = same_type_reference(&two) {
+            if let Some(two) = reference_if_same_type(&two) {
                 return Some(*two);
             }
         }
@@ -129,7 +129,7 @@ macro_rules! operators {
             #[cfg_attr(debug_assertions, inline)]
             #[cfg_attr(not(debug_assertions), inline(always))]
             fn $function(self, other: Self) -> Self {
-                Self::from_array(A::$function(self.numbers_of_lanes(), other.numbers_of_lanes()))
+                Self::from_array(A::$function(self.lane_numbers(), other.lane_numbers()))
             }
         }
     )+};
@@ -148,6 +148,6 @@ impl<A: Registers, T: Real, const N: usize> Neg for Vector<A, T, N> {
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
-        Self::from_array(A::neg(self.numbers_of_lanes()))
+        Self::from_array(A::neg(self.lane_numbers()))
     }
 }

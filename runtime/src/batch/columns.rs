@@ -35,7 +35,7 @@ fn check_slice_length(name: &'static str, found: usize, entries: usize, count: u
 }
 
 /// Returns the number of states according to the first argument, rounded down.
-pub(super) fn count_states(numbers: usize, entries: usize) -> usize {
+pub(super) fn count_states_in_first_argument(numbers: usize, entries: usize) -> usize {
     numbers.checked_div(entries).unwrap_or(0)
 }
 
@@ -57,12 +57,12 @@ impl<'a, T: Real, const R: usize> InputColumns<'a, T, R> {
         &self,
         first: usize,
     ) -> AlignedLanes<SMatrix<Lanes<T, L>, R, 1>> {
-        AlignedLanes(SMatrix::from_fn(|i, _| load_entry(self.entries[i], first)))
+        AlignedLanes(SMatrix::from_fn(|i, _| load_entry_into_lanes(self.entries[i], first)))
     }
 }
 
 #[inline(always)]
-fn load_entry<T: Real, const L: usize>(entry: &[T], first: usize) -> Lanes<T, L> {
+fn load_entry_into_lanes<T: Real, const L: usize>(entry: &[T], first: usize) -> Lanes<T, L> {
     if let Some(full) = entry.get(first..first + L)
         && let Ok(full) = full.try_into()
     {
@@ -122,11 +122,11 @@ impl<T: Real, const R: usize> OutputColumns<'_, T, R, 1> {
         &self,
         first: usize,
     ) -> AlignedLanes<SMatrix<Lanes<T, L>, R, 1>> {
-        AlignedLanes(SMatrix::from_fn(|i, _| load_entry(self.entries[0][i], first)))
+        AlignedLanes(SMatrix::from_fn(|i, _| load_entry_into_lanes(self.entries[0][i], first)))
     }
 
     /// Stores the values of one state, which are in one lane.
-    pub(super) fn store_one<const L: usize>(
+    pub(super) fn store_state_of_lane<const L: usize>(
         &mut self,
         state: usize,
         values: &SMatrix<Lanes<T, L>, R, 1>,

@@ -9,51 +9,58 @@ use crate::{Lanes, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Stores the values of one state, taken from one lane.
-trait ResultInLanes<T: Real, const L: usize> {
+trait LaneResultAssembly<T: Real, const L: usize> {
     /// Type that holds the results of all lanes.
-    type All;
+    type LaneResults;
 
-    fn zero_results() -> Self::All;
+    fn zero_results() -> Self::LaneResults;
 
     /// Writes the result of one state to lane `k` of the results.
-    fn write_lane(self, all: &mut Self::All, k: usize);
+    fn write_lane(self, all: &mut Self::LaneResults, k: usize);
 }
 
-impl<T: Real, const L: usize, const R: usize, const C: usize> ResultInLanes<T, L> for SMatrix<T, R, C> {
-    type All = SMatrix<Lanes<T, L>, R, C>;
+impl<T: Real, const L: usize, const R: usize, const C: usize> LaneResultAssembly<T, L> for SMatrix<T, R, C> {
+    type LaneResults = SMatrix<Lanes<T, L>, R, C>;
 
-    fn zero_results() -> Self::All {
+    fn zero_results() -> Self::LaneResults {
         zeros()
     }
 
-    fn write_lane(self, all: &mut Self::All, k: usize) {
+    fn write_lane(self, all: &mut Self::LaneResults, k: usize) {
         set_lane(all, k, &self);
     }
 }
 
-impl<T: Real, const L: usize, A: ResultInLanes<T, L>, B: ResultInLanes<T, L>> ResultInLanes<T, L> for (A, B) {
-    type All = (A::All, B::All);
+impl<T: Real, const L: usize, A: LaneResultAssembly<T, L>, B: LaneResultAssembly<T, L>>
+    LaneResultAssembly<T, L> for (A, B)
+{
+    type LaneResults = (A::LaneResults, B::LaneResults);
 
-    fn zero_results() -> Self::All {
+    fn zero_results() -> Self::LaneResults {
         (A::zero_results(), B::zero_results())
     }
 
-    fn write_lane(self, all: &mut Self::All, k: usize) {
+    fn write_lane(self, all: &mut Self::LaneResults, k: usize) {
         self.0.write_lane(&mut all.0, k);
         self.1.write_lane(&mut all.1, k);
     }
 }
 
-impl<T: Real, const L: usize, A: ResultInLanes<T, L>, B: ResultInLanes<T, L>, C: ResultInLanes<T, L>>
-    ResultInLanes<T, L> for (A, B, C)
+impl<
+    T: Real,
+    const L: usize,
+    A: LaneResultAssembly<T, L>,
+    B: LaneResultAssembly<T, L>,
+    C: LaneResultAssembly<T, L>,
+> LaneResultAssembly<T, L> for (A, B, C)
 {
-    type All = (A::All, B::All, C::All);
+    type LaneResults = (A::LaneResults, B::LaneResults, C::LaneResults);
 
-    fn zero_results() -> Self::All {
+    fn zero_results() -> Self::LaneResults {
         (A::zero_results(), B::zero_results(), C::zero_results())
     }
 
-    fn write_lane(self, all: &mut Self::All, k: usize) {
+    fn write_lane(self, all: &mut Self::LaneResults, k: usize) {
         self.0.write_lane(&mut all.0, k);
         self.1.write_lane(&mut all.1, k);
         self.2.write_lane(&mut all.2, k);
@@ -61,7 +68,9 @@ impl<T: Real, const L: usize, A: ResultInLanes<T, L>, B: ResultInLanes<T, L>, C:
 }
 
 /// Returns the results of all lanes, each computed by `of`.
-fn results_of_all_lanes<T: Real, const L: usize, R: ResultInLanes<T, L>>(of: impl Fn(usize) -> R) -> R::All {
+fn results_of_all_lanes<T: Real, const L: usize, R: LaneResultAssembly<T, L>>(
+    of: impl Fn(usize) -> R,
+) -> R::LaneResults {
     let mut all = R::zero_results();
     for k in 0..L {
         of(k).write_lane(&mut all, k);

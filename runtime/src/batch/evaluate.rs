@@ -1,6 +1,6 @@
 //! Functions of a mechanism for many states, from arrays to arrays.
 
-use super::columns::{AlignedLanes, InputColumns, OutputColumns, count_states};
+use super::columns::{AlignedLanes, InputColumns, OutputColumns, count_states_in_first_argument};
 use super::{Batch, Error, Lanewise};
 use crate::{Lanes, Mechanism};
 use nalgebra::SMatrix;
@@ -23,7 +23,7 @@ macro_rules! evaluations {
         where
             M: Batch<NQ, NV, NU>,
         {
-            let count = count_states($first.len(), $first_of);
+            let count = count_states_in_first_argument($first.len(), $first_of);
             let $first = InputColumns::<_, $first_of>::new(stringify!($first), $first, count)?;
             $(let $argument = InputColumns::<_, $of>::new(stringify!($argument), $argument, count)?;)*
             let mut to =

@@ -46,7 +46,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         M: Batch<NQ, NV, NU> + Sync,
         S: Lockstep<M::Scalar> + Sync,
     {
-        let part = StateRange::all_states(rollout, q, v)?;
+        let part = StateRange::range_of_all_states(rollout, q, v)?;
         let shared = SharedProgress {
             watch,
             done: AtomicUsize::new(0),
@@ -83,13 +83,13 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
                 || self.divide_recursively(rollout, front, control, shared),
                 || self.divide_recursively(rollout, back, control, shared),
             );
-            return front.combine_with(back);
+            return front.combine_tallies(back);
         }
         if shared.cancelled.load(Ordering::Relaxed) {
             return RolloutTally { cancelled: true, ..RolloutTally::default() };
         }
         let mut before = 0;
-        self.roll_out_part(rollout, &mut part, control, |here| {
+        self.roll_out_range_of_states(rollout, &mut part, control, |here| {
             let done = shared.done.fetch_add(here - before, Ordering::Relaxed) + (here - before);
             before = here;
             let stop = (shared.watch)(Progress { done, count: shared.count }).is_break();

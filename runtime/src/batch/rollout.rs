@@ -1,6 +1,6 @@
 //! Motions of many states over a fixed number of steps.
 
-use super::columns::{OutputColumns, count_states};
+use super::columns::{OutputColumns, count_states_in_first_argument};
 use super::{Batch, Error, Lanewise};
 use crate::integrate::{self, ContinuousInputs, Method, Rk4, SemiImplicitEuler, State, System};
 use crate::lanes::{lane, lane_by_lane};
@@ -90,7 +90,7 @@ pub(super) struct RolloutTally {
 
 impl RolloutTally {
     /// Returns the combined outcome of this range and the range `behind` it.
-    pub(super) fn combine_with(self, behind: RolloutTally) -> RolloutTally {
+    pub(super) fn combine_tallies(self, behind: RolloutTally) -> RolloutTally {
         RolloutTally {
             done: self.done + behind.done,
             failed: self.failed + behind.failed,
@@ -123,12 +123,12 @@ impl<'a, T: Real, const NQ: usize, const NV: usize> StateRange<'a, T, NQ, NV> {
     /// # Errors
     ///
     /// [`Error::Length`] and [`Error::Method`].
-    pub(super) fn all_states<S: Lockstep<T>>(
+    pub(super) fn range_of_all_states<S: Lockstep<T>>(
         rollout: &Rollout<T, S>,
         q: &'a mut [T],
         v: &'a mut [T],
     ) -> Result<Self, Error> {
-        let count = count_states(q.len(), NQ);
+        let count = count_states_in_first_argument(q.len(), NQ);
         let (q, v) = (OutputColumns::new("q", q, count)?, OutputColumns::new("v", v, count)?);
         rollout.method.check().map_err(Error::Method)?;
         Ok(Self { first: 0, q, v, count })
@@ -188,15 +188,15 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         M: Batch<NQ, NV, NU>,
         S: Lockstep<M::Scalar>,
     {
-        let mut part = StateRange::all_states(rollout, q, v)?;
+        let mut part = StateRange::range_of_all_states(rollout, q, v)?;
         let count = part.count;
-        self.roll_out_part(rollout, &mut part, &control, |done| watch(Progress { done, count }))
+        self.roll_out_range_of_states(rollout, &mut part, &control, |done| watch(Progress { done, count }))
             .rollout_result()
     }
 
     /// Rolls out a range of states, one group of lanes after another. `watch` receives the number of states
     /// of the range that are done.
-    pub(super) fn roll_out_part<S, C, const NQ: usize, const NV: usize, const NU: usize>(
+    pub(super) fn roll_out_range_of_states<S, C, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
         part: &mut StateRange<'_, M::Scalar, NQ, NV>,
@@ -221,15 +221,15 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             let present = L.min(part.count - state);
             for (k, failure) in group.failures.iter().enumerate().take(present) {
                 let failed = failure.map(|error| (part.first + state + k, error));
-                tally = tally.combine_with(RolloutTally {
+                tally = tally.combine_tallies(RolloutTally {
                     done: 1,
                     failed: failed.iter().count(),
                     first: failed,
                     cancelled: false,
                 });
                 if failed.is_none() {
-                    part.q.store_one(state + k, &group.end.q, k);
-                    part.v.store_one(state + k, &group.end.v, k);
+                    part.q.store_state_of_lane(state + k, &group.end.q, k);
+                    part.v.store_state_of_lane(state + k, &group.end.v, k);
                 }
             }
             if watch(tally.done).is_break() {

@@ -60,15 +60,15 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Replaces a matrix `A` by the product `A D` with this matrix `D`.
     pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
         if self.end - self.first.min(self.end) > 8 {
-            self.follow_with_storage::<R, N>(a)
+            self.post_multiply_with_storage::<R, N>(a)
         } else {
-            self.follow_with_storage::<R, 8>(a)
+            self.post_multiply_with_storage::<R, 8>(a)
         }
     }
 
     /// Replaces a matrix `A` by the product `A D`, with storage for `C` columns of `D` that differ from the
     /// identity.
-    fn follow_with_storage<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
+    fn post_multiply_with_storage<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
         let mut sums = zeros::<T, R, C>();
         let some = self.first..self.end;
         let from = a.data.0.get(some.clone()).unwrap_or(&[]);
@@ -88,57 +88,57 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Replaces a matrix `A` by the product `D A` with this matrix `D`.
     pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         if self.end - self.first.min(self.end) > 8 {
-            return self.lead_many_rows(a);
+            return self.left_multiply_many_rows(a);
         }
-        let (start, is_other) = self.eight_rows_of_range();
+        let (start, is_other) = self.eight_rows_containing_range();
         for column in &mut a.data.0 {
-            self.lead_column(column, start, is_other);
+            self.left_multiply_column(column, start, is_other);
         }
     }
 
     /// Writes the product `s D A` with this matrix `D` to another matrix.
-    pub fn lead_multiple_into<const C: usize>(
+    pub fn write_scaled_left_product<const C: usize>(
         &self,
         s: T,
         a: &SMatrix<T, N, C>,
         into: &mut SMatrix<T, N, C>,
     ) {
         let few = self.end - self.first.min(self.end) <= 8;
-        let (start, is_other) = self.eight_rows_of_range();
+        let (start, is_other) = self.eight_rows_containing_range();
         for (column, from) in into.data.0.iter_mut().zip(&a.data.0) {
             column.iter_mut().zip(from).for_each(|(entry, x)| *entry = *x * s);
             if few && self.first < self.end {
-                self.lead_column(column, start, is_other);
+                self.left_multiply_column(column, start, is_other);
             }
         }
         if !few {
-            self.lead_many_rows(into);
+            self.left_multiply_many_rows(into);
         }
     }
 
     /// Returns the first of eight rows that contain the range of this matrix, and which of the eight rows
     /// belong to it. All other rows are zero in these columns.
     #[inline(always)]
-    fn eight_rows_of_range(&self) -> (usize, [bool; 8]) {
+    fn eight_rows_containing_range(&self) -> (usize, [bool; 8]) {
         let start = self.first.min(N - N.min(8));
         (start, core::array::from_fn(|k| (self.first..self.end).contains(&(start + k))))
     }
 
     /// Replaces one column `x` by `D x` with this matrix `D`, as a step of [`lead`](Self::lead).
     #[inline(always)]
-    fn lead_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
-        let sum = self.product_rows(column, start);
+    fn left_multiply_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
+        let sum = self.eight_rows_of_product(column, start);
         if let Some(places) = column.get_mut(start..).and_then(<[T]>::first_chunk_mut::<8>) {
             // Eight entries at once, each either the sum or its previous value.
             let given = *places;
-            let chosen = given.iter().zip(sum.numbers_of_lanes()).zip(is_other);
+            let chosen = given.iter().zip(sum.lane_numbers()).zip(is_other);
             places.iter_mut().zip(chosen).for_each(|(place, ((given, sum), is_other))| {
                 *place = if is_other { *sum } else { *given };
             });
             return;
         }
         let places = column.get_mut(start..).unwrap_or(&mut []);
-        for ((place, sum), is_other) in places.iter_mut().zip(sum.numbers_of_lanes()).zip(is_other) {
+        for ((place, sum), is_other) in places.iter_mut().zip(sum.lane_numbers()).zip(is_other) {
             if is_other {
                 *place = *sum;
             }
@@ -147,7 +147,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
 
     /// Returns eight rows, from `start` on, of the product of this matrix with a column.
     #[inline(always)]
-    fn product_rows(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
+    fn eight_rows_of_product(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
         let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
         let some = self.first..self.end;
         let (factors, own) = (column.get(some.clone()), self.matrix.data.0.get(some));
@@ -158,16 +158,16 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     }
 
     /// Computes [`lead`](Self::lead) for a matrix that differs from the identity in more than eight rows.
-    fn lead_many_rows<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
+    fn left_multiply_many_rows<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         let length = N.min(8);
         for column in &mut a.data.0 {
             let given = *column;
             for from in (self.first..self.end).step_by(8) {
                 let start = from.min(N - length);
-                let sum = self.product_rows(&given, start);
+                let sum = self.eight_rows_of_product(&given, start);
                 let kept = self.end.min(start + length);
                 let places = column.get_mut(from..kept).unwrap_or(&mut []);
-                for (place, sum) in places.iter_mut().zip(sum.numbers_of_lanes().iter().skip(from - start)) {
+                for (place, sum) in places.iter_mut().zip(sum.lane_numbers().iter().skip(from - start)) {
                     *place = *sum;
                 }
             }

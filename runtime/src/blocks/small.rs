@@ -15,16 +15,16 @@ pub(super) fn add_product<A: Arithmetic, T: Real, const R: usize, const K: usize
     b: &[[T; K]],
 ) {
     if R > 4 {
-        multiply_columns::<A, T, 2, R, K>(sums, a, b)
+        add_product_in_registers::<A, T, 2, R, K>(sums, a, b)
     } else {
-        multiply_columns::<A, T, 1, R, K>(sums, a, b)
+        add_product_in_registers::<A, T, 1, R, K>(sums, a, b)
     }
 }
 
 /// Computes columns of a matrix product with their rows in `V` registers of four. If fewer rows remain, the
 /// last register overlaps the previous one; all rows are read before any is written.
 #[inline(always)]
-fn multiply_columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usize>(
+fn add_product_in_registers<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usize>(
     sums: &mut [[T; R]],
     a: &[[T; R]; K],
     b: &[[T; K]],

@@ -43,11 +43,11 @@ pub fn solve<T: Real, const N: usize, const C: usize>(
     inverse: &SVector<T, N>,
     b: &mut SMatrix<T, N, C>,
 ) {
-    *b = transposed(&solved_rows(l, inverse, &transposed(b)));
+    *b = transposed(&negative_rows_times_inverse(l, inverse, &transposed(b)));
 }
 
 /// Returns the matrix `−B (L D Lᵀ)⁻¹`, given the factors `L` and `1/D`.
-fn solved_rows<T: Real, const N: usize, const R: usize>(
+fn negative_rows_times_inverse<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
     b: &SMatrix<T, R, N>,

@@ -26,7 +26,7 @@ fn check_product_and_solution<A: Arithmetic, const R: usize, const C: usize>() {
     assert!(left.amax() < 1e-12, "{R} right-hand sides: {left}");
 }
 
-fn check_all_row_counts<A: Arithmetic>() {
+fn check_products_of_all_row_counts<A: Arithmetic>() {
     macro_rules! each {
         ($($columns:literal: $($rows:literal)*;)*) => {
             $($(check_product_and_solution::<A, $rows, $columns>();)*)*
@@ -43,7 +43,7 @@ fn check_all_row_counts<A: Arithmetic>() {
 
 #[test]
 fn products_and_solutions_match_nalgebra() {
-    check_all_row_counts::<Compiled>();
+    check_products_of_all_row_counts::<Compiled>();
     #[cfg(all(
         feature = "std",
         target_arch = "x86_64",
@@ -52,10 +52,10 @@ fn products_and_solutions_match_nalgebra() {
     {
         use crate::lanes::x86::{avx2, avx512};
         if avx2::is_available() {
-            check_all_row_counts::<avx2::Avx2>();
+            check_products_of_all_row_counts::<avx2::Avx2>();
         }
         if avx512::is_available() {
-            check_all_row_counts::<avx512::Avx512>();
+            check_products_of_all_row_counts::<avx512::Avx512>();
         }
     }
 }

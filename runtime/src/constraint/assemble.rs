@@ -1,6 +1,9 @@
 //! Assembly: search for a configuration that satisfies the constraints, and its assembly mode.
 
-use super::{ConstraintError, complete, configuration_error, index_of_largest_entry, is_acceptable};
+use super::{
+    ConstraintError, complete, index_of_largest_entry, is_residual_acceptable,
+    unsatisfied_configuration_error,
+};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -56,7 +59,7 @@ pub fn assemble<
     held: &[usize],
     mode: Option<i8>,
 ) -> Result<SVector<T, NQ>, ConstraintError> {
-    complete::check_held_indices::<NV>(held)?;
+    complete::check_fixed_coordinate_indices::<NV>(held)?;
     let is_wanted = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
     // First configuration found whose angles differ by more than half a revolution, as gears may require.
     let mut far = None;
@@ -128,7 +131,7 @@ fn remove_whole_revolutions<
     guess: &SVector<T, NQ>,
     q: SVector<T, NQ>,
 ) -> SVector<T, NQ> {
-    let remove_whole_turns = |mut q: SVector<T, NQ>, angles: &[usize]| {
+    let subtract_revolutions_from_guess = |mut q: SVector<T, NQ>, angles: &[usize]| {
         for k in angles {
             let whole = revolutions_from_guess(guess, &q, *k).round();
             if let Some(angle) = q.get_mut(*k) {
@@ -138,14 +141,15 @@ fn remove_whole_revolutions<
         q
     };
     let satisfies_constraints = |q: &SVector<T, NQ>| {
-        index_of_largest_entry(&(loops.residuals)(q)).is_ok_and(|(_, residual)| is_acceptable(residual, q))
+        index_of_largest_entry(&(loops.residuals)(q))
+            .is_ok_and(|(_, residual)| is_residual_acceptable(residual, q))
     };
-    let all = remove_whole_turns(q, loops.angles);
+    let all = subtract_revolutions_from_guess(q, loops.angles);
     if all == q || satisfies_constraints(&all) {
         return all;
     }
     loops.angles.chunks(1).fold(q, |q, angle| {
-        let next = remove_whole_turns(q, angle);
+        let next = subtract_revolutions_from_guess(q, angle);
         if satisfies_constraints(&next) { next } else { q }
     })
 }
@@ -167,7 +171,9 @@ fn descend_to_configuration<
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     let q = least_violation(loops, q, held)?;
     let (worst, size) = index_of_largest_entry(&(loops.residuals)(&q))?;
-    is_acceptable(size, &q).then_some(q).ok_or_else(|| configuration_error(loops.names, worst, size))
+    is_residual_acceptable(size, &q)
+        .then_some(q)
+        .ok_or_else(|| unsatisfied_configuration_error(loops.names, worst, size))
 }
 
 /// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
@@ -196,7 +202,7 @@ pub fn least_violation<
         if size <= constant::<T>(4.0) * epsilon() {
             break;
         }
-        let rows = free_holonomic_rows::<T, NV, NH, NC>(&(loops.jacobian)(&q), held);
+        let rows = holonomic_rows_of_free_velocities::<T, NV, NH, NC>(&(loops.jacobian)(&q), held);
         let mut normal = rows * rows.transpose();
         // Relative to each row, so that units have no effect. Zero rows are skipped.
         for k in 0..NH {
@@ -213,7 +219,7 @@ pub fn least_violation<
                 damping *= constant(0.1);
             }
             // Only rounding errors remain.
-            None if is_acceptable(size, &q) => break,
+            None if is_residual_acceptable(size, &q) => break,
             None => damping *= constant(10.0),
         }
         if damping > constant(1e12) {
@@ -232,7 +238,7 @@ fn limit_angle_steps<T: Real, const NV: usize>(step: SVector<T, NV>, turns: &[bo
 
 /// Returns the rows of the holonomic constraints in the Jacobian, with zeros in the columns of velocities
 /// that are held.
-fn free_holonomic_rows<T: Real, const NV: usize, const NH: usize, const NC: usize>(
+fn holonomic_rows_of_free_velocities<T: Real, const NV: usize, const NH: usize, const NC: usize>(
     jacobian: &SMatrix<T, NC, NV>,
     held: &[usize],
 ) -> SMatrix<T, NH, NV> {
@@ -268,7 +274,7 @@ where
         return None;
     }
     // One row per constraint, then one per held velocity.
-    let open = free_holonomic_rows::<T, NV, NH, NC>(&(loops.jacobian)(q), held);
+    let open = holonomic_rows_of_free_velocities::<T, NV, NH, NC>(&(loops.jacobian)(q), held);
     let mut rows = [[T::zero(); NV]; NV];
     let mut fixed = (0..NV).filter(|k| is_held_velocity(*k));
     for (i, row) in rows.iter_mut().enumerate() {

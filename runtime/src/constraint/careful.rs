@@ -34,7 +34,7 @@ pub struct Structure<'a, const NC: usize> {
 /// least deviation from free motion in the metric of the kinetic energy (Gauss's principle).
 #[cold]
 #[inline(never)]
-pub fn careful_dynamics<
+pub fn rank_revealing_dynamics<
     M,
     T: Real,
     const NQ: usize,
@@ -54,37 +54,48 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let system = DynamicsEquations::at_state(mechanism, t, (q, v), tau);
-    let (least, regular) =
-        system.solve_above_magnitude(structure, well_conditioned_threshold(), DependentRows::Dropped);
+    let (least, regular) = system.solve_with_rows_above_magnitude(
+        structure,
+        well_conditioned_threshold(),
+        DependentRowTreatment::Dropped,
+    );
     if regular {
         return least;
     }
-    if let Some(clear) = DynamicsEquations::<T, NV, NC>::clear_row_magnitude(v, &least.0) {
-        let (taken, regular) = system.solve_above_magnitude(structure, clear, DependentRows::Dropped);
+    if let Some(clear) = DynamicsEquations::<T, NV, NC>::reliable_row_magnitude(v, &least.0) {
+        let (taken, regular) =
+            system.solve_with_rows_above_magnitude(structure, clear, DependentRowTreatment::Dropped);
         // The threshold depends on the accelerations that the constraints permit, not on those that they
         // prevent.
         let ratio = epsilon::<T>().sqrt() * largest_magnitude(&least.0) / largest_magnitude(&taken.0);
-        let enough = DynamicsEquations::<T, NV, NC>::clear_row_magnitude(v, &taken.0)
+        let enough = DynamicsEquations::<T, NV, NC>::reliable_row_magnitude(v, &taken.0)
             .map(|clear| clear.max(ratio))
             .filter(|clear| *clear < well_conditioned_threshold());
         if regular
             && enough.is_some_and(|enough| {
-                enough <= clear || system.solve_above_magnitude(structure, enough, DependentRows::Dropped).1
+                enough <= clear
+                    || system
+                        .solve_with_rows_above_magnitude(structure, enough, DependentRowTreatment::Dropped)
+                        .1
             })
         {
             return taken;
         }
     }
     let start = system
-        .solve_above_magnitude(structure, constant::<T>(4.0) * epsilon::<T>().sqrt(), DependentRows::Dropped)
+        .solve_with_rows_above_magnitude(
+            structure,
+            constant::<T>(4.0) * epsilon::<T>().sqrt(),
+            DependentRowTreatment::Dropped,
+        )
         .0
         .0;
     let passing = passing::acceleration_past_singularity(mechanism, structure, t, (q, v), &system, &start);
     system
-        .solve_above_magnitude(
+        .solve_with_rows_above_magnitude(
             structure,
             well_conditioned_threshold(),
-            passing.map_or(DependentRows::Taken, DependentRows::Known),
+            passing.map_or(DependentRowTreatment::Taken, DependentRowTreatment::Known),
         )
         .0
 }
@@ -123,8 +134,11 @@ where
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let both = DynamicsEquations { mass, jacobian, force: *force, bias: *bias };
-    let (found, regular) =
-        both.solve_above_magnitude(structure, well_conditioned_threshold(), DependentRows::Dropped);
+    let (found, regular) = both.solve_with_rows_above_magnitude(
+        structure,
+        well_conditioned_threshold(),
+        DependentRowTreatment::Dropped,
+    );
     if regular {
         return found;
     }
@@ -143,12 +157,12 @@ where
     let rounded = if is_place || gap > root { T::zero() } else { known / gap };
     let least = root.max(rounded).max(turned);
     let weak = if least < well_conditioned_threshold() {
-        DependentRows::Down(least)
+        DependentRowTreatment::Down(least)
     } else {
-        DependentRows::Dropped
+        DependentRowTreatment::Dropped
     };
     let correction = DynamicsEquations { force: [T::zero(); NV], ..both }
-        .solve_above_magnitude(structure, well_conditioned_threshold(), weak)
+        .solve_with_rows_above_magnitude(structure, well_conditioned_threshold(), weak)
         .0;
     if force.iter().all(|f| *f == T::zero()) {
         return correction;
@@ -156,10 +170,10 @@ where
     // All rows with a known direction contribute to the response to forces.
     let answer = DynamicsEquations { bias: [T::zero(); NC], ..both };
     let answer = answer
-        .solve_above_magnitude(
+        .solve_with_rows_above_magnitude(
             structure,
             well_conditioned_threshold(),
-            DependentRows::Down(known.sqrt().max(turned)),
+            DependentRowTreatment::Down(known.sqrt().max(turned)),
         )
         .0;
     (answer.0 + correction.0, answer.1 + correction.1)
@@ -197,7 +211,7 @@ where
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let still = DynamicsEquations { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
-    let metric = MassFactorisation::new(&still.loaded_mass_and_forces(structure).0);
+    let metric = MassFactorisation::new(&still.weighted_mass_and_forces(structure).0);
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
     let weighted_column_length = |j: &SMatrix<T, NC, NV>, k: usize| {
         norm(&metric.solve_half(core::array::from_fn(|i| entry_or_zero(&j.data.0[i], k))))
@@ -212,7 +226,7 @@ where
         if own > T::zero() { most.max(weighted_column_length(&change, k) / own) } else { most }
     });
     // In single precision, rows of this magnitude are dropped anyway.
-    let least = safe_distance::<T>().min(constant(0.07));
+    let least = safe_distance_from_singularity::<T>().min(constant(0.07));
     let clear = (turn * steps).min(most).max(least);
     let mut span = ColumnSpan::new(&metric, &jacobian, &structure.groups);
     span.extend_basis(clear, structure.rank);
@@ -221,7 +235,7 @@ where
 
 /// Returns the distance from a singular configuration, m or rad, at which the errors of rounding and of
 /// interpolation are about equal.
-fn safe_distance<T: Real>() -> T {
+fn safe_distance_from_singularity<T: Real>() -> T {
     constant::<T>(6.0) * well_conditioned_threshold()
 }
 
@@ -234,7 +248,7 @@ fn redundant_row_threshold<T: Real>() -> T {
 
 /// Treatment of nearly dependent constraint rows in the rank-revealing solution.
 #[derive(Clone, Copy)]
-enum DependentRows<T, const NV: usize> {
+enum DependentRowTreatment<T, const NV: usize> {
     /// Takes these accelerations along directions that the well-conditioned rows do not determine.
     Known(SVector<T, NV>),
     /// Uses all constraint rows above rounding errors.
@@ -265,12 +279,17 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        Self::with_force(mechanism, t, (q, v), (tau - mechanism.bias_forces(t, q, v)).data.0[0])
+        Self::equations_with_total_force(
+            mechanism,
+            t,
+            (q, v),
+            (tau - mechanism.bias_forces(t, q, v)).data.0[0],
+        )
     }
 
     /// Returns the equations of a mechanism at a state with the total force `force`, which replaces the bias
     /// forces.
-    fn with_force<M, const NQ: usize, const NU: usize, const NH: usize>(
+    fn equations_with_total_force<M, const NQ: usize, const NU: usize, const NH: usize>(
         mechanism: &M,
         t: T,
         (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
@@ -290,7 +309,7 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
     /// Returns the relative magnitude of rows that determine accelerations like `a` to half of the digits, if
     /// it is below the usual threshold. If constraints are satisfied up to a rounding error ε, rows of
     /// relative magnitude σ cause an acceleration error of ε v² / σ³.
-    fn clear_row_magnitude(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
+    fn reliable_row_magnitude(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
         let speed = largest_magnitude(v);
         let clear =
             (constant::<T>(4.0) * epsilon::<T>().sqrt() * speed * speed / largest_magnitude(a)).cbrt();
@@ -299,29 +318,29 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
 
     /// Returns accelerations and multipliers, and whether the constraint rows above the relative magnitude
     /// `clear` have the rank of regular configurations.
-    fn solve_above_magnitude(
+    fn solve_with_rows_above_magnitude(
         &self,
         structure: &Structure<'_, NC>,
         clear: T,
-        weak: DependentRows<T, NV>,
+        weak: DependentRowTreatment<T, NV>,
     ) -> (Solution<T, NV, NC>, bool) {
-        let (mass, force) = self.loaded_mass_and_forces(structure);
+        let (mass, force) = self.weighted_mass_and_forces(structure);
         let metric = MassFactorisation::new(&mass);
         let mut span = ColumnSpan::new(&metric, &self.jacobian, &structure.groups);
         span.extend_basis(clear, structure.rank);
         let regular = span.rank >= structure.rank;
         match weak {
             _ if regular => span.extend_basis(redundant_row_threshold(), NC),
-            DependentRows::Taken => span.extend_basis(rounding_threshold(), structure.rank),
-            DependentRows::Down(size) => span.extend_basis(size, structure.rank),
-            DependentRows::Known(_) | DependentRows::Dropped => {}
+            DependentRowTreatment::Taken => span.extend_basis(rounding_threshold(), structure.rank),
+            DependentRowTreatment::Down(size) => span.extend_basis(size, structure.rank),
+            DependentRowTreatment::Known(_) | DependentRowTreatment::Dropped => {}
         }
         let free = span.apply_reflections(&metric.solve_half(force));
         // Known accelerations satisfy nearly dependent rows as well; only their deviation from the
         // well-conditioned rows is solved for. (The biases include the nearly dependent component of each
         // row.)
         let (mut x, bias) = match weak {
-            DependentRows::Known(a) if !regular => (
+            DependentRowTreatment::Known(a) if !regular => (
                 span.apply_reflections(&metric.multiply_upper(&a.data.0[0])),
                 (self.jacobian * a + SVector::from(self.bias)).data.0[0],
             ),
@@ -332,7 +351,7 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
         let mut lacking = [T::zero(); NC];
         for (k, ((x, free), known)) in x.iter_mut().zip(&free).zip(&known).enumerate().take(span.rank) {
             *x = match weak {
-                DependentRows::Known(_) if !regular => *x + *known,
+                DependentRowTreatment::Known(_) if !regular => *x + *known,
                 _ => *known,
             };
             if let Some(slot) = lacking.get_mut(k) {
@@ -345,7 +364,7 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
 
     /// Returns mass matrix and forces, extended for coordinates without inertia. With the rows `J` that
     /// determine these, `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
-    fn loaded_mass_and_forces(&self, structure: &Structure<'_, NC>) -> ([[T; NV]; NV], [T; NV]) {
+    fn weighted_mass_and_forces(&self, structure: &Structure<'_, NC>) -> ([[T; NV]; NV], [T; NV]) {
         let (mut mass, mut force) = (self.mass.data.0, self.force);
         let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
         for (row, bias) in self.bias.iter().enumerate().filter(|(row, _)| structure.determining.contains(row))
@@ -401,7 +420,7 @@ impl<T: Real, const NC: usize> TriangularFactor<T, NC> {
             return z;
         }
         for step in 0..NC {
-            let Some((k, pivot)) = span.pivot_column(step) else { continue };
+            let Some((k, pivot)) = span.column_of_basis_step(step) else { continue };
             let sum = pivot.x.iter().zip(&z).take(step);
             let rest = sum.fold(-entry_or_zero(bias, k) / pivot.length, |rest, (x, z)| rest - *x * *z);
             if let Some(slot) = z.get_mut(step) {
@@ -438,7 +457,7 @@ impl<T: Real, const NC: usize> TriangularFactor<T, NC> {
             return lambda;
         }
         for step in (0..NC).rev() {
-            let Some((k, pivot)) = span.pivot_column(step) else { continue };
+            let Some((k, pivot)) = span.column_of_basis_step(step) else { continue };
             let share = entry_or_zero(&rest, step) / entry_or_zero(&pivot.x, step);
             rest.iter_mut().zip(&pivot.x).take(step).for_each(|(rest, x)| *rest -= share * *x);
             if let Some(slot) = lambda.get_mut(k) {

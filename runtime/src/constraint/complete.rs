@@ -2,7 +2,7 @@
 //! constraints. Also computes the drive forces for such a motion.
 
 use super::{
-    Constrained, ConstraintError, acceptable_residual, index_of_largest_entry, is_acceptable,
+    Constrained, ConstraintError, acceptable_residual, index_of_largest_entry, is_residual_acceptable,
     largest_jacobian_entry, largest_magnitude_or_one,
 };
 use crate::Real;
@@ -14,7 +14,7 @@ use nalgebra::{SMatrix, SVector};
 const MAX_CORRECTIONS: usize = 3;
 
 /// Returns an error for the first of the indices `held` that is not less than `NV`.
-pub(super) fn check_held_indices<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
+pub(super) fn check_fixed_coordinate_indices<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
     let outside = held.iter().copied().find(|index| *index >= NV);
     outside.map_or(Ok(()), |index| Err(ConstraintError::Held { index, velocities: NV }))
 }
@@ -61,14 +61,14 @@ pub(super) fn completed_velocity<
 where
     M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
 {
-    check_held_indices::<NV>(held)?;
+    check_fixed_coordinate_indices::<NV>(held)?;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let constraint_rates_of_velocity = |v: &SVector<M::Scalar, NV>| mechanism.constraint_rates(t, q, v);
     let (v, (worst, size)) =
         correct_free_entries(&mass, &jacobian, held, *v, constraint_rates_of_velocity, |size, v| {
             size <= acceptable_residual(v)
         })?;
-    if is_acceptable(size, &v) {
+    if is_residual_acceptable(size, &v) {
         return Ok(v);
     }
     Err(ConstraintError::Velocity {
@@ -96,18 +96,18 @@ pub(super) fn complete_acceleration<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    check_held_indices::<NV>(held)?;
+    check_fixed_coordinate_indices::<NV>(held)?;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let bias = mechanism.constraint_bias(t, q, v);
     // Magnitude of the terms of the gap, relative to which it is rounded.
-    let scale_of_acceleration = |a: &SVector<T, NV>| {
+    let magnitude_of_gap_terms = |a: &SVector<T, NV>| {
         largest_magnitude_or_one(&bias).max(largest_magnitude_or_one(a) * largest_jacobian_entry(&jacobian))
     };
     let acceleration_residual = |a: &SVector<T, NV>| jacobian * a + bias;
-    let is_exact = |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * scale_of_acceleration(a);
+    let is_exact = |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * magnitude_of_gap_terms(a);
     let (a, (worst, size)) =
         correct_free_entries(&mass, &jacobian, held, *a, acceleration_residual, is_exact)?;
-    if size <= epsilon::<T>().sqrt() * scale_of_acceleration(&a) {
+    if size <= epsilon::<T>().sqrt() * magnitude_of_gap_terms(&a) {
         return Ok(a);
     }
     let constraint = constraint_name::<M, NQ, NV, NU, NH, NC>(worst);
@@ -144,10 +144,10 @@ pub(super) fn driving_forces<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    check_held_indices::<NV>(driven)?;
+    check_fixed_coordinate_indices::<NV>(driven)?;
     let (worst, rate) = index_of_largest_entry(&mechanism.constraint_rates(t, q, v))?;
     let name = constraint_name::<M, NQ, NV, NU, NH, NC>;
-    if !is_acceptable(rate, v) {
+    if !is_residual_acceptable(rate, v) {
         return Err(ConstraintError::Velocity { constraint: name(worst), rate: to_f64(rate) });
     }
     let (jacobian, bias) = (mechanism.constraint_jacobian(t, q), mechanism.constraint_bias(t, q, v));
@@ -161,7 +161,7 @@ where
     }
     let forces = mechanism.inverse_dynamics(t, q, v, a);
     let is_driven = |i: usize| driven.contains(&i);
-    let rows: [VectorRow<T, NC>; NV] = jacobian.data.0;
+    let rows: [NumberArray<T, NC>; NV] = jacobian.data.0;
     let size = rows.map(|row| dot(&row, &row));
     let open = core::array::from_fn(|i| if is_driven(i) { [nalgebra::zero(); NC] } else { rows[i] });
     let mut lambda = [nalgebra::zero(); NC];
@@ -196,22 +196,22 @@ where
     }
 }
 
-type VectorRow<T, const N: usize> = [T; N];
+type NumberArray<T, const N: usize> = [T; N];
 
-fn dot<T: Real, const N: usize>(a: &VectorRow<T, N>, b: &VectorRow<T, N>) -> T {
+fn dot<T: Real, const N: usize>(a: &NumberArray<T, N>, b: &NumberArray<T, N>) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
 /// Adds a multiple of a row to another row, `a += factor · b`.
-fn add_row_multiple<T: Real, const N: usize>(a: &mut VectorRow<T, N>, factor: T, b: &VectorRow<T, N>) {
+fn add_row_multiple<T: Real, const N: usize>(a: &mut NumberArray<T, N>, factor: T, b: &NumberArray<T, N>) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * *b);
 }
 
 /// Removes the component along a unit direction from rows. Two passes are sufficient for orthogonality
 /// (Björck, *Numerical Methods for Least Squares Problems*, 1996, § 2.4.5).
 fn remove_component<T: Real, const N: usize, const K: usize>(
-    rows: &mut [VectorRow<T, N>; K],
-    direction: &VectorRow<T, N>,
+    rows: &mut [NumberArray<T, N>; K],
+    direction: &NumberArray<T, N>,
 ) {
     for row in rows {
         for _ in 0..2 {
@@ -222,7 +222,10 @@ fn remove_component<T: Real, const N: usize, const K: usize>(
 }
 
 /// Returns the index of the row with the largest `size` among the rows that are not yet taken, and this size.
-fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) -> T) -> Option<(usize, T)> {
+fn largest_remaining_row<T: Real, const K: usize>(
+    taken: &[bool; K],
+    size: impl Fn(usize) -> T,
+) -> Option<(usize, T)> {
     let mut best = None;
     for k in (0..K).filter(|k| !taken[*k]) {
         let size = size(k);
@@ -244,16 +247,16 @@ fn least_energy_correction<T: Real, const NV: usize, const NC: usize>(
     gap: &SVector<T, NC>,
 ) -> SVector<T, NV> {
     let mass = mass.data.0;
-    let scale: VectorRow<T, NV> = core::array::from_fn(|i| {
+    let scale: NumberArray<T, NV> = core::array::from_fn(|i| {
         let own = mass[i][i];
         if own > T::zero() { T::one() / own.sqrt() } else { T::one() }
     });
-    let rows: [VectorRow<T, NV>; NC] =
+    let rows: [NumberArray<T, NV>; NC] =
         core::array::from_fn(|k| core::array::from_fn(|i| jacobian.data.0[i][k] * scale[i]));
     // Squared lengths of the rows without held velocities.
-    let reach: VectorRow<T, NC> = core::array::from_fn(|k| dot(&rows[k], &rows[k]));
+    let reach: NumberArray<T, NC> = core::array::from_fn(|k| dot(&rows[k], &rows[k]));
     let rows = rows.map(|row| core::array::from_fn(|i| if held.contains(&i) { T::zero() } else { row[i] }));
-    let mut axes: [VectorRow<T, NV>; NV] = core::array::from_fn(|i| {
+    let mut axes: [NumberArray<T, NV>; NV] = core::array::from_fn(|i| {
         core::array::from_fn(|j| if i == j && !held.contains(&i) { T::one() } else { T::zero() })
     });
     let (mut y, directions) =
@@ -262,8 +265,8 @@ fn least_energy_correction<T: Real, const NV: usize, const NC: usize>(
         remove_component(&mut axes, direction);
     }
     let scaled_mass_row =
-        |i: usize| -> VectorRow<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
-    move_to_least_energy(&core::array::from_fn(scaled_mass_row), axes, &mut y);
+        |i: usize| -> NumberArray<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
+    minimise_in_mass_metric(&core::array::from_fn(scaled_mass_row), axes, &mut y);
     SVector::from_fn(|i, _| y[i] * scale[i])
 }
 
@@ -273,10 +276,10 @@ fn least_energy_correction<T: Real, const NV: usize, const NC: usize>(
 /// to its length is selected. Dependent rows are dropped; their targets are satisfied automatically or not at
 /// all.
 fn minimum_norm_solution<T: Real, const N: usize, const K: usize>(
-    rows: &[VectorRow<T, N>; K],
+    rows: &[NumberArray<T, N>; K],
     sizes: &[T; K],
     targets: &[T; K],
-) -> (VectorRow<T, N>, [Option<VectorRow<T, N>>; K]) {
+) -> (NumberArray<T, N>, [Option<NumberArray<T, N>>; K]) {
     let (mut rest, mut taken, mut y) = (*rows, [false; K], [T::zero(); N]);
     let mut directions = [None; K];
     // Rows with a smaller independent component would require excessive velocities.
@@ -284,7 +287,9 @@ fn minimum_norm_solution<T: Real, const N: usize, const K: usize>(
     for slot in &mut directions {
         let part =
             |k: usize| if sizes[k] > T::zero() { dot(&rest[k], &rest[k]) / sizes[k] } else { T::zero() };
-        let Some((k, _)) = largest_row(&taken, part).filter(|(_, part)| *part > least) else { break };
+        let Some((k, _)) = largest_remaining_row(&taken, part).filter(|(_, part)| *part > least) else {
+            break;
+        };
         taken[k] = true;
         let size = dot(&rest[k], &rest[k]).sqrt();
         let direction = rest[k].map(|x| x / size);
@@ -297,17 +302,18 @@ fn minimum_norm_solution<T: Real, const N: usize, const K: usize>(
 }
 
 /// Moves `y` within the space spanned by `axes` to the minimum of `yᵀ M y`.
-fn move_to_least_energy<T: Real, const N: usize>(
-    mass: &[VectorRow<T, N>; N],
-    mut axes: [VectorRow<T, N>; N],
-    y: &mut VectorRow<T, N>,
+fn minimise_in_mass_metric<T: Real, const N: usize>(
+    mass: &[NumberArray<T, N>; N],
+    mut axes: [NumberArray<T, N>; N],
+    y: &mut NumberArray<T, N>,
 ) {
     // The longest remainder of an axis is at least as long as the mean.
     let some = constant::<T>(0.5 / N.max(1) as f64);
     let (mut basis, mut taken) = ([[T::zero(); N]; N], [false; N]);
     for slot in &mut basis {
         let squared_length = |k: usize| dot(&axes[k], &axes[k]);
-        let Some((k, square)) = largest_row(&taken, squared_length).filter(|(_, square)| *square > some)
+        let Some((k, square)) =
+            largest_remaining_row(&taken, squared_length).filter(|(_, square)| *square > some)
         else {
             break;
         };
@@ -316,7 +322,7 @@ fn move_to_least_energy<T: Real, const N: usize>(
         remove_component(&mut axes, slot);
     }
     let heavy = basis.map(|b| core::array::from_fn(|i| dot(&mass[i], &b)));
-    let mut rest: VectorRow<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
+    let mut rest: NumberArray<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
     // A = L D Lᵀ. Motions without inertia keep their value.
     let (mut lower, mut pivots) = ([[T::zero(); N]; N], [T::zero(); N]);
     let quotient_or_zero = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };

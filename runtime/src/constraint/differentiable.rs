@@ -53,7 +53,7 @@ pub trait ConstrainedDerivatives<
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
     ) -> MultiplierDerivatives<Self::Scalar, NV, NC> {
-        let [by_q, by_v, by_tau] = solved_derivatives(self, t, q, v, tau).by;
+        let [by_q, by_v, by_tau] = accelerations_with_derivatives(self, t, q, v, tau).by;
         (by_q.1, by_v.1, by_tau.1)
     }
 }
@@ -92,7 +92,7 @@ impl<T, const NV: usize, const NC: usize> From<MotionDerivatives<T, NV, NC>>
 type MotionSensitivity<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
 
 /// Accelerations and multipliers of constrained motion, with their derivatives.
-pub(crate) struct SolvedDerivatives<T, const NV: usize, const NC: usize> {
+pub(crate) struct ConstrainedMotionDerivatives<T, const NV: usize, const NC: usize> {
     pub(crate) a: SVector<T, NV>,
     pub(crate) lambda: SVector<T, NC>,
     /// Derivatives of accelerations and multipliers with respect to configuration, velocity and generalized
@@ -102,7 +102,7 @@ pub(crate) struct SolvedDerivatives<T, const NV: usize, const NC: usize> {
 
 /// Returns the accelerations and multipliers of [`constrained_dynamics`](Constrained::constrained_dynamics)
 /// with their derivatives.
-pub(crate) fn solved_derivatives<
+pub(crate) fn accelerations_with_derivatives<
     M,
     T,
     const NQ: usize,
@@ -116,7 +116,7 @@ pub(crate) fn solved_derivatives<
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
     tau: &SVector<T, NV>,
-) -> SolvedDerivatives<T, NV, NC>
+) -> ConstrainedMotionDerivatives<T, NV, NC>
 where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
@@ -141,11 +141,11 @@ where
         solve_derivative_columns(&parts.forces_by_v, &parts.accelerations_by_v),
         solve_derivative_columns(&-SMatrix::identity(), &SMatrix::zeros()),
     ];
-    SolvedDerivatives { a, lambda, by }
+    ConstrainedMotionDerivatives { a, lambda, by }
 }
 
 /// Returns the multipliers `μ` of constraint forces `p = Jᵀ μ`.
-pub(crate) fn multipliers_of_forces<
+pub(crate) fn multipliers_from_constraint_forces<
     M,
     T,
     const NQ: usize,
@@ -315,7 +315,7 @@ pub(crate) fn set_column<T: Real, const R: usize, const C: usize>(
 }
 
 /// Returns the matrix whose columns are given by a function of the column index.
-pub(crate) fn matrix_of_columns<T: Real, const R: usize, const C: usize>(
+pub(crate) fn matrix_from_column_function<T: Real, const R: usize, const C: usize>(
     column: impl Fn(usize) -> SVector<T, R>,
 ) -> SMatrix<T, R, C> {
     let mut m = zeros();

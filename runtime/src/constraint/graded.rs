@@ -10,7 +10,7 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// The rows are factorised in the metric of the kinetic energy, so that light bodies lose no digits to heavy
 /// ones. Rows of one number in `groups` are components of one vector.
-pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
+pub(crate) fn velocity_change_and_impulses<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
     (held, groups): (&[bool; NC], &[usize; NC]),
@@ -30,18 +30,18 @@ pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
         // `Rᵀ z = changes`, then `R λ = z`, by columns in the order in which they joined the basis.
         let mut z = [T::zero(); NV];
         for step in 0..span.rank {
-            let (k, pivot) = span.pivot_column(step)?;
+            let (k, pivot) = span.column_of_basis_step(step)?;
             let change = entry_or_zero(&changes.data.0[0], k) / pivot.length;
             let rest = pivot.x.iter().zip(&z).take(step).fold(change, |rest, (x, z)| rest - *x * *z);
             *z.get_mut(step)? = rest / entry_or_zero(&pivot.x, step);
         }
         let mut impulses = SVector::<T, NC>::zeros();
         for step in (0..span.rank).rev() {
-            let later = (step + 1..span.rank).filter_map(|later| span.pivot_column(later));
+            let later = (step + 1..span.rank).filter_map(|later| span.column_of_basis_step(later));
             let rest = later.fold(entry_or_zero(&z, step), |rest, (k, column)| {
                 rest - entry_or_zero(&column.x, step) * column.length * entry_or_zero(&impulses.data.0[0], k)
             });
-            let (k, pivot) = span.pivot_column(step)?;
+            let (k, pivot) = span.column_of_basis_step(step)?;
             *impulses.get_mut(k)? = rest / (entry_or_zero(&pivot.x, step) * pivot.length);
         }
         Some((SVector::from(metric.solve_transposed(span.undo_reflections(z))), impulses))

@@ -34,20 +34,20 @@ pub fn constrained_derivatives<T: Real, const NV: usize, const NC: usize>(
     parts: &MotionDerivatives<T, NV, NC>,
     solve: impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV>,
 ) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, NV>) {
-    let response_columns = |forces: &[[T; NV]; NV], bias: &[[T; NC]; NV]| {
-        matrix_of_columns(|j| solve(&forces[j].map(|f| -f), &bias[j]))
+    let acceleration_derivative_columns = |forces: &[[T; NV]; NV], bias: &[[T; NC]; NV]| {
+        matrix_from_column_function(|j| solve(&forces[j].map(|f| -f), &bias[j]))
     };
-    let by_force = matrix_of_columns(|j| {
+    let by_force = matrix_from_column_function(|j| {
         solve(&core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }), &[T::zero(); NC])
     });
     (
-        response_columns(&parts.forces_by_q, &parts.bias_by_q),
-        response_columns(&parts.forces_by_v, &parts.bias_by_v),
+        acceleration_derivative_columns(&parts.forces_by_q, &parts.bias_by_q),
+        acceleration_derivative_columns(&parts.forces_by_v, &parts.bias_by_v),
         by_force,
     )
 }
 
-fn matrix_of_columns<T: Real, const R: usize, const C: usize>(
+fn matrix_from_column_function<T: Real, const R: usize, const C: usize>(
     column: impl Fn(usize) -> SVector<T, R>,
 ) -> SMatrix<T, R, C> {
     let mut m = SMatrix::zeros();

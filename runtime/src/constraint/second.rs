@@ -1,7 +1,7 @@
 //! Second derivatives of constrained motion, contracted with factors, for generic code.
 
 use super::ConstrainedDerivatives;
-use super::differentiable::{multipliers_of_forces, solved_derivatives};
+use super::differentiable::{accelerations_with_derivatives, multipliers_from_constraint_forces};
 use super::layout::ConstraintCurvature;
 use crate::blocks::{add_multiple, add_product, product, transposed};
 use crate::{At, Real, SecondDerivatives, SecondOrder};
@@ -100,7 +100,7 @@ where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     let w = m.constraint_response(t, q, f, &SVector::zeros());
-    (w, multipliers_of_forces(m, t, q, &(f - m.mass_matrix(t, q) * w)))
+    (w, multipliers_from_constraint_forces(m, t, q, &(f - m.mass_matrix(t, q) * w)))
 }
 
 /// Returns the second derivatives of `fᵀ v̇` with constraints. The equations `M v̇ + h − Jᵀ λ = τ` and `J v̇
@@ -125,21 +125,21 @@ where
     T: Real,
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let solved = solved_derivatives(m, t, q, v, tau);
+    let solved = accelerations_with_derivatives(m, t, q, v, tau);
     let (w, z) = adjoint_variables(m, t, q, factors);
     let none = SVector::zeros();
     let found = m.equation_second_derivatives(t, q, v, &solved.a, &solved.lambda, &-w, &-z, &none);
-    let mixed_terms = |(a, lambda): &(SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)| {
+    let mixed_second_derivative_terms = |(a, lambda): &(SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)| {
         let mut sum = product(&found.qa, a);
         add_product(&mut sum, &found.q_lambda, lambda);
         sum
     };
-    let [by_q, by_v, by_tau] = solved.by.each_ref().map(mixed_terms);
-    (with_transpose(found.qq, &by_q), found.qv + by_v, found.vv, by_tau)
+    let [by_q, by_v, by_tau] = solved.by.each_ref().map(mixed_second_derivative_terms);
+    (plus_matrix_and_transpose(found.qq, &by_q), found.qv + by_v, found.vv, by_tau)
 }
 
 /// Returns the matrix `A + B + Bᵀ` of two square matrices.
-pub(crate) fn with_transpose<T: Real, const N: usize>(
+pub(crate) fn plus_matrix_and_transpose<T: Real, const N: usize>(
     mut a: SMatrix<T, N, N>,
     b: &SMatrix<T, N, N>,
 ) -> SMatrix<T, N, N> {
@@ -161,13 +161,13 @@ pub trait CurvatureVisitor<T: Real, const NQ: usize, const NV: usize, const NU: 
 }
 
 /// Visitor that receives the mechanism at a fixed time.
-pub(crate) struct FrozenCurvatureVisitor<V, T> {
+pub(crate) struct FrozenTimeCurvatureVisitor<V, T> {
     pub(crate) visitor: V,
     pub(crate) t: T,
 }
 
 impl<V, T, const NQ: usize, const NV: usize, const NU: usize> CurvatureVisitor<T, NQ, NV, NU>
-    for FrozenCurvatureVisitor<V, T>
+    for FrozenTimeCurvatureVisitor<V, T>
 where
     T: Real,
     V: CurvatureVisitor<T, NQ, NV, NU>,

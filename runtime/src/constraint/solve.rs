@@ -15,12 +15,16 @@ fn minimum_pivot_ratio<T: Real>() -> T {
 
 /// Returns the minimum ratio of a pivot to the pivots of its group of constraints. Smaller pivots are mostly
 /// rounding errors. Pivots are squared lengths.
-fn minimum_group_pivot<T: Real>() -> T {
+fn minimum_pivot_ratio_in_group<T: Real>() -> T {
     epsilon::<T>().cbrt()
 }
 
 /// Returns the sum of `each` over the constraints in the group of constraint `k`.
-fn sum_over_group<T: Real, const NC: usize>(groups: &[usize; NC], k: usize, each: impl Fn(usize) -> T) -> T {
+fn sum_over_constraint_group<T: Real, const NC: usize>(
+    groups: &[usize; NC],
+    k: usize,
+    each: impl Fn(usize) -> T,
+) -> T {
     let is_in_group = |i: &usize| groups.get(*i) == groups.get(k);
     (0..NC).filter(is_in_group).fold(T::zero(), |sum, i| sum + each(i))
 }
@@ -60,7 +64,9 @@ fn has_accurate_pivot<T: Real, const NV: usize, const NC: usize>(
 ) -> bool {
     let (pivot, before) = found.pivot_of_constraint(k);
     pivot > minimum_pivot_ratio::<T>() * before
-        && pivot > minimum_group_pivot::<T>() * sum_over_group(groups, k, |k| found.pivot_of_constraint(k).1)
+        && pivot
+            > minimum_pivot_ratio_in_group::<T>()
+                * sum_over_constraint_group(groups, k, |k| found.pivot_of_constraint(k).1)
 }
 
 /// Returns whether the pivot of a sliding contact is accurate enough: it must be positive and clearly above
@@ -74,14 +80,16 @@ pub(super) fn has_determined_pivot<T: Real, const NV: usize, const NC: usize>(
     let (pivot, before) = found.pivot_of_constraint(k);
     let least = epsilon::<T>().sqrt();
     pivot > least * before
-        && pivot > minimum_group_pivot::<T>() * sum_over_group(groups, k, |k| found.pivot_of_constraint(k).1)
+        && pivot
+            > minimum_pivot_ratio_in_group::<T>()
+                * sum_over_constraint_group(groups, k, |k| found.pivot_of_constraint(k).1)
 }
 
 /// Splits the result of an elimination whose pivots are entries of the Jacobian in predetermined columns.
 /// Pivots and the lengths of their rows before elimination are squared. The growth of rounding errors is
 /// bounded by the product of the ratios of a third of the row lengths to the pivots.
 #[inline]
-pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
+pub fn solution_with_predetermined_pivots<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
     let relative_pivot = |k: usize| {
@@ -122,8 +130,9 @@ fn least_norm_solution<T: Real, const N: usize>(
     b: [T; N],
 ) -> Option<[T; N]> {
     let before: [T; N] = core::array::from_fn(|k| a[k][k]);
-    let is_above_noise =
-        |k: usize| before[k] >= sum_over_group(groups, k, |i| before[i]) * minimum_group_pivot();
+    let is_above_noise = |k: usize| {
+        before[k] >= sum_over_constraint_group(groups, k, |i| before[i]) * minimum_pivot_ratio_in_group()
+    };
     let sound = (0..N).all(|k| before[k] == T::zero() || is_above_noise(k));
     if !sound {
         return None;

@@ -69,7 +69,7 @@ impl<T: Real, const N: usize> MassFactorisation<T, N> {
     }
 
     /// Returns the magnitudes of the numbers that `L⁻¹ x` is computed from, for given magnitudes of `x`.
-    fn magnitudes_of_operands(&self, mut x: [T; N]) -> [T; N] {
+    fn forward_solve_magnitudes(&self, mut x: [T; N]) -> [T; N] {
         for i in 0..N {
             x[i] = (0..i).fold(x[i], |most, k| most.max(self.lower[i][k].abs() * x[k]));
         }
@@ -112,7 +112,7 @@ pub(super) struct ScaledColumn<T, const N: usize> {
 impl<T: Real, const N: usize> ScaledColumn<T, N> {
     /// Returns the length of a column without its first `first` entries. Also returns the largest ratio of a
     /// remaining entry to the largest number that it was computed from.
-    fn length_of_remainder(&self, first: usize) -> (T, T) {
+    fn length_of_trailing_entries(&self, first: usize) -> (T, T) {
         let all = self.x.iter().zip(&self.size).skip(first);
         let (square, most) = all.fold((T::zero(), T::zero()), |(square, most), (x, size)| {
             let share = if *size > T::zero() { x.abs() / *size } else { T::zero() };
@@ -121,7 +121,7 @@ impl<T: Real, const N: usize> ScaledColumn<T, N> {
         (square.sqrt(), most)
     }
 
-    fn reflect_columns(&mut self, normal: &[T; N]) {
+    fn apply_householder_reflection(&mut self, normal: &[T; N]) {
         let part = dot(normal, &self.x);
         let all = normal.iter().zip(&self.size);
         let largest = all.fold(T::zero(), |most, (n, size)| most.max(n.abs() * *size));
@@ -161,7 +161,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
             let group = each.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
             group.flat_map(|(row, _)| row).fold(T::zero(), |most, x| most.max(x.abs()))
         };
-        let row_magnitude = |k: usize, i: usize| {
+        let largest_row_entry_of_group = |k: usize, i: usize| {
             let group = rows.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
             group.fold(T::zero(), |most, (row, _)| most.max(entry_or_zero(row, i).abs()))
         };
@@ -173,7 +173,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
             for (i, ((x, size), bound)) in row.iter_mut().zip(&mut sizes).zip(&bound).enumerate() {
                 // Zeros are exact, unless the corresponding entries of the other components are also
                 // negligible.
-                let most = row_magnitude(k, i);
+                let most = largest_row_entry_of_group(k, i);
                 let alike = most <= *bound * rounding_threshold() || most > *bound * epsilon::<T>().sqrt();
                 if alike && x.abs() <= *bound * rounding_threshold() {
                     (*x, *size) = (T::zero(), T::zero());
@@ -182,7 +182,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
             let half = metric.solve_half(row);
             let length = norm(&half);
             let unit = if length > T::zero() { T::one() / length } else { T::zero() };
-            let size = metric.magnitudes_of_operands(sizes).map(|x| x * unit);
+            let size = metric.forward_solve_magnitudes(sizes).map(|x| x * unit);
             ScaledColumn { x: half.map(|x| x * unit), size, length, step: None }
         });
         let order = core::array::from_fn(|k| k);
@@ -200,7 +200,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
         while self.rank < most.min(NV) {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
-                let (length, share) = column.length_of_remainder(self.rank);
+                let (length, share) = column.length_of_trailing_entries(self.rank);
                 // Of columns with equal length up to rounding errors, the first is used, so that the choice
                 // does not depend on rounding.
                 if length > best.1 * constant(1.01) && share > least {
@@ -210,12 +210,12 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
             let Some(column) = best.0.and_then(|k| self.columns.get_mut(k)) else { break };
             column.step = Some(self.rank);
             let x = column.x;
-            self.add_direction(x);
+            self.add_basis_direction(x);
         }
     }
 
     /// Adds a direction to the basis: the component of `x` outside the basis, in transformed coordinates.
-    fn add_direction(&mut self, mut x: [T; NV]) {
+    fn add_basis_direction(&mut self, mut x: [T; NV]) {
         let first = self.rank;
         let mut most = (first, T::zero());
         for (k, x) in x.iter().enumerate().skip(first) {
@@ -223,7 +223,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
                 most = (k, x.abs());
             }
         }
-        self.exchange_columns(first, most.0);
+        self.exchange_rows_of_columns(first, most.0);
         exchange_entries(&mut x, first, most.0);
         x.iter_mut().take(first).for_each(|x| *x = T::zero());
         let (length, own) = (norm(&x), entry_or_zero(&x, first));
@@ -232,7 +232,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
         if let Some(n) = normal.get_mut(first) {
             *n += if own < T::zero() { -length * scale } else { length * scale };
         }
-        self.columns.iter_mut().for_each(|column| column.reflect_columns(&normal));
+        self.columns.iter_mut().for_each(|column| column.apply_householder_reflection(&normal));
         if let Some(slot) = self.normals.get_mut(first) {
             *slot = normal;
         }
@@ -240,7 +240,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
     }
 
     /// Exchanges two rows of all columns and normals; both are rows that no basis vector occupies yet.
-    fn exchange_columns(&mut self, i: usize, j: usize) {
+    fn exchange_rows_of_columns(&mut self, i: usize, j: usize) {
         exchange_entries(&mut self.order, i, j);
         self.normals.iter_mut().for_each(|normal| exchange_entries(normal, i, j));
         for column in &mut self.columns {
@@ -274,7 +274,7 @@ impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
     }
 
     /// Returns the index of the column that joined the basis at a step, and the column.
-    pub fn pivot_column(&self, step: usize) -> Option<(usize, &ScaledColumn<T, NV>)> {
+    pub fn column_of_basis_step(&self, step: usize) -> Option<(usize, &ScaledColumn<T, NV>)> {
         self.columns.iter().enumerate().find(|(_, column)| column.step == Some(step))
     }
 }

@@ -1,8 +1,10 @@
 //! Stabilization of constraints by feedback instead of projection.
 
-use super::differentiable::{column_or_zeros, matrix_of_columns, multipliers_of_forces};
+use super::differentiable::{
+    column_or_zeros, matrix_from_column_function, multipliers_from_constraint_forces,
+};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
-use crate::derivatives::{ByMotion, Derivatives, under_inputs};
+use crate::derivatives::{ByMotion, Derivatives, convert_to_input_derivatives};
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};
 use crate::private::constant;
@@ -65,13 +67,20 @@ impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> 
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        self.mechanism.constraint_correction(t, q, &stabilized_gap(self.mechanism, self.rate, t, q, v))
+        self.mechanism.constraint_correction(t, q, &stabilization_terms(self.mechanism, self.rate, t, q, v))
     }
 }
 
 /// Returns the stabilisation term `2 α φ̇ + α² φ` of each constraint, with decay rate `α` and residual `φ`.
 /// Velocity constraints have only the first term.
-fn stabilized_gap<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn stabilization_terms<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     rate: M::Scalar,
     t: M::Scalar,
@@ -90,7 +99,7 @@ where
 /// Returns the accelerations for the forces `tau` and violations that decay at `rate`, with their
 /// derivatives. With these accelerations and multipliers, `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)` and `J δv̇
 /// = −∂(J a + b + 2 α φ̇ + α² φ)`.
-fn stabilized_first_order<
+fn stabilized_motion_derivatives<
     M,
     const NQ: usize,
     const NV: usize,
@@ -107,10 +116,12 @@ fn stabilized_first_order<
 where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
 {
-    let correction = m.constraint_correction(t, q, &stabilized_gap(m, rate, t, q, v));
+    let correction = m.constraint_correction(t, q, &stabilization_terms(m, rate, t, q, v));
     let (a, lambda) = m.constrained_dynamics(t, q, v, tau);
-    let (a, lambda) =
-        (a + correction, lambda + multipliers_of_forces(m, t, q, &(m.mass_matrix(t, q) * correction)));
+    let (a, lambda) = (
+        a + correction,
+        lambda + multipliers_from_constraint_forces(m, t, q, &(m.mass_matrix(t, q) * correction)),
+    );
     let parts = m.equation_derivatives(t, q, v, &a, &lambda);
     let gap_by_v = m.constraint_jacobian(t, q) * (rate * constant(2.0));
     let mut gap_by_q = parts.rates_by_q * (rate * constant(2.0));
@@ -119,7 +130,7 @@ where
     }
     let constraint_response_columns =
         |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
-            matrix_of_columns(|j| {
+            matrix_from_column_function(|j| {
                 m.constraint_response(t, q, &-column_or_zeros(forces, j), &column_or_zeros(gaps, j))
             })
         };
@@ -147,8 +158,8 @@ where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
 {
     let tau = m.generalized_forces(t, q, v, u);
-    let (_, by_force) = stabilized_first_order(m, rate, t, (q, v), &tau);
-    Some(under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
+    let (_, by_force) = stabilized_motion_derivatives(m, rate, t, (q, v), &tau);
+    Some(convert_to_input_derivatives(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
@@ -263,7 +274,7 @@ where
         v: &SVector<M::Scalar, NV>,
         tau: &SVector<M::Scalar, NV>,
     ) -> ByMotion<M::Scalar, NV, NV> {
-        stabilized_first_order(self.mechanism, self.rate, t, (q, v), tau).1
+        stabilized_motion_derivatives(self.mechanism, self.rate, t, (q, v), tau).1
     }
 
     fn forward_dynamics_derivatives_into(
@@ -276,7 +287,7 @@ where
         by_v: &mut SMatrix<M::Scalar, NV, NV>,
         by_tau: &mut SMatrix<M::Scalar, NV, NV>,
     ) -> SVector<M::Scalar, NV> {
-        let (acceleration, found) = stabilized_first_order(self.mechanism, self.rate, t, (q, v), tau);
+        let (acceleration, found) = stabilized_motion_derivatives(self.mechanism, self.rate, t, (q, v), tau);
         (*by_q, *by_v, *by_tau) = found;
         acceleration
     }

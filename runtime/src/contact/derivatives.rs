@@ -1,6 +1,6 @@
 //! Derivatives of the motion with respect to state and forces while given contacts stay closed.
 
-use super::held::held_with_gains;
+use super::held::accelerations_and_responses;
 use super::layout::ContactLayout;
 use super::problem::{ContactProblem, entry_or_zero};
 use super::{Contacts, Rows, Touch};
@@ -8,7 +8,7 @@ use crate::blocks::{
     add_multiple, add_product, add_product_of_some, product, transpose_into, transposed, zeros,
 };
 use crate::constraint::ConstraintError;
-use crate::derivatives::{ByMotion, LinearMotion, under_inputs};
+use crate::derivatives::{ByMotion, LinearMotion, convert_to_input_derivatives};
 use crate::{Derivatives, Real};
 use core::ops::Range;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
@@ -190,7 +190,7 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    held_derivatives_with_gains(mechanism, t, (q, v), tau, touches, [T::zero(); 2])
+    contact_derivatives_with_gains(mechanism, t, (q, v), tau, touches, [T::zero(); 2])
 }
 
 /// Computes [`Contacts::held_derivatives`] for mechanisms that implement [`ContactDerivatives`].
@@ -215,14 +215,14 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let tau = mechanism.generalized_forces(t, q, v, u);
-    let found = held_derivatives_with_gains(mechanism, t, (q, v), &tau, touches, gains).ok()?;
+    let found = contact_derivatives_with_gains(mechanism, t, (q, v), &tau, touches, gains).ok()?;
     let by_force = (found.by_q, found.by_v, found.by_tau);
-    Some(under_inputs(by_force, &mechanism.generalized_forces_derivatives(t, q, v, u)))
+    Some(convert_to_input_derivatives(by_force, &mechanism.generalized_forces_derivatives(t, q, v, u)))
 }
 
 /// Returns [`forward_dynamics_derivatives`] with gains by which gaps and contact velocities of enforced
 /// contacts decay.
-pub(super) fn held_derivatives_with_gains<
+pub(super) fn contact_derivatives_with_gains<
     M,
     T,
     const NQ: usize,
@@ -243,13 +243,13 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let mut found = HeldDerivatives::zeros();
-    write_held_derivatives(mechanism, t, (q, v), tau, touches, gains, &mut found)?;
+    write_bilateral_derivatives(mechanism, t, (q, v), tau, touches, gains, &mut found)?;
     Ok(found)
 }
 
 /// Writes accelerations, contact forces and their derivatives into `result`, overwriting any content.
 #[allow(clippy::too_many_arguments, reason = "a state, what acts, and what is told of contacts")]
-pub(super) fn write_held_derivatives<
+pub(super) fn write_bilateral_derivatives<
     M,
     T,
     const NQ: usize,
@@ -271,7 +271,7 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let along = mechanism.contact_rates(t, q, v);
-    let (held, responses) = held_with_gains(mechanism, t, (q, v), tau, touches, (&along, gains))?;
+    let (held, responses) = accelerations_and_responses(mechanism, t, (q, v), tau, touches, (&along, gains))?;
     let jacobian = mechanism.contact_jacobian(t, q);
     let acting = tau + jacobian.tr_mul(&held.forces);
     (found.a, found.forces) = (held.a, held.forces);
@@ -305,7 +305,7 @@ where
     add_product(&mut found.by_q, &found.by_tau, &parts.forces_by_q);
     let closed = touches.map(|touch| touch != Touch::Open);
     let mut problem = ContactProblem::new(layout, &laws, &closed, &SVector::zeros());
-    problem.copy_weights(&responses.rates);
+    problem.copy_closed_contact_weights(&responses.rates);
     // How the forces answer to the rates, which all of the derivatives share; those of contacts that are open
     // do nothing.
     let answer = problem.force_derivatives(touches, &along);
@@ -393,13 +393,14 @@ fn write_friction_derivative<T: Real, const NV: usize, const NR: usize>(
         return;
     }
     for j in 0..NV {
-        let change_entry = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
+        let entry_of_changes = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
         let faster =
-            tangents.clone().fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * change_entry(i))
+            tangents.clone().fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * entry_of_changes(i))
                 / speed;
         for i in tangents.clone() {
             if let Some(turned) = turned.get_mut((i, j)) {
-                *turned = -(change_entry(i) - entry_or_zero(rates, i) / speed * faster) * (friction / speed);
+                *turned =
+                    -(entry_of_changes(i) - entry_or_zero(rates, i) / speed * faster) * (friction / speed);
             }
         }
     }

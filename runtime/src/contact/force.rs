@@ -3,7 +3,7 @@
 use super::layout::ContactLayout;
 use super::problem::{ContactProblem, entry_or_zero};
 use super::selection::ContactSelection;
-use super::solution::{ActedContacts, compute_impulses};
+use super::solution::{ContactsWithImpulses, compute_closed_contact_impulses};
 use super::stepping::{StepStart, closed_contacts};
 use super::velocities::ContactVelocities;
 use super::{
@@ -13,7 +13,7 @@ use super::{
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::integrate::{
-    ContinuousInputs, Dynamics, Error, State, System, check_positive, enforce_closed_contacts,
+    ContinuousInputs, Dynamics, Error, State, System, acceleration_from_closed_contacts, check_positive,
     project_end_of_step, rk4_step_with_contacts,
 };
 use crate::private::{constant, epsilon, positive_part, to_f64};
@@ -46,27 +46,28 @@ where
     let mut system = System::new(mechanism, held);
     let start = State { t, q: *q, v: *v };
     let at_start = system.acceleration(t, q, v);
-    let (rate, impulses) = enforce_closed_contacts(&mut system, &start, &at_start, &Impulses::none(), h)
-        .map_err(constraint_error)?;
+    let (rate, impulses) =
+        acceleration_from_closed_contacts(&mut system, &start, &at_start, &Impulses::none(), h)
+            .map_err(constraint_error)?;
     let (free, given) = rk4_step_with_contacts(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = project_end_of_step(&system, free, t)?;
     let came = StepStart::from_state((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
-    let velocities = ContactVelocities::in_configuration(mechanism, t + h, &free.q);
+    let velocities = ContactVelocities::unevaluated_in_configuration(mechanism, t + h, &free.q);
     let closed = closed_contacts(mechanism, t + h, (&free.q, &end), Some((&came, &velocities)))
         .map_err(constraint_error)?;
     let Some(closed) = closed else { return Ok(SVector::zeros()) };
     let selection =
-        ContactSelection::<NK, NR>::select_closed(ContactLayout::of_mechanism(mechanism), &closed);
-    let mut acted = ActedContacts::without_impulses(selection, true);
-    let carried = came.velocity_at_end(mechanism, t + h, &free.q);
+        ContactSelection::<NK, NR>::select_closed_contacts(ContactLayout::of_mechanism(mechanism), &closed);
+    let mut acted = ContactsWithImpulses::contacts_without_impulses(selection, true);
+    let carried = came.transport_velocity_to_end(mechanism, t + h, &free.q);
     let velocities_before = || {
-        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(
+        ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
             &selection,
             velocities.rates_of_velocity(&carried),
         )
     };
-    let solved = compute_impulses(
+    let solved = compute_closed_contact_impulses(
         mechanism,
         (t + h, &velocities),
         (&free.q, &end),
@@ -130,15 +131,18 @@ where
         problem.set_static_friction(&laws, |k| {
             phase::norm_of_range(&slip, layout.tangent_rows(k)) <= touching_distance()
         });
-        problem.copy_weights(&responses.rates);
-        let found = problem.solve_sticking().map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?;
-        Ok((problem.spread_to_mechanism(&found), problem.contact_modes(&found).0))
+        problem.copy_closed_contact_weights(&responses.rates);
+        let found = problem
+            .solve_with_static_friction()
+            .map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?;
+        Ok((problem.impulses_at_mechanism_rows(&found), problem.contact_modes(&found).0))
     };
     // In this short time the contact velocities change by the accelerations of sticking contacts, if the
     // normal forces press and friction can hold the contacts.
     let sticking = closed.map(|is_closed| if is_closed { Touch::Sticks } else { Touch::Open });
-    if phase::stopped_contact(&slip, &sticking, &laws, layout).is_none()
-        && let Some((_, impulses)) = light::sticking_change(mechanism, t, q, (&sticking, &laws), &-free)
+    if phase::sticking_contact_with_slip(&slip, &sticking, &laws, layout).is_none()
+        && let Some((_, impulses)) =
+            light::velocity_change_for_sticking(mechanism, t, q, (&sticking, &laws), &-free)
     {
         let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
             let (_, first) = layout.bounding_contact(k);
@@ -152,14 +156,14 @@ where
     }
     let (impulses, touches) = solve_contacts(&free)?;
     let forces = impulses / h;
-    if phase::stopped_contact(&slip, &touches, &laws, layout).is_none() {
+    if phase::sticking_contact_with_slip(&slip, &touches, &laws, layout).is_none() {
         return Ok(forces);
     }
     // Friction stops slip within this short time: it may be strong, or there is no finite force.
     let mut accelerations = mechanism.contact_bias(t, q, v) + moved;
     phase::sustain_slip(&mut accelerations, &slip, layout);
     let (lasting, touches) = solve_contacts(&accelerations)?;
-    match phase::stopped_contact(&slip, &touches, &laws, layout) {
+    match phase::sticking_contact_with_slip(&slip, &touches, &laws, layout) {
         Some(contact) => Err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(contact)),
         None if forces.amax() <= lasting.amax() * constant(2.0) => Ok(forces),
         None => Ok(lasting),

@@ -3,7 +3,7 @@
 
 use super::coefficients::checked_contact_laws;
 use super::layout::ContactLayout;
-use super::light::sticking_change;
+use super::light::velocity_change_for_sticking;
 use super::problem::{ContactProblem, entry_or_zero, set_entry};
 use super::{Contacts, Responses, Touch, unsolved_contact_error};
 use crate::Real;
@@ -84,14 +84,15 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let rates = mechanism.contact_rates(t, q, v);
-    held_with_gains(mechanism, t, (q, v), tau, touches, (&rates, [T::zero(); 2])).map(|(held, _)| held)
+    accelerations_and_responses(mechanism, t, (q, v), tau, touches, (&rates, [T::zero(); 2]))
+        .map(|(held, _)| held)
 }
 
 /// Computes [`forward_dynamics`] for slip velocities `along`, which friction opposes, and also returns the
 /// responses to impulses if any contact is closed. Gaps `g` and contact velocities `u` of enforced contacts
 /// decay with the gains `kₚ`, 1/s², and `kᵥ`, 1/s: `G v̇ + b = −kᵥ u − kₚ g`.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-pub(super) fn held_with_gains<
+pub(super) fn accelerations_and_responses<
     M,
     T,
     const NQ: usize,
@@ -135,14 +136,16 @@ where
     let responses = mechanism.contact_responses(t, q, &closed);
     let laws = checked_contact_laws(mechanism)?;
     let mut problem = ContactProblem::new(layout, &laws, &closed, &free);
-    problem.copy_weights(&responses.rates);
-    let mut loses_digits = false;
-    let found = problem.forces_in_modes(touches, along, &mut loses_digits);
-    if loses_digits && let Some((change, forces)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
+    problem.copy_closed_contact_weights(&responses.rates);
+    let mut has_ill_conditioned_factors = false;
+    let found = problem.forces_in_modes(touches, along, &mut has_ill_conditioned_factors);
+    if has_ill_conditioned_factors
+        && let Some((change, forces)) =
+            velocity_change_for_sticking(mechanism, t, q, (touches, &laws), &-free)
     {
         return Ok((Held { a: a + change, forces }, Some(responses)));
     }
-    let forces =
-        problem.spread_to_mechanism(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
+    let forces = problem
+        .impulses_at_mechanism_rows(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
     Ok((Held { a: a + responses.velocities * forces, forces }, Some(responses)))
 }

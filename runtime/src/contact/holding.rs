@@ -1,9 +1,9 @@
 //! Mechanism whose contact modes are prescribed.
 
 use super::derivatives::{
-    ContactDerivatives, HeldDerivatives, held_derivatives_with_gains, write_held_derivatives,
+    ContactDerivatives, HeldDerivatives, contact_derivatives_with_gains, write_bilateral_derivatives,
 };
-use super::held::{Held, held_with_gains};
+use super::held::{Held, accelerations_and_responses};
 use super::{Assumed, Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
 use crate::derivatives::{ByMotion, Derivatives, unknown_matrix};
@@ -121,7 +121,7 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let rates = self.mechanism.contact_rates(t, q, v);
-        held_with_gains(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains))
+        accelerations_and_responses(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains))
             .map(|(held, _)| held)
     }
 
@@ -143,7 +143,7 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     where
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        held_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
+        contact_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
     }
 
     /// Writes the results of [`held_derivatives`](Self::held_derivatives) into existing matrices, which
@@ -163,7 +163,7 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     where
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        write_held_derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains, into)
+        write_bilateral_derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains, into)
     }
 }
 
@@ -198,7 +198,7 @@ where
         tau: &SVector<T, NV>,
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let rates = self.mechanism.contact_rates(t, q, v);
-        held_with_gains(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains))
+        accelerations_and_responses(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains))
             .map(|(held, _)| held.a)
     }
 }
@@ -246,8 +246,14 @@ where
         let still = SVector::zeros();
         let tau = self.mechanism.bias_forces(t, q, &still) + p;
         let along = self.mechanism.contact_rates(t, q, v);
-        let found =
-            held_with_gains(self.mechanism, t, (q, &still), &tau, &self.touches, (&along, [T::zero(); 2]));
+        let found = accelerations_and_responses(
+            self.mechanism,
+            t,
+            (q, &still),
+            &tau,
+            &self.touches,
+            (&along, [T::zero(); 2]),
+        );
         found.map_or_else(|_| SVector::repeat(constant(f64::NAN)), |(held, _)| held.a)
     }
 
@@ -327,7 +333,7 @@ where
         v: &SVector<T, NV>,
         tau: &SVector<T, NV>,
     ) -> ByMotion<T, NV, NV> {
-        match held_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
+        match contact_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => (found.by_q, found.by_v, found.by_tau),
             Err(_) => (unknown_matrix(), unknown_matrix(), unknown_matrix()),
         }
@@ -343,7 +349,7 @@ where
         by_v: &mut SMatrix<T, NV, NV>,
         by_tau: &mut SMatrix<T, NV, NV>,
     ) -> SVector<T, NV> {
-        match held_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
+        match contact_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => {
                 (*by_q, *by_v, *by_tau) = (found.by_q, found.by_v, found.by_tau);
                 found.a

@@ -51,25 +51,25 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
     }
 
     /// Returns the impulses `all` of selected contacts.
-    pub(super) fn record<const CK: usize, const CR: usize>(
+    pub(super) fn impulses_of_selected_contacts<const CK: usize, const CR: usize>(
         selection: &ContactSelection<CK, CR>,
         all: &SVector<T, CR>,
     ) -> Self {
         let (layout, mut recorded) = (selection.contact_layout(), Self::none());
-        let stored_impulses = |k: usize, i: usize| {
+        let stored_impulse_or_zero = |k: usize, i: usize| {
             let rows = layout.rows(k);
             if i < rows.count { entry_or_zero(all, rows.first + i) } else { T::zero() }
         };
-        let pressed =
-            (0..selection.contact_count()).filter(|k| (0..3).any(|i| stored_impulses(*k, i) != T::zero()));
+        let pressed = (0..selection.contact_count())
+            .filter(|k| (0..3).any(|i| stored_impulse_or_zero(*k, i) != T::zero()));
         let places = (0..CONTACTS).flat_map(|list| (0..NV).map(move |place| (list, place)));
         for (k, (list, place)) in pressed.zip(places) {
             let number: u32 = selection.index_of_contact(k).try_into().unwrap_or(u32::MAX);
             let values = [
                 constant(f64::from(number) + 1.0),
-                stored_impulses(k, 0),
-                stored_impulses(k, 1),
-                stored_impulses(k, 2),
+                stored_impulse_or_zero(k, 0),
+                stored_impulse_or_zero(k, 1),
+                stored_impulse_or_zero(k, 2),
             ];
             let lists = recorded.0.get_mut(list).into_iter().flatten();
             for (list, value) in lists.zip(values) {
@@ -83,7 +83,7 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
 
     /// Returns the impulses at the rows of selected contacts; `None` if no impulse of these contacts is
     /// stored.
-    pub(super) fn recall<const CK: usize, const CR: usize>(
+    pub(super) fn recall_impulses<const CK: usize, const CR: usize>(
         &self,
         selection: &ContactSelection<CK, CR>,
     ) -> Option<SVector<T, CR>> {

@@ -3,7 +3,7 @@
 use super::coefficients::checked_contact_laws;
 use super::derivatives::ContactDerivatives;
 use super::layout::ContactLayout;
-use super::light::sticking_change;
+use super::light::velocity_change_for_sticking;
 use super::problem::ContactProblem;
 use super::{Contacts, Solved, Touch, unsolved_contact_error};
 use crate::Real;
@@ -60,12 +60,12 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    landed_with_responses(mechanism, t, (q, v), touches).map(|(solved, ..)| solved)
+    touchdown_with_responses(mechanism, t, (q, v), touches).map(|(solved, ..)| solved)
 }
 
 /// Computes the impact of [`land`], and also returns the factorised equations and the responses to impulses.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-fn landed_with_responses<
+fn touchdown_with_responses<
     M,
     T,
     const NQ: usize,
@@ -92,16 +92,17 @@ where
     let laws = checked_contact_laws(mechanism)?;
     let mut problem = ContactProblem::new(layout, &laws, &closed, &free);
     let responses = mechanism.contact_responses(t, q, &closed);
-    problem.copy_weights(&responses.rates);
-    let mut loses_digits = false;
-    let found = problem.forces_in_modes(touches, &SVector::zeros(), &mut loses_digits);
-    if loses_digits
-        && let Some((change, impulses)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
+    problem.copy_closed_contact_weights(&responses.rates);
+    let mut has_ill_conditioned_factors = false;
+    let found = problem.forces_in_modes(touches, &SVector::zeros(), &mut has_ill_conditioned_factors);
+    if has_ill_conditioned_factors
+        && let Some((change, impulses)) =
+            velocity_change_for_sticking(mechanism, t, q, (touches, &laws), &-free)
     {
         return Ok((Solved { v: v + change, impulses }, problem, responses.velocities));
     }
-    let impulses =
-        problem.spread_to_mechanism(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
+    let impulses = problem
+        .impulses_at_mechanism_rows(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
     let v = v + responses.velocities * impulses;
     Ok((Solved { v, impulses }, problem, responses.velocities))
 }
@@ -162,7 +163,7 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let (Solved { v: after, impulses }, problem, velocities) =
-        landed_with_responses(mechanism, t, (q, v), touches)?;
+        touchdown_with_responses(mechanism, t, (q, v), touches)?;
     let still = SVector::zeros();
     let jacobian = mechanism.contact_jacobian(t, q);
     let parts = mechanism.contact_derivatives(t, q, &after, &still, &impulses);

@@ -40,7 +40,7 @@ impl<const NK: usize> ContactLayout<NK> {
     }
 
     /// Whether contact `k` has a gap function; friction moments have none.
-    pub(super) fn is_gap(&self, k: usize) -> bool {
+    pub(super) fn has_gap_function(&self, k: usize) -> bool {
         self.bounding_contact(k).0 == k
     }
 
@@ -53,7 +53,7 @@ impl<const NK: usize> ContactLayout<NK> {
     /// moment.
     pub(super) fn tangent_rows(&self, k: usize) -> Range<usize> {
         let Rows { first, count } = self.rows(k);
-        first + usize::from(self.is_gap(k))..first + count
+        first + usize::from(self.has_gap_function(k))..first + count
     }
 
     /// Returns all contacts that have a gap function, with the rows of their gap velocities.
@@ -64,7 +64,7 @@ impl<const NK: usize> ContactLayout<NK> {
 }
 
 /// Returns the table in which each contact bounds its own friction.
-pub(super) const fn contacts_pressed_by_themselves<const NK: usize>() -> [usize; NK] {
+pub(super) const fn self_bounding_contact_table<const NK: usize>() -> [usize; NK] {
     let mut all = [0; NK];
     let mut k = 0;
     while k < NK {

@@ -3,7 +3,7 @@
 use super::layout::ContactLayout;
 use super::{Contacts, Law, Touch};
 use crate::Real;
-use crate::constraint::change_rates;
+use crate::constraint::velocity_change_and_impulses;
 use crate::private::constant;
 use nalgebra::SVector;
 
@@ -19,7 +19,7 @@ const GRADED: f64 = 1e4;
 /// rounding. They are factorised in the metric of the kinetic energy instead, as rows of constraints are.
 #[cold]
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-pub(super) fn sticking_change<
+pub(super) fn velocity_change_for_sticking<
     M,
     T,
     const NQ: usize,
@@ -62,5 +62,5 @@ where
             *held.get_mut(i)? = *touch != Touch::Open && (!tangents.contains(&i) || law.friction > T::zero());
         }
     }
-    change_rates(&mass, &mechanism.contact_jacobian(t, q), (&held, &groups), changes)
+    velocity_change_and_impulses(&mass, &mechanism.contact_jacobian(t, q), (&held, &groups), changes)
 }

@@ -1,11 +1,11 @@
 //! Observers of the impulses of a step, such as its derivatives.
 
-use super::solution::ActedContacts;
+use super::solution::ContactsWithImpulses;
 use crate::Real;
 use nalgebra::SVector;
 
 /// Displacement at the end of a step that closes gaps and penetrations of contacts.
-pub(super) struct GapClosing<T, const CK: usize, const CR: usize> {
+pub(super) struct GapClosingDisplacement<T, const CK: usize, const CR: usize> {
     /// Gaps of the selected contacts before the displacement.
     pub(super) gaps: SVector<T, CK>,
     /// Largest gap that is closed.
@@ -23,20 +23,20 @@ pub(super) trait ImpulseObserver<T: Real, const NV: usize> {
     /// a step; `None` for impulses of zero duration. It is not called if no contact is loaded.
     fn observe<const CK: usize, const CR: usize>(
         &mut self,
-        acted: &ActedContacts<T, NV, CK, CR>,
-        closing: Option<&GapClosing<T, CK, CR>>,
+        acted: &ContactsWithImpulses<T, NV, CK, CR>,
+        closing: Option<&GapClosingDisplacement<T, CK, CR>>,
     );
 }
 
 /// Observer of steps without derivatives.
-pub(super) struct Unobserved;
+pub(super) struct NoImpulseObserver;
 
-impl<T: Real, const NV: usize> ImpulseObserver<T, NV> for Unobserved {
+impl<T: Real, const NV: usize> ImpulseObserver<T, NV> for NoImpulseObserver {
     #[inline(always)]
     fn observe<const CK: usize, const CR: usize>(
         &mut self,
-        _acted: &ActedContacts<T, NV, CK, CR>,
-        _closing: Option<&GapClosing<T, CK, CR>>,
+        _acted: &ContactsWithImpulses<T, NV, CK, CR>,
+        _closing: Option<&GapClosingDisplacement<T, CK, CR>>,
     ) {
     }
 }

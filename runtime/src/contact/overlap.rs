@@ -136,9 +136,9 @@ where
             set_entry(&mut free, first, entry_or_zero(&gaps, k) - entry_or_zero(&moved, first))
         });
         let mut problem = ContactProblem::new(layout, &smooth, &closed, &free);
-        problem.copy_weights(&responses.rates);
+        problem.copy_closed_contact_weights(&responses.rates);
         let found = problem.solve_impulses().map_err(|_| left)?;
-        let all = problem.spread_to_mechanism(&found);
+        let all = problem.impulses_at_mechanism_rows(&found);
         q = mechanism.integrate(&q, &(responses.velocities * (all - pushes)));
         pushes = all;
         if mechanism.features().constrained {

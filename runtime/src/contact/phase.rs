@@ -1,7 +1,7 @@
 //! Contact modes between two events, the motion in these modes, and the distance to the next event.
 
 use super::coefficients::checked_contact_laws;
-use super::held::held_with_gains;
+use super::held::accelerations_and_responses;
 use super::layout::ContactLayout;
 use super::problem::{ContactProblem, entry_or_zero, set_entry};
 use super::total::TotalArray;
@@ -25,18 +25,18 @@ pub(crate) struct ContactPhase<T, const NK: usize, const NR: usize> {
     redundant: bool,
     /// Flight of each separated contact that is so close that the sign of its gap cannot show the end of the
     /// flight.
-    flights: [Option<Flight<T>>; NK],
+    flights: [Option<SeparatedGapMotion<T>>; NK],
 }
 
 /// Motion of a separated contact, with the gap, its velocity and its acceleration at the start.
 #[derive(Clone, Copy, Debug)]
-struct Flight<T> {
+struct SeparatedGapMotion<T> {
     gap: T,
     rate: T,
     acceleration: T,
 }
 
-impl<T: Real> Flight<T> {
+impl<T: Real> SeparatedGapMotion<T> {
     /// Returns the time until the gap is zero if the acceleration stays constant.
     fn time_until_touchdown(&self) -> Option<T> {
         let two = constant::<T>(2.0);
@@ -59,7 +59,7 @@ impl<T: Real> Flight<T> {
 
 /// Returns the contact velocity, m/s, below which resting surfaces are considered at rest: the rounding error
 /// of the given contact velocities.
-fn rest_velocity<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
+fn resting_velocity_threshold<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
     let most = rates.iter().fold(T::one(), |most, rate| most.max(rate.abs()));
     most * epsilon::<T>() * constant(512.0)
 }
@@ -72,7 +72,7 @@ pub(super) fn sustain_slip<T: Real, const NK: usize, const NR: usize>(
     rates: &SVector<T, NR>,
     layout: ContactLayout<NK>,
 ) {
-    let still = rest_velocity(rates) * constant(2.0);
+    let still = resting_velocity_threshold(rates) * constant(2.0);
     let most = free.iter().fold(T::zero(), |most, a| most.max(a.abs()));
     for tangents in (0..NK).map(|k| layout.tangent_rows(k)) {
         let slip = norm_of_range(rates, tangents.clone());
@@ -87,7 +87,7 @@ pub(super) fn sustain_slip<T: Real, const NK: usize, const NR: usize>(
 
 /// Returns the first contact that sticks by friction in the modes `touches`, although the contact velocities
 /// `rates` contain slip.
-pub(super) fn stopped_contact<T: Real, const NK: usize, const NR: usize>(
+pub(super) fn sticking_contact_with_slip<T: Real, const NK: usize, const NR: usize>(
     rates: &SVector<T, NR>,
     touches: &[Touch; NK],
     laws: &[Law<T>; NK],
@@ -106,13 +106,13 @@ pub(super) fn norm_of_range<T: Real, const N: usize>(vector: &SVector<T, N>, par
 
 /// Returns the gap, m, up to which surfaces count as resting on each other: rounding and integration errors
 /// of one step.
-fn resting_gap<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
+fn resting_gap_threshold<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
     let size = q.iter().fold(T::one(), |size, q| size.max(q.abs()));
     size * epsilon::<T>().powf(constant(0.75))
 }
 
 /// Returns the rounding error of gaps, m.
-fn gap_rounding<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
+fn gap_rounding_error<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
     let size = q.iter().fold(T::one(), |size, q| size.max(q.abs()));
     size * epsilon::<T>() * constant(16.0)
 }
@@ -138,7 +138,7 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
-    let (touching, still) = (gap_rounding(q), rest_velocity(&rates));
+    let (touching, still) = (gap_rounding_error(q), resting_velocity_threshold(&rates));
     let strikes = ContactLayout::of_mechanism(mechanism)
         .gap_contacts()
         .any(|(k, first)| entry_or_zero(&gaps, k) <= touching && entry_or_zero(&rates, first) < -still);
@@ -152,7 +152,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
     /// # Errors
     ///
     /// [`ConstraintError::Contact`] where no forces fulfil the laws of contacts.
-    pub(crate) fn of_state<M, const NQ: usize, const NV: usize, const NU: usize>(
+    pub(crate) fn contact_phase_of_state<M, const NQ: usize, const NV: usize, const NU: usize>(
         mechanism: &M,
         t: T,
         q: &SVector<T, NQ>,
@@ -163,7 +163,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
-        let (still, resting) = (rest_velocity(&rates), resting_gap(q));
+        let (still, resting) = (resting_velocity_threshold(&rates), resting_gap_threshold(q));
         let layout = ContactLayout::of_mechanism(mechanism);
         let mut closed = [false; NK];
         for (k, (closed, gap)) in closed.iter_mut().zip(&gaps).enumerate() {
@@ -191,24 +191,25 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
             problem.set_static_friction(&laws, |k| {
                 norm_of_range(&rates, layout.tangent_rows(k)) <= still * constant(2.0)
             });
-            problem.copy_weights(&responses.rates);
-            let forces = problem.solve_sticking().map_err(|k| ConstraintError::Contact {
+            problem.copy_closed_contact_weights(&responses.rates);
+            let forces = problem.solve_with_static_friction().map_err(|k| ConstraintError::Contact {
                 constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
             })?;
             let (touches, along) = problem.contact_modes(&forces);
-            if let Some(k) = stopped_contact(&rates, &touches, &mechanism.contact_laws(), layout) {
+            if let Some(k) = sticking_contact_with_slip(&rates, &touches, &mechanism.contact_laws(), layout) {
                 // No forces let it slip on (Painlevé's paradox): it stops at once.
                 return Err(ConstraintError::Contact {
                     constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
                 });
             }
-            phase = Self { touches, along, redundant: problem.is_redundant(&touches), ..open };
-            a += responses.velocities * problem.spread_to_mechanism(&forces);
+            phase =
+                Self { touches, along, redundant: problem.has_nonunique_contact_forces(&touches), ..open };
+            a += responses.velocities * problem.impulses_at_mechanism_rows(&forces);
         }
         let bent = mechanism.contact_rates(t, q, &a) - driven + bias;
-        let touching = gap_rounding(q);
+        let touching = gap_rounding_error(q);
         let states = gaps.iter().zip(closed).zip(phase.flights.iter_mut()).enumerate();
-        for (k, ((gap, closed), flight)) in states.filter(|(k, _)| layout.is_gap(*k)) {
+        for (k, ((gap, closed), flight)) in states.filter(|(k, _)| layout.has_gap_function(*k)) {
             let (_, first) = layout.bounding_contact(k);
             let (gap, rate, acceleration) = (*gap, entry_or_zero(&rates, first), entry_or_zero(&bent, first));
             if closed || gap > touching_distance() {
@@ -219,7 +220,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
                 if rate > T::zero() { -rate * rate / (acceleration * constant(2.0)) } else { T::zero() };
             let falls = rate < T::zero() || acceleration < T::zero();
             if falls && gap + rise <= touching_distance() {
-                *flight = Some(Flight { gap, rate, acceleration });
+                *flight = Some(SeparatedGapMotion { gap, rate, acceleration });
             }
         }
         Ok((phase, a))
@@ -227,11 +228,11 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
 
     /// Returns the slip velocities that friction opposes: the actual ones, or the stored slip direction for
     /// contacts that begin to slip or whose slip has reversed within a step.
-    fn opposed_slip(&self, rates: &SVector<T, NR>, layout: ContactLayout<NK>) -> SVector<T, NR> {
+    fn slip_opposed_by_friction(&self, rates: &SVector<T, NR>, layout: ContactLayout<NK>) -> SVector<T, NR> {
         let mut braked = *rates;
         let slips = self.touches.iter().enumerate().filter(|(_, touch)| **touch == Touch::Slips);
         for tangents in slips.map(|(k, _)| layout.tangent_rows(k)) {
-            if self.slip_along_direction(rates, tangents.clone()) <= T::zero() {
+            if self.slip_velocity_along_direction(rates, tangents.clone()) <= T::zero() {
                 tangents.for_each(|i| set_entry(&mut braked, i, entry_or_zero(&self.along, i)));
             }
         }
@@ -239,18 +240,18 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
     }
 
     /// Returns the slip velocity of a contact along its stored slip direction.
-    fn slip_along_direction(&self, rates: &SVector<T, NR>, tangents: Range<usize>) -> T {
+    fn slip_velocity_along_direction(&self, rates: &SVector<T, NR>, tangents: Range<usize>) -> T {
         tangents.fold(T::zero(), |sum, i| sum + entry_or_zero(&self.along, i) * entry_or_zero(rates, i))
     }
 
     /// Whether contacts slide and the contact forces are not unique.
-    pub(crate) fn has_ambiguous_slip(&self) -> bool {
+    pub(crate) fn has_nonunique_sliding_forces(&self) -> bool {
         self.redundant && self.touches.contains(&Touch::Slips)
     }
 
     /// Returns the time until the first of the low flights ends, if accelerations stay constant.
-    pub(crate) fn time_to_landing(&self) -> Option<T> {
-        let landings = self.flights.iter().flatten().filter_map(Flight::time_until_touchdown);
+    pub(crate) fn time_to_touchdown(&self) -> Option<T> {
+        let landings = self.flights.iter().flatten().filter_map(SeparatedGapMotion::time_until_touchdown);
         landings.fold(None, |first, time| Some(first.map_or(time, |first: T| first.min(time))))
     }
 }
@@ -295,8 +296,8 @@ where
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let Self { mechanism, phase } = self;
         let layout = ContactLayout::of_mechanism(*mechanism);
-        let along = phase.opposed_slip(&mechanism.contact_rates(t, q, v), layout);
-        held_with_gains(*mechanism, t, (q, v), tau, &phase.touches, (&along, [T::zero(); 2]))
+        let along = phase.slip_opposed_by_friction(&mechanism.contact_rates(t, q, v), layout);
+        accelerations_and_responses(*mechanism, t, (q, v), tau, &phase.touches, (&along, [T::zero(); 2]))
             .map(|(held, _)| held.a)
     }
 }
@@ -344,7 +345,7 @@ impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
     /// Returns the margin to the first event of the phase: the minimum of gaps of separated contacts, normal
     /// forces, remaining friction of sticking contacts, and slip velocities of sliding contacts. It is
     /// negative past an event.
-    pub(crate) fn margin_to_event<M, const NU: usize, const NK: usize, const NR: usize>(
+    pub(crate) fn smallest_event_function_value<M, const NU: usize, const NK: usize, const NR: usize>(
         &self,
         phased: &PhasedMechanism<'_, M, T, NK, NR>,
     ) -> T
@@ -355,10 +356,11 @@ impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
         let PhasedMechanism { mechanism, phase } = phased;
         let rates = mechanism.contact_rates(t, q, v);
         let layout = ContactLayout::of_mechanism(*mechanism);
-        let along = phase.opposed_slip(&rates, layout);
+        let along = phase.slip_opposed_by_friction(&rates, layout);
         let past = -T::one();
         let along = (&along, [T::zero(); 2]);
-        let Ok((held, _)) = held_with_gains(*mechanism, t, (q, v), tau, &phase.touches, along) else {
+        let Ok((held, _)) = accelerations_and_responses(*mechanism, t, (q, v), tau, &phase.touches, along)
+        else {
             return past;
         };
         let contact_accelerations = || {
@@ -370,7 +372,7 @@ impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
         } else {
             SVector::zeros()
         };
-        let (gaps, still) = (mechanism.contact_gaps(t, q), rest_velocity(&rates));
+        let (gaps, still) = (mechanism.contact_gaps(t, q), resting_velocity_threshold(&rates));
         let rounding = held.forces.iter().fold(T::zero(), |most, f| most.max(f.abs()));
         let rounding = rounding * epsilon::<T>() * constant(64.0);
         let stiction = mechanism.contact_laws().map(|Law { stiction, .. }| stiction);
@@ -382,14 +384,15 @@ impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
             let (rate, normal) = (entry_or_zero(&rates, first), entry_or_zero(&held.forces, first));
             let least = match touch {
                 // Moments of friction close and open with their contact.
-                Touch::Open if !layout.is_gap(k) => T::one(),
+                Touch::Open if !layout.has_gap_function(k) => T::one(),
                 Touch::Open => {
                     let gap =
                         flight.map_or(*gap, |flight| flight.gap_after(s, rate, entry_or_zero(&bent, first)));
                     if gap < T::zero() && rate >= -still { T::one() } else { gap }
                 }
                 Touch::Slips => {
-                    self::rest_velocity(&rates) + phase.slip_along_direction(&rates, tangents.clone())
+                    self::resting_velocity_threshold(&rates)
+                        + phase.slip_velocity_along_direction(&rates, tangents.clone())
                 }
                 Touch::Sticks => T::one(),
             };
@@ -421,7 +424,9 @@ impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let Ok((_, found)) = ContactPhase::of_state(mechanism, self.t, self.q, self.v, self.tau) else {
+        let Ok((_, found)) =
+            ContactPhase::contact_phase_of_state(mechanism, self.t, self.q, self.v, self.tau)
+        else {
             return false;
         };
         let largest_magnitude = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
@@ -431,7 +436,7 @@ impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
 }
 
 /// Returns the configuration and velocity projected onto the closed contacts of a phase.
-pub(crate) fn projected_onto_contacts<
+pub(crate) fn state_projected_onto_contacts<
     M,
     T,
     const NQ: usize,
@@ -456,26 +461,30 @@ where
     }
     let rates = mechanism.contact_rates(t, q, v);
     let layout = ContactLayout::of_mechanism(*mechanism);
-    let stops = rest_velocity(&rates) * constant(2.0);
+    let stops = resting_velocity_threshold(&rates) * constant(2.0);
     let mut laws = mechanism.contact_laws();
     for (k, (law, touch)) in laws.iter_mut().zip(phase.touches).enumerate() {
-        if touch == Touch::Slips && phase.slip_along_direction(&rates, layout.tangent_rows(k)) > stops {
+        if touch == Touch::Slips
+            && phase.slip_velocity_along_direction(&rates, layout.tangent_rows(k)) > stops
+        {
             law.friction = T::zero();
         }
     }
     let responses = mechanism.contact_responses(t, q, &closed);
-    let correcting_change = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
+    let gap_correcting_velocity_change = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
         let mut problem = ContactProblem::new(layout, laws, &closed, left);
-        problem.copy_weights(&responses.rates);
+        problem.copy_closed_contact_weights(&responses.rates);
         responses.velocities
-            * problem.spread_to_mechanism(&problem.impulses_closing(&TotalArray::repeat_entry(true)))
+            * problem.impulses_at_mechanism_rows(
+                &problem.impulses_enforcing_contacts(&TotalArray::repeat_entry(true)),
+            )
     };
     let (gaps, mut left) = (mechanism.contact_gaps(t, q), SVector::<T, NR>::zeros());
     for (k, first) in layout.gap_contacts() {
         set_entry(&mut left, first, entry_or_zero(&gaps, k));
     }
-    let push = correcting_change(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
+    let push = gap_correcting_velocity_change(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
     let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, q, &push, v));
-    let v = v + correcting_change(&mechanism.contact_rates(t, &q, &v), &laws);
+    let v = v + gap_correcting_velocity_change(&mechanism.contact_rates(t, &q, &v), &laws);
     (q, v)
 }

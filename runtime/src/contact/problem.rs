@@ -22,7 +22,7 @@ mod sensitivity;
 mod transport;
 mod trial;
 
-pub(super) use basis::{BasisRows, UsedColumns, dot};
+pub(super) use basis::{ImpulseBasisRows, UsedColumns, dot};
 pub(super) use linear::ImpulseEquations;
 pub(super) use sensitivity::LinearisedImpulses;
 use trial::ContactMode;
@@ -30,7 +30,7 @@ use trial::ContactMode;
 /// List with an entry for each contact velocity.
 type RowList<T, const NR: usize> = TotalArray<T, NR>;
 /// Square matrix with a row for each contact velocity.
-type RowMatrix<T, const NR: usize> = TotalArray<TotalArray<T, NR>, NR>;
+type ContactRowMatrix<T, const NR: usize> = TotalArray<TotalArray<T, NR>, NR>;
 
 /// Maximum length of a displacement that closes gaps, relative to the largest gap or penetration.
 const FARTHEST: f64 = 8.0;
@@ -63,16 +63,16 @@ pub(super) struct ContactProblem<T, const NK: usize, const NR: usize> {
     given: RowList<T, NR>,
     /// Impulses of compression for Poisson's restitution, and whether there are any.
     compression: RowList<T, NR>,
-    is_compressed: bool,
+    is_contact_compressed: bool,
     /// Impulses of compression, and the smallest impulses of restitution. They act in addition to those that
     /// are searched.
     base: RowList<T, NR>,
     /// Contact velocities `u₀` after the impulses of the field `base`.
     free: RowList<T, NR>,
     /// Matrix `W` of the velocity changes by unit impulses; `None` if it equals `B Bᵀ` with an exact `B`.
-    weights: Option<RowMatrix<T, NR>>,
+    weights: Option<ContactRowMatrix<T, NR>>,
     /// Factor `B` of `W = B Bᵀ`, if it is known.
-    pub(super) basis: BasisRows<T, NR>,
+    pub(super) basis: ImpulseBasisRows<T, NR>,
     /// Smallest permitted normal velocity after the impulses, of each contact.
     least: TotalArray<T, NK>,
     /// Part of `base` that is an impulse of restitution; it bounds friction as well.
@@ -111,11 +111,11 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             places: TotalArray::repeat_entry(0),
             given: TotalArray::repeat_entry(T::zero()),
             compression: TotalArray::repeat_entry(T::zero()),
-            is_compressed: false,
+            is_contact_compressed: false,
             base: TotalArray::repeat_entry(T::zero()),
             free: TotalArray::repeat_entry(T::zero()),
             weights: None,
-            basis: BasisRows::without_columns(),
+            basis: ImpulseBasisRows::uncomputed_basis(),
             least: TotalArray::repeat_entry(T::zero()),
             floor: TotalArray::repeat_entry(T::zero()),
             friction: TotalArray::repeat_entry(T::zero()),
@@ -138,13 +138,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         free: &SVector<T, NR>,
     ) -> Self {
         let mut problem = Self::without_contacts(false);
-        problem.select_contacts(layout, laws, closed, free);
+        problem.add_closed_contacts(layout, laws, closed, free);
         problem
     }
 
     /// Adds the closed contacts to an empty problem. A friction moment is added only if its contact is
     /// closed.
-    pub(super) fn select_contacts(
+    pub(super) fn add_closed_contacts(
         &mut self,
         layout: ContactLayout<NK>,
         laws: &[Law<T>; NK],
@@ -158,8 +158,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             }
             let (c, first) = (problem.count, problem.size);
             let (by, _) = layout.bounding_contact(k);
-            let bounding_index = || (0..c).find(|known| problem.contacts[*known].0 == by);
-            let Some(by) = (if by == k { Some(c) } else { bounding_index() }) else { continue };
+            let index_of_bounding_contact = || (0..c).find(|known| problem.contacts[*known].0 == by);
+            let Some(by) = (if by == k { Some(c) } else { index_of_bounding_contact() }) else { continue };
             let of = layout.rows(k);
             problem.contacts[c] = (k, of);
             problem.rows[c] = Rows { first, count: of.count };
@@ -177,29 +177,29 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Whether a contact has a gap function, unlike a friction moment.
-    fn is_gap(&self, k: usize) -> bool {
+    fn has_gap_function(&self, k: usize) -> bool {
         self.pressed_by[k] == k
     }
 
     /// Returns the row of the normal impulse that bounds friction, and the rows of friction.
     fn rows_of_contact(&self, k: usize) -> (usize, Range<usize>) {
         let Rows { first, count } = self.rows[k];
-        (self.rows[self.pressed_by[k]].first, first + usize::from(self.is_gap(k))..first + count)
+        (self.rows[self.pressed_by[k]].first, first + usize::from(self.has_gap_function(k))..first + count)
     }
 
     /// Returns all rows of a contact.
-    fn all_rows_of(&self, k: usize) -> Range<usize> {
+    fn all_rows_of_contact(&self, k: usize) -> Range<usize> {
         let Rows { first, count } = self.rows[k];
         first..first + count
     }
 
     /// Returns the sums of given impulses and the impulses of the field `base`, at the rows of the mechanism.
-    pub(super) fn spread_to_mechanism(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
-        self.spread_to_mechanism_rows(&self.total_impulses(impulses))
+    pub(super) fn impulses_at_mechanism_rows(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
+        self.values_at_mechanism_rows(&self.impulses_plus_base(impulses))
     }
 
     /// Returns values of the rows of closed contacts at the rows of the mechanism; zeros elsewhere.
-    fn spread_to_mechanism_rows(&self, values: &RowList<T, NR>) -> SVector<T, NR> {
+    fn values_at_mechanism_rows(&self, values: &RowList<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
         for (place, value) in self.places.iter().zip(values.iter()).take(self.size) {
             set_entry(&mut all, *place, *value);
@@ -209,7 +209,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns impulses that satisfy the contact conditions, or in a relaxed step those that violate them
     /// least.
-    pub(super) fn accept_if_relaxed(
+    pub(super) fn accept_best_if_relaxed(
         &self,
         found: Result<RowList<T, NR>, usize>,
     ) -> Result<RowList<T, NR>, usize> {
@@ -222,12 +222,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Whether another fraction of the restitution may be tried: in a step their number is bounded.
-    pub(super) fn may_refine(&self) -> bool {
+    pub(super) fn may_refine_restitution(&self) -> bool {
         !self.is_relaxed || self.iterations.get() < MAX_ITERATIONS
     }
 
     /// Returns impulses with those that act in addition.
-    pub(super) fn total_impulses(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
+    pub(super) fn impulses_plus_base(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
         let mut all = *impulses;
         all.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse += *base);
         all
@@ -241,19 +241,21 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the number of bisections for the restitution that the energy allows: fewer in large problems,
     /// which bounds the duration of a step.
-    pub(super) fn max_halvings(&self) -> usize {
+    pub(super) fn max_restitution_bisections(&self) -> usize {
         if self.size > LARGE { 5 } else { 12 }
     }
 
     /// Whether surfaces approach each other without impulses.
     pub(super) fn is_loaded(&self) -> bool {
-        (0..self.count).filter(|k| self.is_gap(*k)).any(|k| self.free[self.rows[k].first] < T::zero())
+        (0..self.count)
+            .filter(|k| self.has_gap_function(*k))
+            .any(|k| self.free[self.rows[k].first] < T::zero())
     }
 
     /// Whether surfaces approached each other.
-    pub(super) fn was_loaded(&self, before: &SVector<T, NR>) -> bool {
+    pub(super) fn were_surfaces_approaching(&self, before: &SVector<T, NR>) -> bool {
         (0..self.count)
-            .filter(|k| self.is_gap(*k))
+            .filter(|k| self.has_gap_function(*k))
             .any(|k| entry_or_zero(before, self.contacts[k].1.first) < T::zero())
     }
 
@@ -268,7 +270,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Copies the rows of closed contacts from `W = G M⁻¹ Gᵀ` of all contacts.
-    pub(super) fn copy_weights(&mut self, weights: &SMatrix<T, NR, NR>) {
+    pub(super) fn copy_closed_contact_weights(&mut self, weights: &SMatrix<T, NR, NR>) {
         let (places, none) = (self.places, T::zero());
         let own = self.weights.insert(linear::zero_matrix());
         for (j, place) in places.iter().enumerate().take(self.size) {
@@ -277,16 +279,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 row[j] = column.get(*i).copied().unwrap_or(none);
             }
         }
-        self.set_steps();
+        self.set_step_sizes();
     }
 
     /// Sets the steps of the contact velocities, after `B` or `W`.
-    pub(super) fn set_steps(&mut self) {
+    pub(super) fn set_step_sizes(&mut self) {
         let mut diagonal = RowList::<T, NR>::repeat_entry(T::zero());
-        (0..self.size).for_each(|i| diagonal[i] = self.weight_entry(i, i));
+        (0..self.size).for_each(|i| diagonal[i] = self.delassus_matrix_entry(i, i));
         let reach = diagonal.iter().take(self.size).fold(T::zero(), |reach, weight| reach.max(*weight));
         for k in 0..self.count {
-            let trace = self.all_rows_of(k).fold(T::zero(), |sum, i| sum + diagonal[i]);
+            let trace = self.all_rows_of_contact(k).fold(T::zero(), |sum, i| sum + diagonal[i]);
             // Bodies that constraints hold move by rounding errors alone.
             let moves = trace > reach * epsilon::<T>() * constant(ROUNDINGS);
             self.step[k] = if moves { T::one() / trace } else { T::zero() };
@@ -294,7 +296,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns an entry of `W`.
-    fn weight_entry(&self, i: usize, j: usize) -> T {
+    fn delassus_matrix_entry(&self, i: usize, j: usize) -> T {
         match &self.weights {
             Some(weights) => weights[i][j],
             None => self.basis.row_product(i, j),
@@ -302,17 +304,21 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns changes of the contact velocities by impulses.
-    fn velocity_changes(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
-        self.add_velocity_changes(RowList::repeat_entry(T::zero()), impulses)
+    fn contact_velocity_changes(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
+        self.velocities_after_impulses(RowList::repeat_entry(T::zero()), impulses)
     }
 
     /// Returns the contact velocities after impulses.
-    fn rates_after(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
-        self.add_velocity_changes(self.free, impulses)
+    fn contact_velocities_after(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
+        self.velocities_after_impulses(self.free, impulses)
     }
 
     /// Adds changes by impulses to contact velocities.
-    fn add_velocity_changes(&self, mut rates: RowList<T, NR>, impulses: &RowList<T, NR>) -> RowList<T, NR> {
+    fn velocities_after_impulses(
+        &self,
+        mut rates: RowList<T, NR>,
+        impulses: &RowList<T, NR>,
+    ) -> RowList<T, NR> {
         if self.basis.is_exact() {
             let changes = self.basis.rates_of_velocity(&self.basis.velocity_of_impulses(impulses));
             rates.iter_mut().zip(changes.iter()).for_each(|(rate, change)| *rate += *change);
@@ -328,7 +334,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns the step of the normal impulse that bounds friction.
-    fn normal_step(&self, k: usize) -> T {
+    fn normal_impulse_step(&self, k: usize) -> T {
         self.step[self.pressed_by[k]] * self.scale
     }
 
@@ -344,7 +350,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Sets the kinetic coefficient of friction at contacts that leave their static cone with these impulses,
     /// and returns true if there are any.
-    pub(super) fn release_sliding_contacts(&mut self, impulses: &RowList<T, NR>) -> bool {
+    pub(super) fn switch_to_kinetic_friction(&mut self, impulses: &RowList<T, NR>) -> bool {
         if (0..self.count).all(|c| self.friction[c] == self.kinetic[c]) {
             return false;
         }
@@ -367,10 +373,10 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// # Errors
     ///
     /// As [`solve`](Self::solve).
-    pub(super) fn solve_sticking(&mut self) -> Result<RowList<T, NR>, usize> {
+    pub(super) fn solve_with_static_friction(&mut self) -> Result<RowList<T, NR>, usize> {
         loop {
             let impulses = self.solve_impulses()?;
-            if !self.release_sliding_contacts(&impulses) {
+            if !self.switch_to_kinetic_friction(&impulses) {
                 return Ok(impulses);
             }
         }
@@ -381,10 +387,10 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(super) fn contact_modes(&self, impulses: &RowList<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
         let (mut touches, mut along) =
             (TotalArray::<_, NK>::repeat_entry(Touch::Open), SVector::<T, NR>::zeros());
-        let rates = self.rates_after(impulses);
+        let rates = self.contact_velocities_after(impulses);
         let modes = self.natural_map_modes(&self.friction, impulses, &rates);
         // At the edge of the static cone surfaces stick until they move.
-        let still = self.rate_rounding(impulses);
+        let still = self.contact_velocity_rounding_error(impulses);
         let is_sticking = |k: usize| {
             let square = self.rows_of_contact(k).1.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]);
             self.friction[k] != self.kinetic[k] && square <= still * still
@@ -395,7 +401,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 ContactMode::Open => Touch::Open,
                 ContactMode::Slip { .. } if is_sticking(k) => Touch::Sticks,
                 ContactMode::Slip { direction, .. } if self.friction[k] > T::zero() => {
-                    let start = usize::from(self.is_gap(k));
+                    let start = usize::from(self.has_gap_function(k));
                     for (place, component) in (rows.first + start..rows.first + rows.count).zip(direction) {
                         set_entry(&mut along, place, -component);
                     }
@@ -408,13 +414,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns the rounding error of contact velocities after impulses.
-    fn rate_rounding(&self, impulses: &RowList<T, NR>) -> T {
+    fn contact_velocity_rounding_error(&self, impulses: &RowList<T, NR>) -> T {
         let most = match &self.weights {
             Some(weights) => {
                 self.free.iter().zip(weights.iter()).take(self.size).fold(T::zero(), |most, (free, row)| {
                     let terms = row.iter().zip(impulses.iter()).take(self.size);
-                    let add_magnitude = |sum, (weight, impulse): (&T, &T)| sum + (*weight * *impulse).abs();
-                    most.max(terms.fold(free.abs(), add_magnitude))
+                    let add_product_magnitude =
+                        |sum, (weight, impulse): (&T, &T)| sum + (*weight * *impulse).abs();
+                    most.max(terms.fold(free.abs(), add_product_magnitude))
                 })
             }
             None => self.basis.largest_magnitude(&self.free, impulses),
@@ -423,7 +430,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns the largest contact velocity, without impulses or demanded by restitution.
-    pub(super) fn largest_rate(&self) -> T {
+    pub(super) fn largest_free_contact_velocity(&self) -> T {
         let most = self.free.iter().take(self.size).fold(T::zero(), |most, rate| most.max(rate.abs()));
         (0..self.count).fold(most, |most, k| most.max(self.least[k]))
     }
@@ -438,7 +445,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(super) fn are_gaps_closed(&self, gaps: &SVector<T, NK>, near: T) -> bool {
         let enough = Self::ignored_distance(near);
         (0..self.count)
-            .filter(|k| self.is_gap(*k))
+            .filter(|k| self.has_gap_function(*k))
             .all(|k| entry_or_zero(gaps, self.contacts[k].0).abs() <= enough)
     }
 
@@ -454,7 +461,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
         let own = self.weights.insert(linear::zero_matrix());
         for (row, i) in own.iter_mut().zip(rows) {
-            row.iter_mut().zip(rows).for_each(|(to, j)| *to = other.weight_entry(*i, *j));
+            row.iter_mut().zip(rows).for_each(|(to, j)| *to = other.delassus_matrix_entry(*i, *j));
         }
     }
 
@@ -467,7 +474,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         gaps: &SVector<T, NK>,
         distances: (T, T),
     ) -> Option<SVector<T, NR>> {
-        let normals = (0..self.count).filter(|k| self.is_gap(*k)).count();
+        let normals = (0..self.count).filter(|k| self.has_gap_function(*k)).count();
         // Matrices of normal impulses are smaller.
         match const { NR > FEW && NK > FEW } && normals <= FEW {
             true => self.gap_closing_impulses_in::<FEW, FEW>(impulses, gaps, distances),
@@ -483,17 +490,17 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         gaps: &SVector<T, NK>,
         (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
-        let rates = self.rates_after(impulses);
-        let worst = self.tried_with(*impulses, rates).worst.0;
+        let rates = self.contact_velocities_after(impulses);
+        let worst = self.trial_with_residuals(*impulses, rates).worst.0;
         // Contacts stay closed if their normal velocity is zero to rounding, whether or not they have an
         // impulse.
-        let rest = self.rate_rounding(impulses).max(worst) * constant(ROUNDINGS);
+        let rest = self.contact_velocity_rounding_error(impulses).max(worst) * constant(ROUNDINGS);
         let (mut kept, mut stay) =
             (ContactProblem::<T, GK, GR>::without_contacts(true), TotalArray::<_, GK>::repeat_entry(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
         let enough = Self::ignored_distance(near);
         let mut normals = TotalArray::<_, GR>::repeat_entry(0);
-        for k in (0..self.count).filter(|k| self.is_gap(*k)) {
+        for k in (0..self.count).filter(|k| self.has_gap_function(*k)) {
             let n = self.rows[k].first;
             let (contact, _) = self.contacts[k];
             let gap = entry_or_zero(gaps, contact);
@@ -521,42 +528,43 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
         kept.size = kept.count;
         kept.copy_selected_weights(self, normals.get(..kept.count).unwrap_or_default());
-        let spread_pushes = |pushes: &RowList<T, GR>| {
+        let pushes_at_normal_rows = |pushes: &RowList<T, GR>| {
             let mut all = RowList::<T, NR>::repeat_entry(T::zero());
             normals.iter().zip(pushes.iter()).take(kept.count).for_each(|(n, push)| all[*n] = *push);
             all
         };
         // Longest displacement at a contact.
         let largest_displacement = |pushes: &RowList<T, GR>| {
-            let displacements = self.velocity_changes(&spread_pushes(pushes));
+            let displacements = self.contact_velocity_changes(&pushes_at_normal_rows(pushes));
             displacements.iter().take(self.size).fold(T::zero(), |most, x| most.max(x.abs()))
         };
         let most = overlap.max(distance) * constant(FARTHEST);
         // Equations can contradict each other: gaps of parallel faces differ if a contact has moved to
         // another edge, and one displacement cannot close them all. Open contacts then stay open. If overlaps
         // still differ, the conditions without friction alone decide.
-        let is_consistent = |shut: &TotalArray<bool, GK>, pushes: &RowList<T, GR>| {
-            let left = kept.rates_after(pushes);
+        let closes_chosen_gaps = |shut: &TotalArray<bool, GK>, pushes: &RowList<T, GR>| {
+            let left = kept.contact_velocities_after(pushes);
             (0..kept.count).all(|c| !shut[c] || left[c].abs() <= enough)
                 && largest_displacement(pushes) <= most
         };
         let mut overlapping = stay;
         (0..kept.count).for_each(|c| overlapping[c] &= kept.free[c] <= enough);
-        let mut tried = [stay, overlapping].into_iter().map(|shut| (shut, kept.impulses_closing(&shut)));
-        let found = tried.find(|(shut, pushes)| is_consistent(shut, pushes));
+        let mut tried =
+            [stay, overlapping].into_iter().map(|shut| (shut, kept.impulses_enforcing_contacts(&shut)));
+        let found = tried.find(|(shut, pushes)| closes_chosen_gaps(shut, pushes));
         let mut pushes = found.map_or(RowList::repeat_entry(T::zero()), |(_, pushes)| pushes);
-        let left = kept.rates_after(&pushes);
+        let left = kept.contact_velocities_after(&pushes);
         if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
             let mut rest = ContactProblem { free: left, ..kept };
             let found = rest.solve_impulses();
-            let more = rest.accept_if_relaxed(found).ok()?;
+            let more = rest.accept_best_if_relaxed(found).ok()?;
             pushes.iter_mut().zip(more.iter()).for_each(|(push, more)| *push += *more);
             let way = largest_displacement(&pushes);
             if way > most {
                 pushes.iter_mut().for_each(|push| *push *= most / way);
             }
         }
-        Some(self.spread_to_mechanism_rows(&spread_pushes(&pushes)))
+        Some(self.values_at_mechanism_rows(&pushes_at_normal_rows(&pushes)))
     }
 }
 

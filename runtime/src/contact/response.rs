@@ -1,6 +1,6 @@
 //! Responses of velocities to contact impulses.
 
-use super::problem::BasisRows;
+use super::problem::ImpulseBasisRows;
 use super::{Contacts, Responses, Rows};
 use crate::Real;
 use crate::blocks::transposed;
@@ -22,7 +22,8 @@ where
     let mut velocities = SMatrix::<T, NV, NR>::zeros();
     let features = mechanism.features();
     let is_plain = !features.constrained && !features.feedback;
-    let factor = if is_plain { CholeskyFactor::from_mass_matrix(&mechanism.mass_matrix(t, q)) } else { None };
+    let factor =
+        if is_plain { CholeskyFactor::cholesky_of_mass_matrix(&mechanism.mass_matrix(t, q)) } else { None };
     let still = SVector::zeros();
     let none =
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
@@ -62,14 +63,14 @@ impl<T: Real, const NV: usize, const CR: usize> ImpulseEffects<T, NV, CR> {
     /// Returns the change of the velocity by impulses at the selected contacts.
     pub(super) fn velocity_change(
         &self,
-        basis: &BasisRows<T, CR>,
+        basis: &ImpulseBasisRows<T, CR>,
         impulses: &SVector<T, CR>,
     ) -> SVector<T, NV> {
         match self {
             Self::Unknown => SVector::zeros(),
             Self::Factor(factor) => {
                 let mut w = [T::zero(); NV];
-                basis.write_velocity(impulses, &mut w);
+                basis.write_changed_velocity_entries(impulses, &mut w);
                 SVector::from(factor.solve_upper(w))
             }
             Self::Matrix(velocities) => velocities * impulses,
@@ -90,18 +91,18 @@ pub(super) struct CholeskyFactor<T, const N: usize> {
 
 impl<T: Real, const N: usize> CholeskyFactor<T, N> {
     /// Returns the Cholesky factor of a matrix; `None` if the matrix is not positive definite.
-    pub(super) fn from_mass_matrix(m: &SMatrix<T, N, N>) -> Option<Self> {
+    pub(super) fn cholesky_of_mass_matrix(m: &SMatrix<T, N, N>) -> Option<Self> {
         let mut factor = Self::zero_factor();
-        factor.fill_from_matrix(m).then_some(factor)
+        factor.factorise_matrix(m).then_some(factor)
     }
 
-    /// Returns zeros, to be [filled](Self::fill_from_matrix).
+    /// Returns zeros, to be [filled](Self::factorise_matrix).
     pub(super) fn zero_factor() -> Self {
         Self { rows: [[T::zero(); N]; N], starts: [0; N], ends: [N; N] }
     }
 
     /// Factorises a matrix in place; false if it is not positive definite.
-    pub(super) fn fill_from_matrix(&mut self, matrix: &SMatrix<T, N, N>) -> bool {
+    pub(super) fn factorise_matrix(&mut self, matrix: &SMatrix<T, N, N>) -> bool {
         let Self { rows: m, starts, ends } = self;
         // Symmetric: columns are rows.
         *m = matrix.data.0;
@@ -149,7 +150,7 @@ impl<T: Real, const N: usize> CholeskyFactor<T, N> {
     }
 
     /// Returns the solutions `X` of `L Lᵀ X = P`, with operations on rows of all columns at once.
-    pub(super) fn solve_all(&self, p: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    pub(super) fn solve_all_columns(&self, p: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         let Self { rows, starts, .. } = self;
         let subtract_multiple = |from: &mut [T; N], factor: T, row: &[T; N]| {
             from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);

@@ -1,7 +1,7 @@
 //! Contacts that take part in a step, numbered among themselves.
 
 use super::layout::ContactLayout;
-use super::problem::{BasisRows, ContactProblem, UsedColumns, dot, entry_or_zero, set_entry};
+use super::problem::{ContactProblem, ImpulseBasisRows, UsedColumns, dot, entry_or_zero, set_entry};
 use super::response::{CholeskyFactor, ImpulseEffects};
 use super::total::TotalArray;
 use super::velocities::ContactVelocities;
@@ -27,7 +27,10 @@ pub(super) struct ContactSelection<const CK: usize, const CR: usize> {
 
 impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     /// Selects the closed contacts. A friction moment is selected if its contact is closed.
-    pub(super) fn select_closed<const NK: usize>(layout: ContactLayout<NK>, closed: &[bool; NK]) -> Self {
+    pub(super) fn select_closed_contacts<const NK: usize>(
+        layout: ContactLayout<NK>,
+        closed: &[bool; NK],
+    ) -> Self {
         let (mut contacts, mut rows) = (TotalArray::repeat_entry(0), TotalArray::repeat_entry(0));
         let (mut own, mut pressed_by) = ([Rows { first: 0, count: 0 }; CK], [0; CK]);
         let (mut count, mut size) = (0, 0);
@@ -68,14 +71,17 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     }
 
     /// Returns true for entries that are selected contacts.
-    pub(super) fn closed_contacts(&self) -> [bool; CK] {
+    pub(super) fn selected_contact_mask(&self) -> [bool; CK] {
         let mut closed = [false; CK];
         closed.iter_mut().take(self.count).for_each(|closed| *closed = true);
         closed
     }
 
     /// Returns the contact velocities of the selected rows from those of all rows.
-    pub(super) fn selected_rates<T: Real, const NR: usize>(&self, all: &SVector<T, NR>) -> SVector<T, CR> {
+    pub(super) fn selected_contact_rates<T: Real, const NR: usize>(
+        &self,
+        all: &SVector<T, NR>,
+    ) -> SVector<T, CR> {
         let mut rates = SVector::zeros();
         (0..self.size).for_each(|i| set_entry(&mut rates, i, entry_or_zero(all, self.rows[i])));
         rates
@@ -100,7 +106,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     }
 
     /// Returns values of the selected rows at the rows of the mechanism; zeros elsewhere.
-    pub(super) fn spread_to_mechanism<T: Real, const NR: usize>(
+    pub(super) fn impulses_at_mechanism_rows<T: Real, const NR: usize>(
         &self,
         rates: &SVector<T, CR>,
     ) -> SVector<T, NR> {
@@ -110,7 +116,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     }
 
     /// Computes the effects of impulses at the selected contacts, and `B` or `W` of a problem.
-    pub(super) fn fill_effects<
+    pub(super) fn compute_impulse_effects<
         M,
         T,
         const NQ: usize,
@@ -131,8 +137,8 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     {
         if NR <= FEW {
             let all = mechanism.contact_responses(t, q, closed);
-            let Responses { velocities, rates } = self.chosen_responses(&all);
-            problem.copy_weights(&rates);
+            let Responses { velocities, rates } = self.responses_at_selected_contacts(&all);
+            problem.copy_closed_contact_weights(&rates);
             *effects = ImpulseEffects::Matrix(velocities);
             return;
         }
@@ -143,10 +149,10 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
             *effects = ImpulseEffects::Factor(CholeskyFactor::zero_factor());
         }
         if let ImpulseEffects::Factor(factor) = effects
-            && factor.fill_from_matrix(&mechanism.mass_matrix(t, q))
+            && factor.factorise_matrix(&mechanism.mass_matrix(t, q))
         {
-            if self.fill_basis(jacobian, mechanism.contact_columns(), factor, &mut problem.basis) {
-                problem.set_steps();
+            if self.compute_impulse_basis(jacobian, mechanism.contact_columns(), factor, &mut problem.basis) {
+                problem.set_step_sizes();
                 return;
             }
             let matrix = self.fill_matrix(jacobian, |row| factor.solve_with_factor(row), problem);
@@ -161,11 +167,11 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     }
 
     /// Returns the effects of impulses at the selected contacts from those at all contacts.
-    fn chosen_responses<T: Real, const NV: usize, const NR: usize>(
+    fn responses_at_selected_contacts<T: Real, const NV: usize, const NR: usize>(
         &self,
         all: &Responses<T, NV, NR>,
     ) -> Responses<T, NV, CR> {
-        let mut chosen = Responses::zero_effects();
+        let mut chosen = Responses::zero_responses();
         let Responses { velocities, rates } = &mut chosen;
         let columns = velocities.data.0.iter_mut().zip(&mut rates.data.0);
         for ((velocities, rates), from) in columns.zip(self.rows.iter()).take(self.size) {
@@ -183,12 +189,12 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
 
     /// Computes `B = G L⁻ᵀ` for the selected rows of the contact Jacobian `G`, with the Cholesky factor `L`
     /// of the mass matrix. Returns false if `B` has more columns than the arrays.
-    fn fill_basis<T: Real, const NV: usize, const NK: usize, const NR: usize>(
+    fn compute_impulse_basis<T: Real, const NV: usize, const NK: usize, const NR: usize>(
         &self,
         jacobian: &SMatrix<T, NR, NV>,
         reach: [(usize, usize); NK],
         factor: &CholeskyFactor<T, NV>,
-        basis: &mut BasisRows<T, CR>,
+        basis: &mut ImpulseBasisRows<T, CR>,
     ) -> bool {
         // Columns of each contact that are not zero, with the whole blocks of the bodies that move.
         let (mut is_used, mut own) = ([false; NV], TotalArray::<_, CK>::repeat_entry((NV, 0)));
@@ -198,8 +204,10 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
             let mut column = first;
             while column < last {
                 let entries = jacobian.data.0.get(column);
-                let row_entry = |i: usize| entries.and_then(|entries| entries.get(self.rows[i]));
-                if (top..top + count).all(|i| row_entry(i).is_none_or(|entry| *entry == T::zero())) {
+                let entry_of_selected_row = |i: usize| entries.and_then(|entries| entries.get(self.rows[i]));
+                if (top..top + count)
+                    .all(|i| entry_of_selected_row(i).is_none_or(|entry| *entry == T::zero()))
+                {
                     column += 1;
                     continue;
                 }
@@ -209,8 +217,8 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
                 column = end;
             }
         }
-        let columns = UsedColumns::of_used_entries(is_used);
-        if !basis.begin_columns(&columns) {
+        let columns = UsedColumns::columns_for_used_entries(is_used);
+        if !basis.set_basis_columns(&columns) {
             return false;
         }
         for k in 0..self.count {
@@ -243,18 +251,18 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
                 *entry = column.get(*i).copied().unwrap_or(T::zero());
             }
         }
-        let Responses { mut velocities, mut rates } = Responses::zero_effects();
+        let Responses { mut velocities, mut rates } = Responses::zero_responses();
         for (velocity, own) in velocities.data.0.iter_mut().zip(&own).take(self.size) {
             *velocity = solve(*own);
         }
-        self.fill_products(&own, &velocities.data.0, &mut rates);
-        problem.copy_weights(&rates);
+        self.fill_scalar_products(&own, &velocities.data.0, &mut rates);
+        problem.copy_closed_contact_weights(&rates);
         velocities
     }
 
     /// Writes the symmetric matrix of the scalar products of rows on the left and on the right; entries of
     /// rows without common columns stay as they are.
-    fn fill_products<T: Real, const NV: usize>(
+    fn fill_scalar_products<T: Real, const NV: usize>(
         &self,
         left: &[[T; NV]; CR],
         right: &[[T; NV]; CR],

@@ -15,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// Closed contacts of a step, with their impulses and the effects of these on velocities. Its matrices are
 /// large, so it is filled in place.
-pub(super) struct ActedContacts<T, const NV: usize, const CK: usize, const CR: usize> {
+pub(super) struct ContactsWithImpulses<T, const NV: usize, const CK: usize, const CR: usize> {
     pub(super) selection: ContactSelection<CK, CR>,
     pub(super) problem: ContactProblem<T, CK, CR>,
     pub(super) impulses: TotalArray<T, CR>,
@@ -25,8 +25,8 @@ pub(super) struct ActedContacts<T, const NV: usize, const CK: usize, const CR: u
     effects: ImpulseEffects<T, NV, CR>,
 }
 
-impl<T: Real, const NV: usize, const CK: usize, const CR: usize> ActedContacts<T, NV, CK, CR> {
-    pub(super) fn without_impulses(selection: ContactSelection<CK, CR>, is_relaxed: bool) -> Self {
+impl<T: Real, const NV: usize, const CK: usize, const CR: usize> ContactsWithImpulses<T, NV, CK, CR> {
+    pub(super) fn contacts_without_impulses(selection: ContactSelection<CK, CR>, is_relaxed: bool) -> Self {
         let (impulses, free) = (TotalArray::repeat_entry(T::zero()), SVector::zeros());
         Self {
             selection,
@@ -64,7 +64,7 @@ impl<T: Real, const NV: usize, const CK: usize, const CR: usize> ActedContacts<T
 /// velocity that contact forces were assumed to cause in a step, with the impulses of the previous one, and
 /// true if bodies are moving. The search begins at these impulses, and the rotation of contact forces in the
 /// step of moving bodies is taken into account.
-pub(super) fn compute_impulses<
+pub(super) fn compute_closed_contact_impulses<
     M,
     T,
     const NQ: usize,
@@ -80,7 +80,7 @@ pub(super) fn compute_impulses<
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     closed: &[bool; NK],
     (before, given): (impl Fn() -> SVector<T, CR>, Option<(Assumed<'_, T, NV>, bool)>),
-    acted: &mut ActedContacts<T, NV, CK, CR>,
+    acted: &mut ContactsWithImpulses<T, NV, CK, CR>,
 ) -> Result<Solved<T, NV, NR>, ConstraintError>
 where
     T: Real,
@@ -88,11 +88,13 @@ where
 {
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let laws = checked_contact_laws(mechanism)?;
-    let ActedContacts { selection, problem, effects, .. } = acted;
+    let ContactsWithImpulses { selection, problem, effects, .. } = acted;
     let (layout, laws) = (selection.contact_layout(), selection.selected_laws(&laws));
-    let after =
-        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rates_of_velocity(free));
-    problem.select_contacts(layout, &laws, &selection.closed_contacts(), &after);
+    let after = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
+        selection,
+        velocities.rates_of_velocity(free),
+    );
+    problem.add_closed_contacts(layout, &laws, &selection.selected_contact_mask(), &after);
     if laws.iter().any(|law| law.stiction > law.friction) {
         let rates = before();
         problem.set_static_friction(&laws, |k| {
@@ -104,25 +106,27 @@ where
         true => SVector::zeros(),
         false => before(),
     };
-    if !is_loaded && !problem.was_loaded(&before) {
+    if !is_loaded && !problem.were_surfaces_approaching(&before) {
         return Ok(solved);
     }
-    selection.fill_effects(mechanism, (t, q, velocities), closed, effects, problem);
+    selection.compute_impulse_effects(mechanism, (t, q, velocities), closed, effects, problem);
     problem.set_velocity_count(NV);
     let unsolved_error =
         |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.index_of_contact(contact));
     let mut equations = ImpulseEquations::new();
     let (given, recorded, is_moving) = match given {
-        Some(((given, recorded), is_moving)) => (Some(given), recorded.recall(selection), is_moving),
+        Some(((given, recorded), is_moving)) => (Some(given), recorded.recall_impulses(selection), is_moving),
         None => (None, None, false),
     };
     // Contact forces on bodies at rest do not rotate.
     let still = SVector::<T, NV>::zeros();
     let recorded = recorded.map(|all| problem.gather_closed_rows(&all));
     let transported = given.filter(|given| is_moving && **given != still).map(|given| {
-        let rates =
-            ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rate_changes(given));
-        problem.correct_for_rotation(given, (&rates, recorded.as_ref()), effects, &mut equations)
+        let rates = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
+            selection,
+            velocities.rate_changes(given),
+        );
+        problem.correct_velocity_for_rotation(given, (&rates, recorded.as_ref()), effects, &mut equations)
     });
     let start = transported.and_then(|(start, correction)| {
         solved.v += correction;
@@ -130,27 +134,27 @@ where
     });
     let start = recorded.or(start);
     acted.free = solved.v;
-    problem.find_compression(&laws, &before).map_err(unsolved_error)?;
+    problem.compute_compression_impulses(&laws, &before).map_err(unsolved_error)?;
     problem.set_restitution_demands(&laws, &before, T::one());
     // Only prescribed motions and restitution can add energy.
     let may_gain = problem.demands_restitution() && !velocities.is_driven();
     let mut found = problem.solve_from(start.as_ref(), &mut equations);
-    while found.as_ref().is_ok_and(|impulses| problem.release_sliding_contacts(impulses)) {
+    while found.as_ref().is_ok_and(|impulses| problem.switch_to_kinetic_friction(impulses)) {
         found = problem.solve_impulses();
     }
     let impulses = match found {
         Ok(impulses) if !(may_gain && problem.adds_energy(&impulses)) => impulses,
         Err(contact) if !problem.demands_restitution() => {
-            problem.accept_if_relaxed(Err(contact)).map_err(unsolved_error)?
+            problem.accept_best_if_relaxed(Err(contact)).map_err(unsolved_error)?
         }
         _ => {
             let found =
                 impulses_with_restitution(problem, (&laws, &before), (start, &mut equations), may_gain);
-            problem.accept_if_relaxed(found).map_err(unsolved_error)?
+            problem.accept_best_if_relaxed(found).map_err(unsolved_error)?
         }
     };
-    let all = problem.spread_to_mechanism(&impulses);
-    solved.impulses = selection.spread_to_mechanism(&all);
+    let all = problem.impulses_at_mechanism_rows(&impulses);
+    solved.impulses = selection.impulses_at_mechanism_rows(&all);
     solved.v += effects.velocity_change(&problem.basis, &all);
     acted.impulses = impulses;
     Ok(solved)
@@ -167,8 +171,8 @@ fn impulses_with_restitution<T: Real, const NK: usize, const NR: usize>(
 ) -> Result<TotalArray<T, NR>, usize> {
     // Each bisection determines one bit of the fraction.
     let (mut least, mut step, mut found) = (T::zero(), T::one(), None);
-    for _ in 0..problem.max_halvings() {
-        if !problem.may_refine() {
+    for _ in 0..problem.max_restitution_bisections() {
+        if !problem.may_refine_restitution() {
             break;
         }
         step *= constant(0.5);
@@ -177,7 +181,7 @@ fn impulses_with_restitution<T: Real, const NK: usize, const NR: usize>(
             && !(may_gain && problem.adds_energy(&impulses))
         {
             least += step;
-            start = Some(problem.total_impulses(&impulses));
+            start = Some(problem.impulses_plus_base(&impulses));
             found = Some((impulses, problem.largest_violation()));
         }
     }

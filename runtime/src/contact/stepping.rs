@@ -1,13 +1,14 @@
 //! Effects of contacts in a step: impulses, and displacements that remove penetrations.
 
 use super::layout::ContactLayout;
-use super::observer::{GapClosing, ImpulseObserver, Unobserved};
+use super::observer::{GapClosingDisplacement, ImpulseObserver, NoImpulseObserver};
 use super::problem::{ContactProblem, ImpulseEquations, entry_or_zero, set_entry};
 use super::selection::{ContactSelection, FEW};
 use super::total::TotalArray;
 use super::velocities::ContactVelocities;
 use super::{
-    ActedContacts, Assumed, Contacts, Impulses, Law, Rows, Touched, compute_impulses, touching_distance,
+    Assumed, Contacts, ContactsWithImpulses, Impulses, Law, Rows, Touched, compute_closed_contact_impulses,
+    touching_distance,
 };
 use crate::Real;
 use crate::constraint::ConstraintError;
@@ -28,7 +29,7 @@ pub(super) struct StepStart<'a, T, const NQ: usize, const NV: usize> {
     /// Configuration and velocity at the start of the step.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     /// Velocity of the start in the axes at the end of the step
-    /// ([`velocity_at_end`](Self::velocity_at_end)), evaluated on demand.
+    /// ([`transport_velocity_to_end`](Self::transport_velocity_to_end)), evaluated on demand.
     carried: Cell<Option<SVector<T, NV>>>,
     /// Duration of the step.
     h: T,
@@ -49,7 +50,7 @@ impl<'a, T: Real, const NQ: usize, const NV: usize> StepStart<'a, T, NQ, NV> {
 
     /// Returns the initial velocity in the configuration `q` at the end of the step. Impulses act there;
     /// restitution and the work of impulses are about the same directions as they are.
-    pub(super) fn velocity_at_end<M, const NU: usize, const NK: usize, const NR: usize>(
+    pub(super) fn transport_velocity_to_end<M, const NU: usize, const NK: usize, const NR: usize>(
         &self,
         mechanism: &M,
         t: T,
@@ -110,7 +111,7 @@ where
             return Ok(closed.contains(&true).then_some(closed));
         }
         let layout = ContactLayout::of_mechanism(mechanism);
-        let carried = came.velocity_at_end(mechanism, t, q);
+        let carried = came.transport_velocity_to_end(mechanism, t, q);
         let (rate, after) = (velocities.rates_of_velocity(&carried), velocities.rates_of_velocity(free));
         let displacement = velocities.rate_changes(held);
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
@@ -154,7 +155,7 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    observed_step(mechanism, t, (start, v), (q, free), given, h, &mut Unobserved)
+    observed_step(mechanism, t, (start, v), (q, free), given, h, &mut NoImpulseObserver)
 }
 
 /// Computes [`step`], and passes the impulses of the contacts to an observer.
@@ -198,7 +199,7 @@ where
         }
     };
     let still = SVector::<T, NV>::zeros();
-    let velocities = ContactVelocities::in_configuration(mechanism, t, q);
+    let velocities = ContactVelocities::unevaluated_in_configuration(mechanism, t, q);
     let Some(closed) = closed_contacts(mechanism, t, (q, free), Some((&came, &velocities)))? else {
         let is_led = h != T::zero() && *given != still;
         return Ok(if is_led {
@@ -215,7 +216,7 @@ where
     // Matrices of few closed contacts are small, however many contacts a mechanism has.
     macro_rules! act_in_arrays {
         ($contacts:ident, $rows:ident) => {
-            act_in_step::<M, T, NQ, NV, NU, NK, NR, $contacts, $rows>(
+            apply_contact_impulses::<M, T, NQ, NV, NU, NK, NR, $contacts, $rows>(
                 mechanism,
                 at_end,
                 run,
@@ -237,7 +238,7 @@ where
 }
 
 /// Start of a step, its end without contacts, and the velocity change by the assumed contact forces.
-type StepRun<'a, T, const NQ: usize, const NV: usize> = (
+type StepWithoutContacts<'a, T, const NQ: usize, const NV: usize> = (
     &'a StepStart<'a, T, NQ, NV>,
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
@@ -247,7 +248,7 @@ type StepRun<'a, T, const NQ: usize, const NV: usize> = (
 /// Applies the impulses of closed contacts at the end of a step, in arrays for up to `CK` contacts with `CR`
 /// contact velocities.
 #[inline(never)]
-fn act_in_step<
+fn apply_contact_impulses<
     M,
     T,
     const NQ: usize,
@@ -260,7 +261,7 @@ fn act_in_step<
 >(
     mechanism: &M,
     (t, velocities): (T, &ContactVelocities<'_, M, T, NQ, NV, NR>),
-    (came, (start, v), (q, free), (given, recorded)): StepRun<'_, T, NQ, NV>,
+    (came, (start, v), (q, free), (given, recorded)): StepWithoutContacts<'_, T, NQ, NV>,
     closed: &[bool; NK],
     led: impl Fn(&SVector<T, NV>, &SVector<T, NV>) -> Touched<T, NQ, NV>,
     observer: &mut impl ImpulseObserver<T, NV>,
@@ -270,11 +271,12 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let (h, still) = (came.h, SVector::<T, NV>::zeros());
-    let selection = ContactSelection::<CK, CR>::select_closed(ContactLayout::of_mechanism(mechanism), closed);
-    let mut acted = ActedContacts::without_impulses(selection, true);
-    let own_velocities = || {
-        let carried = came.velocity_at_end(mechanism, t, q);
-        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(
+    let selection =
+        ContactSelection::<CK, CR>::select_closed_contacts(ContactLayout::of_mechanism(mechanism), closed);
+    let mut acted = ContactsWithImpulses::contacts_without_impulses(selection, true);
+    let contact_velocities_at_step_end = || {
+        let carried = came.transport_velocity_to_end(mechanism, t, q);
+        ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
             &selection,
             velocities.rates_of_velocity(&carried),
         )
@@ -282,19 +284,22 @@ where
     let moves_farther_than = |far: T| v.iter().any(|v| v.abs() * h > far);
     let is_moving = moves_farther_than(touching_distance::<T>() * constant(10.0));
     let assumed = Some(((given, recorded), is_moving));
-    let after = compute_impulses(
+    let after = compute_closed_contact_impulses(
         mechanism,
         (t, velocities),
         (q, free),
         closed,
-        (own_velocities, assumed),
+        (contact_velocities_at_step_end, assumed),
         &mut acted,
     )?
     .v;
     if h == T::zero() {
         observer.observe(&acted, None);
         let (held, violation) = (after - free, acted.problem.largest_violation());
-        let impulses = Impulses::record(&selection, &acted.problem.spread_to_mechanism(&acted.impulses));
+        let impulses = Impulses::impulses_of_selected_contacts(
+            &selection,
+            &acted.problem.impulses_at_mechanism_rows(&acted.impulses),
+        );
         return Ok(Touched { q: *q, v: after, held, impulses, violation });
     }
     if !acted.is_loaded() {
@@ -304,18 +309,19 @@ where
     let mut touched = led(&after, &(after - corrected));
     // The energy without what contacts have done: they have worked along the mean of the velocities.
     let allowed_energy = || {
-        let mean = (came.velocity_at_end(mechanism, t, q) + free + given) * constant::<T>(0.5);
+        let mean = (came.transport_velocity_to_end(mechanism, t, q) + free + given) * constant::<T>(0.5);
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
         total_energy(mechanism, t, &Touched::state_without_contacts(*q, free + given)) - work
     };
     if acted.problem.demands_restitution() {
-        let led_state = |by_contacts: &SVector<T, NV>| led(&(corrected + by_contacts), by_contacts);
+        let state_with_contact_velocity =
+            |by_contacts: &SVector<T, NV>| led(&(corrected + by_contacts), by_contacts);
         let laws = selection.selected_laws(&mechanism.contact_laws());
         if let Some(less) = state_with_restitution(
             mechanism,
             t,
-            (&mut acted, &laws, &own_velocities()),
-            &led_state,
+            (&mut acted, &laws, &contact_velocities_at_step_end()),
+            &state_with_contact_velocity,
             (&touched, allowed_energy()),
         ) {
             (touched, acted.impulses) = less;
@@ -323,20 +329,22 @@ where
     }
     let (problem, impulses) = (&acted.problem, &acted.impulses);
     touched.violation = problem.largest_violation();
-    touched.impulses = Impulses::record(&selection, &problem.spread_to_mechanism(impulses));
+    touched.impulses =
+        Impulses::impulses_of_selected_contacts(&selection, &problem.impulses_at_mechanism_rows(impulses));
     if !is_moving && !moves_farther_than(touching_distance::<T>() * constant(1e-3)) {
         let states = ((start, v), &touched, &after);
-        let creep = creep_reversal(mechanism, (t, velocities), states, h, (problem, &selection));
+        let creep = creep_reversing_impulses(mechanism, (t, velocities), states, h, (problem, &selection));
         if let Some(creep) = creep {
             touched.q = mechanism.integrate(&touched.q, &acted.velocity_change(&creep));
         }
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
-    let fastest = || {
-        let velocities = own_velocities();
-        velocities.iter().fold(problem.largest_rate(), |most, rate| most.max(rate.abs()))
+    let largest_contact_velocity = || {
+        let velocities = contact_velocities_at_step_end();
+        velocities.iter().fold(problem.largest_free_contact_velocity(), |most, rate| most.max(rate.abs()))
     };
-    let mut closing = gap_closing(&acted, selection.selected_gaps(&gaps), (h, fastest));
+    let mut closing =
+        gap_closing_displacement(&acted, selection.selected_gaps(&gaps), (h, largest_contact_velocity));
     if let Some(pushes) = &closing.pushes {
         let push = acted.velocity_change(pushes);
         (touched, closing.part) =
@@ -347,16 +355,17 @@ where
 }
 
 /// Returns the displacement that closes the gaps of the selected contacts at the end of a step of `h` seconds,
-/// whose contact velocities are at most `fastest` in magnitude.
-fn gap_closing<T: Real, const NV: usize, const CK: usize, const CR: usize>(
-    acted: &ActedContacts<T, NV, CK, CR>,
+/// whose contact velocities are at most `largest_contact_velocity` in magnitude.
+fn gap_closing_displacement<T: Real, const NV: usize, const CK: usize, const CR: usize>(
+    acted: &ContactsWithImpulses<T, NV, CK, CR>,
     gaps: SVector<T, CK>,
-    (h, fastest): (T, impl FnOnce() -> T),
-) -> GapClosing<T, CK, CR> {
+    (h, largest_contact_velocity): (T, impl FnOnce() -> T),
+) -> GapClosingDisplacement<T, CK, CR> {
     let (problem, impulses) = (&acted.problem, &acted.impulses);
-    let mut closing = GapClosing { gaps, reach: touching_distance(), pushes: None, part: T::one() };
+    let mut closing =
+        GapClosingDisplacement { gaps, reach: touching_distance(), pushes: None, part: T::one() };
     if !problem.are_gaps_closed(&gaps, touching_distance()) {
-        closing.reach += fastest() * h;
+        closing.reach += largest_contact_velocity() * h;
         closing.pushes = problem.gap_closing_impulses(impulses, &gaps, (touching_distance(), closing.reach));
     }
     closing
@@ -366,7 +375,7 @@ fn gap_closing<T: Real, const NV: usize, const CK: usize, const CR: usize>(
 /// bodies of the mechanism are at rest. The creep results from constant forces in a step whose loads vary.
 /// Returns `None` if nothing has crept.
 #[allow(clippy::type_complexity, reason = "states at both ends of the step")]
-fn creep_reversal<
+fn creep_reversing_impulses<
     M,
     T,
     const NQ: usize,
@@ -397,10 +406,14 @@ where
     if largest_magnitude(&excess) <= largest_magnitude(&touched.held) * h * epsilon::<T>().sqrt() {
         return None;
     }
-    let crept =
-        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rate_changes(&excess));
-    let slip =
-        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rates_of_velocity(after));
+    let crept = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
+        selection,
+        velocities.rate_changes(&excess),
+    );
+    let slip = ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
+        selection,
+        velocities.rates_of_velocity(after),
+    );
     let (layout, mut back) = (selection.contact_layout(), SVector::<T, CR>::zeros());
     for tangents in (0..CK).map(|k| layout.tangent_rows(k)) {
         if tangents
@@ -430,7 +443,7 @@ fn state_with_restitution<
 >(
     mechanism: &M,
     t: T,
-    (acted, laws, before): (&mut ActedContacts<T, NV, CK, CR>, &[Law<T>; CK], &SVector<T, CR>),
+    (acted, laws, before): (&mut ContactsWithImpulses<T, NV, CK, CR>, &[Law<T>; CK], &SVector<T, CR>),
     led: &impl Fn(&SVector<T, NV>) -> Touched<T, NQ, NV>,
     (all, most): (&Touched<T, NQ, NV>, T),
 ) -> Option<(Touched<T, NQ, NV>, TotalArray<T, CR>)>
@@ -438,23 +451,23 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let most = most + energy_rounding(most);
+    let most = most + energy_rounding_error(most);
     if total_energy(mechanism, t, all) <= most {
         return None;
     }
     let (mut found, mut least, mut step) = (None, T::zero(), T::one());
     let (mut equations, mut violation) = (ImpulseEquations::new(), acted.problem.largest_violation());
-    let mut start = Some(acted.problem.total_impulses(&acted.impulses));
-    for round in 0..=acted.problem.max_halvings() {
-        if found.is_some() && !acted.problem.may_refine() {
+    let mut start = Some(acted.problem.impulses_plus_base(&acted.impulses));
+    for round in 0..=acted.problem.max_restitution_bisections() {
+        if found.is_some() && !acted.problem.may_refine_restitution() {
             break;
         }
         // None of it, then a bit of the part each.
         let part = if round == 0 { T::zero() } else { least + step };
         acted.problem.set_restitution_demands(laws, before, part);
         if let Ok(impulses) = acted.problem.solve_from(start.as_ref(), &mut equations) {
-            start = Some(acted.problem.total_impulses(&impulses));
-            let touched = led(&acted.velocity_change(&acted.problem.spread_to_mechanism(&impulses)));
+            start = Some(acted.problem.impulses_plus_base(&impulses));
+            let touched = led(&acted.velocity_change(&acted.problem.impulses_at_mechanism_rows(&impulses)));
             if round == 0 || total_energy(mechanism, t, &touched) <= most {
                 (found, least) = (Some((touched, impulses)), part);
                 violation = acted.problem.largest_violation();
@@ -468,7 +481,7 @@ where
 }
 
 /// Returns the rounding error of an energy.
-fn energy_rounding<T: Real>(energy: T) -> T {
+fn energy_rounding_error<T: Real>(energy: T) -> T {
     energy.abs() * epsilon() * constant(8.0)
 }
 
@@ -525,11 +538,11 @@ where
             continue;
         }
         let after = total_energy(mechanism, t, &to);
-        if after <= before + energy_rounding(before) {
+        if after <= before + energy_rounding_error(before) {
             return (to, part);
         }
         let most = *allowed.get_or_insert_with(&most);
-        if after <= most + energy_rounding(before) {
+        if after <= most + energy_rounding_error(before) {
             return (to, part);
         }
         if most <= before {

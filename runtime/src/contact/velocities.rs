@@ -32,7 +32,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
 {
     /// Returns the contact velocities in a configuration, as functions of the velocity that are not yet
     /// evaluated.
-    pub(super) fn in_configuration(mechanism: &'a M, t: T, q: &'a SVector<T, NQ>) -> Self {
+    pub(super) fn unevaluated_in_configuration(mechanism: &'a M, t: T, q: &'a SVector<T, NQ>) -> Self {
         Self { mechanism, t, q, jacobian: OnceCell::new(), drift: OnceCell::new() }
     }
 
@@ -45,13 +45,14 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     }
 
     /// Returns the contact velocities at rest; `None` if no prescribed motion may cause any.
-    fn rest_velocities<const NU: usize, const NK: usize>(&self) -> Option<&SVector<T, NR>>
+    fn contact_velocities_at_rest<const NU: usize, const NK: usize>(&self) -> Option<&SVector<T, NR>>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let compute_rest_velocities = || self.mechanism.contact_rates(self.t, self.q, &SVector::zeros());
+        let compute_contact_velocities_at_rest =
+            || self.mechanism.contact_rates(self.t, self.q, &SVector::zeros());
         if self.mechanism.contacts_drift() {
-            get_or_compute(&self.drift, compute_rest_velocities)
+            get_or_compute(&self.drift, compute_contact_velocities_at_rest)
         } else {
             None
         }
@@ -62,7 +63,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        self.rest_velocities().is_some_and(|drift| drift.iter().any(|rate| *rate != T::zero()))
+        self.contact_velocities_at_rest().is_some_and(|drift| drift.iter().any(|rate| *rate != T::zero()))
     }
 
     /// Returns a function of the contact velocities for a velocity, which takes a contact and one of its
@@ -75,7 +76,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let all = (NR <= FEW).then(|| self.mechanism.contact_rates(self.t, self.q, v));
-        let drift = if NR <= FEW { None } else { self.rest_velocities() };
+        let drift = if NR <= FEW { None } else { self.contact_velocities_at_rest() };
         let change = self.changes_from_jacobian(v);
         move |k, row| match (&all, drift) {
             (Some(all), _) => entry_or_zero(all, row),
@@ -94,10 +95,10 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let all = (NR <= FEW).then(|| {
-            let contact_rates_of = |v| self.mechanism.contact_rates(self.t, self.q, v);
-            match self.rest_velocities() {
-                Some(drift) => contact_rates_of(change) - drift,
-                None => contact_rates_of(change),
+            let contact_velocities_of_change = |v| self.mechanism.contact_rates(self.t, self.q, v);
+            match self.contact_velocities_at_rest() {
+                Some(drift) => contact_velocities_of_change(change) - drift,
+                None => contact_velocities_of_change(change),
             }
         });
         let change = self.changes_from_jacobian(change);
@@ -123,7 +124,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     }
 
     /// Returns values of a function of contacts and rows for selected contacts.
-    pub(super) fn select_rates<const CK: usize, const CR: usize>(
+    pub(super) fn rates_of_selected_contacts<const CK: usize, const CR: usize>(
         selection: &ContactSelection<CK, CR>,
         rate: impl Fn(usize, usize) -> T,
     ) -> SVector<T, CR> {

@@ -11,13 +11,13 @@ type SquareMatrix<T, const NV: usize> = SMatrix<T, NV, NV>;
 
 /// Second derivatives of a function of two vectors: with respect to the first twice, to the first (rows) and
 /// the second (columns), and to the second twice. `None` is zero.
-pub(super) struct SecondDerivativesOfTwo<T, const NV: usize> {
+pub(super) struct TwoVectorSecondDerivatives<T, const NV: usize> {
     pub(super) first: Option<SquareMatrix<T, NV>>,
     pub(super) mixed: SquareMatrix<T, NV>,
     pub(super) second: Option<SquareMatrix<T, NV>>,
 }
 
-impl<T: Real, const NV: usize> SecondDerivativesOfTwo<T, NV> {
+impl<T: Real, const NV: usize> TwoVectorSecondDerivatives<T, NV> {
     /// Returns the products of the Hessian with columns of changes of both vectors: the rows of the first
     /// vector and of the second.
     fn hessian_products<const C: usize>(
@@ -38,7 +38,7 @@ impl<T: Real, const NV: usize> SecondDerivativesOfTwo<T, NV> {
 
     /// Adds the second derivatives with respect to the start of the step, given the derivatives of both
     /// vectors with respect to it.
-    pub(super) fn add_to<const NU: usize>(
+    pub(super) fn add_second_derivatives_to<const NU: usize>(
         &self,
         sum: &mut InputSecondOrder<T, NV, NU>,
         first: &VectorWithDerivatives<T, NV, NU>,
@@ -98,7 +98,7 @@ impl<T: Real, const NV: usize> SecondOrderDisplacement<T, NV> {
         &self,
         m: &M,
         lambda: &SVector<T, NV>,
-    ) -> SecondDerivativesOfTwo<T, NV>
+    ) -> TwoVectorSecondDerivatives<T, NV>
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -110,7 +110,7 @@ impl<T: Real, const NV: usize> SecondOrderDisplacement<T, NV> {
         let bent = product(&inverse, &self.by_dv);
         let mut second = transposed(&bent);
         add_multiple(&mut second, T::one(), &bent);
-        SecondDerivativesOfTwo {
+        TwoVectorSecondDerivatives {
             first: None,
             mixed: product(&transposed(&self.by_q), &product(&bracket, &self.by_dv)),
             second: Some(second * constant::<T>(-0.5)),

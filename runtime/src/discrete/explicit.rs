@@ -1,10 +1,10 @@
 //! Jacobians of explicit integration steps, computed by propagating derivatives forwards through the stages.
 
-use super::{Chained, DifferentiableStep, Transition, implicit, plain};
+use super::{ConfigurationVelocityRelation, DifferentiableStep, Transition, implicit, plain};
 use crate::Real;
-use crate::blocks::{add_multiple, add_product, multiple_into, product, scale, sum_into, zeros};
+use crate::blocks::{add_multiple, add_product, product, scale, write_multiple, write_scaled_sum, zeros};
 use crate::constraint::ConstrainedDerivatives;
-use crate::derivatives::{Derivatives, accelerated_into};
+use crate::derivatives::{Derivatives, write_acceleration_derivatives};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
@@ -22,13 +22,13 @@ pub(crate) struct VectorWithDerivatives<T, const NV: usize, const NU: usize> {
 impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU> {
     /// Returns the velocity at the start of the step, with its derivatives: the identity with respect to
     /// itself, otherwise zero.
-    pub(crate) fn start_velocity(v: &SVector<T, NV>) -> Self {
+    pub(crate) fn start_velocity_with_derivatives(v: &SVector<T, NV>) -> Self {
         let (by_q, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
     }
 
     /// Returns the zero displacement of the configuration at the start, which moves with that configuration.
-    pub(crate) fn zero_displacement() -> Self {
+    pub(crate) fn zero_displacement_with_derivatives() -> Self {
         let (by_v, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: SVector::zeros(), by_q: SMatrix::identity(), by_v, by_u }
     }
@@ -37,22 +37,22 @@ impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU>
     pub(crate) fn plus_scaled(&self, s: T, other: &Self) -> Self {
         let mut sum =
             Self { value: self.value + other.value * s, by_q: zeros(), by_v: zeros(), by_u: zeros() };
-        sum_into(&self.by_q, s, &other.by_q, &mut sum.by_q);
-        sum_into(&self.by_v, s, &other.by_v, &mut sum.by_v);
-        sum_into(&self.by_u, s, &other.by_u, &mut sum.by_u);
+        write_scaled_sum(&self.by_q, s, &other.by_q, &mut sum.by_q);
+        write_scaled_sum(&self.by_v, s, &other.by_v, &mut sum.by_v);
+        write_scaled_sum(&self.by_u, s, &other.by_u, &mut sum.by_u);
         sum
     }
 
     pub(crate) fn scaled_derivatives(&self, s: T) -> Self {
         let mut multiple = Self { value: self.value * s, by_q: zeros(), by_v: zeros(), by_u: zeros() };
-        multiple_into(s, &self.by_q, &mut multiple.by_q);
-        multiple_into(s, &self.by_v, &mut multiple.by_v);
-        multiple_into(s, &self.by_u, &mut multiple.by_u);
+        write_multiple(s, &self.by_q, &mut multiple.by_q);
+        write_multiple(s, &self.by_v, &mut multiple.by_v);
+        write_multiple(s, &self.by_u, &mut multiple.by_u);
         multiple
     }
 
     /// Sets the derivatives of all entries to zero that do not satisfy a condition.
-    pub(crate) fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) {
+    pub(crate) fn zero_other_derivatives(&mut self, is_kept: impl Fn(usize) -> bool) {
         let columns = self.by_q.data.0.iter_mut().chain(&mut self.by_v.data.0).chain(&mut self.by_u.data.0);
         for column in columns {
             column.iter_mut().enumerate().filter(|(k, _)| !is_kept(*k)).for_each(|(_, x)| *x = T::zero());
@@ -92,14 +92,14 @@ pub(super) fn runge_kutta_change<T: Real, V>(
 }
 
 /// Start of a step: mechanism, time, configuration and inputs.
-pub(crate) struct DifferentiatedStart<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
+pub(crate) struct DifferentiatedStepStart<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     pub(crate) mechanism: &'a M,
     pub(crate) t: T,
     pub(crate) q: &'a SVector<T, NQ>,
     pub(crate) u: &'a SVector<T, NU>,
 }
 
-impl<M, T, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedStart<'_, M, T, NQ, NV, NU>
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedStepStart<'_, M, T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -135,7 +135,7 @@ where
         (q, motion): &(SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
         v: &VectorWithDerivatives<T, NV, NU>,
     ) -> VectorWithDerivatives<T, NV, NU> {
-        let own = self.acceleration_in_state(h, (q, &v.value));
+        let own = self.acceleration_with_derivatives(h, (q, &v.value));
         let mut found =
             VectorWithDerivatives::compose_derivatives(own.value, (&own.by_q, motion), (&own.by_v, v));
         add_multiple(&mut found.by_u, T::one(), &own.by_u);
@@ -144,29 +144,30 @@ where
 
     /// Returns the acceleration at a time `h` after the start, in a given state, with its derivatives with
     /// respect to that state and to the inputs.
-    pub(crate) fn acceleration_in_state(
+    pub(crate) fn acceleration_with_derivatives(
         &self,
         h: T,
         state: (&SVector<T, NQ>, &SVector<T, NV>),
     ) -> VectorWithDerivatives<T, NV, NU> {
         let mut found = VectorWithDerivatives { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
         let VectorWithDerivatives { value, by_q, by_v, by_u } = &mut found;
-        *value = accelerated_into(self.mechanism, self.t + h, state, self.u, (by_q, by_v, by_u));
+        *value =
+            write_acceleration_derivatives(self.mechanism, self.t + h, state, self.u, (by_q, by_v, by_u));
         found
     }
 
     /// Returns the state after a step with a given displacement and final velocity.
-    pub(crate) fn end_of_step(
+    pub(crate) fn transition_at_step_end(
         &self,
         displacement: &VectorWithDerivatives<T, NV, NU>,
         v: &VectorWithDerivatives<T, NV, NU>,
     ) -> Transition<T, NQ, NV, NU> {
-        Transition::from_sensitive(&self.displace_configuration(displacement), v)
+        Transition::from_differentiated_state(&self.displace_configuration(displacement), v)
     }
 
     /// Returns the configuration at the start; its derivative with respect to itself is the identity.
     pub(crate) fn start_configuration(&self) -> (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>) {
-        (*self.q, VectorWithDerivatives::zero_displacement())
+        (*self.q, VectorWithDerivatives::zero_displacement_with_derivatives())
     }
 }
 
@@ -188,9 +189,9 @@ pub fn semi_implicit_into<M, T, const NQ: usize, const NV: usize, const NU: usiz
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    multiple_into(h, by_q, &mut into.v_by_q);
-    multiple_into(h, by_v, &mut into.v_by_v);
-    multiple_into(h, by_u, &mut into.v_by_u);
+    write_multiple(h, by_q, &mut into.v_by_q);
+    write_multiple(h, by_v, &mut into.v_by_v);
+    write_multiple(h, by_u, &mut into.v_by_u);
     complete_step_by_chain_rule(mechanism, h, (q, v), acceleration, into);
 }
 
@@ -220,13 +221,15 @@ fn complete_step_by_chain_rule<M, T, const NQ: usize, const NV: usize, const NU:
     let others = if is_plain { Some((0, 0)) } else { M::TURNED };
     let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, chained, .. } = step;
     let chain = chained.insert(match others {
-        Some(others) => Chained { period: h, by_q, by_displacement, others: [others; 2] },
-        None => Chained::new(h, by_q, by_displacement),
+        Some(others) => {
+            ConfigurationVelocityRelation { period: h, by_q, by_displacement, others: [others; 2] }
+        }
+        None => ConfigurationVelocityRelation::new(h, by_q, by_displacement),
     });
     let [_, d] = chain.nearly_identity_matrices();
-    d.lead_multiple_into(h, v_by_q, q_by_q);
-    d.lead_multiple_into(h, v_by_v, q_by_v);
-    d.lead_multiple_into(h, v_by_u, q_by_u);
+    d.write_scaled_left_product(h, v_by_q, q_by_q);
+    d.write_scaled_left_product(h, v_by_v, q_by_v);
+    d.write_scaled_left_product(h, v_by_u, q_by_u);
     add_multiple(q_by_q, T::one(), &chain.by_q);
 }
 
@@ -252,7 +255,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         let h = self.nominal_step_length();
         let Transition { v_by_q, v_by_v, v_by_u, .. } = &mut *step;
         (*v_by_q, *v_by_v) = (zeros(), zeros());
-        let acceleration = accelerated_into(mechanism, t, (q, v), u, (v_by_q, v_by_v, v_by_u));
+        let acceleration = write_acceleration_derivatives(mechanism, t, (q, v), u, (v_by_q, v_by_v, v_by_u));
         scale(v_by_q, h);
         scale(v_by_v, h);
         scale(v_by_u, h);
@@ -301,12 +304,12 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let (h, start) = (self.nominal_step_length(), DifferentiatedStart { mechanism, t, q, u });
+        let (h, start) = (self.nominal_step_length(), DifferentiatedStepStart { mechanism, t, q, u });
         if mechanism.features().is_plain() {
             *into = plain::runge_kutta_transition(&start, v, h);
             return Ok(());
         }
-        let v = VectorWithDerivatives::start_velocity(v);
+        let v = VectorWithDerivatives::start_velocity_with_derivatives(v);
         let stage_derivatives = |h: T,
                                  (rate, acceleration): &(
             VectorWithDerivatives<T, NV, NU>,
@@ -334,7 +337,7 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
             VectorWithDerivatives::plus_scaled,
             VectorWithDerivatives::scaled_derivatives,
         );
-        *into = start.end_of_step(&displacement, &v.plus_scaled(T::one(), &change));
+        *into = start.transition_at_step_end(&displacement, &v.plus_scaled(T::one(), &change));
         Ok(())
     }
 }

@@ -8,11 +8,13 @@
 
 use super::projected::StepCorrections;
 use super::{DifferentiableStep, Transition, state_after_step};
-use crate::constraint::{ConstrainedDerivatives, column_or_zeros, matrix_of_columns, multipliers_of_forces};
+use crate::constraint::{
+    ConstrainedDerivatives, column_or_zeros, matrix_from_column_function, multipliers_from_constraint_forces,
+};
 use crate::derivatives::{ByMotion, Derivatives};
 use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
 use crate::private::{constant, epsilon};
-use crate::speeds::{displacement_of_mechanism, midpoint_velocity, reached_configurations};
+use crate::speeds::{displacement_of_mechanism, midpoint_velocity, reached_configuration_derivatives};
 use crate::{Real, at};
 use nalgebra::{SMatrix, SVector};
 
@@ -56,7 +58,7 @@ where
 }
 
 /// Returns the derivatives of the velocity-dependent part of the momentum's rate.
-fn inertial_rate_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn velocity_momentum_rate_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
     q: &SVector<T, NQ>,
@@ -107,13 +109,13 @@ trait StepPerturbationSolver<T, const NV: usize> {
 }
 
 /// Linear solver for perturbations of an implicit step, for mechanisms without constraints.
-struct UnconstrainedSolver<T, const NV: usize> {
+struct UnconstrainedPerturbationSolver<T, const NV: usize> {
     matrix: SMatrix<T, NV, NV>,
     mass: SMatrix<T, NV, NV>,
     momentum_by_q: SMatrix<T, NV, NV>,
 }
 
-impl<T: Real, const NV: usize> StepPerturbationSolver<T, NV> for UnconstrainedSolver<T, NV> {
+impl<T: Real, const NV: usize> StepPerturbationSolver<T, NV> for UnconstrainedPerturbationSolver<T, NV> {
     fn midpoint_velocity_change<const C: usize>(
         &self,
         force: &SMatrix<T, NV, C>,
@@ -132,7 +134,7 @@ impl<T: Real, const NV: usize> StepPerturbationSolver<T, NV> for UnconstrainedSo
 }
 
 /// Linear solver for perturbations of an implicit step, for mechanisms with constraints.
-struct ConstrainedSolver<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
+struct ConstrainedPerturbationSolver<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
     m: &'a M,
     matrix: SMatrix<T, NV, NV>,
     /// Derivatives of the midpoint's velocity with respect to constraint impulses at the start.
@@ -152,7 +154,7 @@ struct ConstrainedSolver<'a, M, T, const NQ: usize, const NV: usize, const NC: u
 }
 
 /// Linear solver [`Held`] with the number of constraints as const parameter.
-struct NumberedConstrainedSolver<
+struct ConstrainedSolverWithCount<
     'a,
     'b,
     M,
@@ -162,10 +164,10 @@ struct NumberedConstrainedSolver<
     const NU: usize,
     const NH: usize,
     const NC: usize,
->(&'b ConstrainedSolver<'a, M, T, NQ, NV, NC>);
+>(&'b ConstrainedPerturbationSolver<'a, M, T, NQ, NV, NC>);
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
-    StepPerturbationSolver<T, NV> for NumberedConstrainedSolver<'_, '_, M, T, NQ, NV, NU, NH, NC>
+    StepPerturbationSolver<T, NV> for ConstrainedSolverWithCount<'_, '_, M, T, NQ, NV, NU, NH, NC>
 where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
@@ -188,7 +190,7 @@ where
     ) -> SMatrix<T, NV, C> {
         let held = self.0;
         let (forces, gaps) = (p - held.balance_by_q * by_q, held.rates_by_q * by_q);
-        matrix_of_columns(|j| {
+        matrix_from_column_function(|j| {
             held.m.constraint_response(
                 held.t,
                 held.end,
@@ -251,7 +253,7 @@ where
     fn transition_without_constraints(&self) -> Transition<T, NQ, NV, NU> {
         let (q, v) = &self.end;
         let (momentum_by_q, mass) = momentum_derivatives(self.m, self.t + self.h, q, v);
-        self.transition_of_step(&UnconstrainedSolver {
+        self.transition_of_step(&UnconstrainedPerturbationSolver {
             matrix: self.residual_derivative(),
             mass,
             momentum_by_q,
@@ -271,7 +273,7 @@ where
         m.check_full_rank(t + h, end)?;
         let matrix = self.residual_derivative();
         let own = m.generalized_momentum(t + half, &middle, &self.w);
-        let lambda = multipliers_of_forces(m, t, self.q, &(own - self.kick - gain));
+        let lambda = multipliers_from_constraint_forces(m, t, self.q, &(own - self.kick - gain));
         let jacobian = m.constraint_jacobian(t, self.q);
         // Constraints on configurations at the end, divided by the period; constraints on velocities at the
         // midpoint.
@@ -289,21 +291,26 @@ where
             by_q.set_row(k, &q);
         }
         let p = own + gain;
-        let mu = multipliers_of_forces(m, t + h, end, &(m.generalized_momentum(t + h, end, after) - p));
-        let held = ConstrainedSolver {
+        let mu = multipliers_from_constraint_forces(
+            m,
+            t + h,
+            end,
+            &(m.generalized_momentum(t + h, end, after) - p),
+        );
+        let held = ConstrainedPerturbationSolver {
             m,
             matrix,
             pushed: eliminate_with_pivoting(matrix, jacobian.transpose()),
-            pushes_by_q: -m.balance_derivatives(t, self.q, &still, &lambda).0,
+            pushes_by_q: -m.correction_equation_derivatives(t, self.q, &still, &lambda).0,
             by_w,
             by_q,
             t: t + h,
             end,
             balance_by_q: momentum_derivatives(m, t + h, end, after).0
-                + m.balance_derivatives(t + h, end, &still, &mu).0,
+                + m.correction_equation_derivatives(t + h, end, &still, &mu).0,
             rates_by_q: m.equation_derivatives(t + h, end, after, &still, &SVector::zeros()).rates_by_q,
         };
-        Ok(self.transition_of_step(&NumberedConstrainedSolver::<M, T, NQ, NV, NU, NH, NC>(&held)))
+        Ok(self.transition_of_step(&ConstrainedSolverWithCount::<M, T, NQ, NV, NU, NH, NC>(&held)))
     }
 }
 
@@ -374,7 +381,7 @@ impl<T: Real> ImplicitMidpoint<T> {
         let (by_q, by_v) = momentum_derivatives(m, t, q, v);
         let middle = m.integrate(q, &displacement_of_mechanism(m, q, &w, half));
         Ok(ImplicitStepData {
-            led: reached_configurations(m, q, &w, half),
+            led: reached_configuration_derivatives(m, q, &w, half),
             middle,
             m,
             t,
@@ -421,7 +428,7 @@ where
     let middle = m.integrate(q, &displacement_of_mechanism(m, q, &w, half));
     let force = m.momentum_rate(t, q, &still) + m.generalized_forces(t, q, v, u);
     let made = ImplicitStepData {
-        led: reached_configurations(m, q, &w, half),
+        led: reached_configuration_derivatives(m, q, &w, half),
         middle,
         m,
         t,
@@ -429,7 +436,7 @@ where
         q,
         w,
         end,
-        rate: inertial_rate_derivatives(m, t + half, &middle, &w),
+        rate: velocity_momentum_rate_derivatives(m, t + half, &middle, &w),
         start: (by_q + (force_by_q + rest_by_q) * h, by_v + force_by_v * h, force_by_u * h),
         kick: m.generalized_momentum(t, q, v) + force * h,
     };

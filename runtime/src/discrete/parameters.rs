@@ -96,12 +96,12 @@ pub trait StepByParameters<T: Real>: FixedStep<T> {
 
 /// Vector of the tangent space with its derivatives with respect to the parameters.
 #[derive(Clone, Copy)]
-struct ParameterSensitive<T, const NV: usize, const NP: usize> {
+struct VectorWithParameterDerivatives<T, const NV: usize, const NP: usize> {
     value: SVector<T, NV>,
     by: SMatrix<T, NV, NP>,
 }
 
-impl<T: Real, const NV: usize, const NP: usize> ParameterSensitive<T, NV, NP> {
+impl<T: Real, const NV: usize, const NP: usize> VectorWithParameterDerivatives<T, NV, NP> {
     fn parameter_independent(value: &SVector<T, NV>) -> Self {
         Self { value: *value, by: SMatrix::zeros() }
     }
@@ -121,10 +121,10 @@ impl<T: Real, const NV: usize, const NP: usize> ParameterSensitive<T, NV, NP> {
 fn acceleration_at_stage<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     t: T,
-    (q, displacement): (&SVector<T, NQ>, &ParameterSensitive<T, NV, NP>),
-    v: &ParameterSensitive<T, NV, NP>,
+    (q, displacement): (&SVector<T, NQ>, &VectorWithParameterDerivatives<T, NV, NP>),
+    v: &VectorWithParameterDerivatives<T, NV, NP>,
     u: &SVector<T, NU>,
-) -> ParameterSensitive<T, NV, NP>
+) -> VectorWithParameterDerivatives<T, NV, NP>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
@@ -141,14 +141,14 @@ where
     }
     add_product(&mut by, &motion.by_q, &derivatives);
     add_product(&mut by, &motion.by_v, &v.by);
-    ParameterSensitive { value: motion.acceleration, by }
+    VectorWithParameterDerivatives { value: motion.acceleration, by }
 }
 
 /// Returns the derivatives of the configuration after a displacement with respect to the parameters.
 fn configuration_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     q: &SVector<T, NQ>,
-    displacement: &ParameterSensitive<T, NV, NP>,
+    displacement: &VectorWithParameterDerivatives<T, NV, NP>,
 ) -> SMatrix<T, NV, NP>
 where
     T: Real,
@@ -172,13 +172,13 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.nominal_step_length(), ParameterSensitive::parameter_independent(v));
+        let (h, v) = (self.nominal_step_length(), VectorWithParameterDerivatives::parameter_independent(v));
         let after = v.plus_scaled(
             h,
             &acceleration_at_stage(
                 m,
                 t,
-                (q, &ParameterSensitive::parameter_independent(&SVector::zeros())),
+                (q, &VectorWithParameterDerivatives::parameter_independent(&SVector::zeros())),
                 &v,
                 u,
             ),
@@ -198,26 +198,29 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.nominal_step_length(), ParameterSensitive::parameter_independent(v));
+        let (h, v) = (self.nominal_step_length(), VectorWithParameterDerivatives::parameter_independent(v));
         let half = h * constant(0.5);
         let stage_derivatives = |after: T,
                                  (rate, change): &(
-            ParameterSensitive<T, NV, NP>,
-            ParameterSensitive<T, NV, NP>,
+            VectorWithParameterDerivatives<T, NV, NP>,
+            VectorWithParameterDerivatives<T, NV, NP>,
         )| {
             let (displacement, v) = (rate.scaled_derivatives(after), v.plus_scaled(after, change));
             let (_, by_dv, by_v) = m.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = m.displacement_rate(q, &displacement.value, &v.value);
             let mut by = product(&by_v, &v.by);
             add_product(&mut by, &by_dv, &displacement.by);
-            (ParameterSensitive { value, by }, acceleration_at_stage(m, t + after, (q, &displacement), &v, u))
+            (
+                VectorWithParameterDerivatives { value, by },
+                acceleration_at_stage(m, t + after, (q, &displacement), &v, u),
+            )
         };
         let k1 = (
             v,
             acceleration_at_stage(
                 m,
                 t,
-                (q, &ParameterSensitive::parameter_independent(&SVector::zeros())),
+                (q, &VectorWithParameterDerivatives::parameter_independent(&SVector::zeros())),
                 &v,
                 u,
             ),
@@ -228,8 +231,8 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
         let (displacement, change) = runge_kutta_change(
             h,
             [&k1, &k2, &k3, &k4],
-            ParameterSensitive::plus_scaled,
-            ParameterSensitive::scaled_derivatives,
+            VectorWithParameterDerivatives::plus_scaled,
+            VectorWithParameterDerivatives::scaled_derivatives,
         );
         (configuration_derivatives(m, q, &displacement), change.by)
     }

@@ -8,9 +8,9 @@
 //! with such derivatives.
 
 use super::Transition;
-use super::explicit::{DifferentiatedStart, VectorWithDerivatives};
+use super::explicit::{DifferentiatedStepStart, VectorWithDerivatives};
 use crate::Real;
-use crate::blocks::{add_multiple, add_product, combined};
+use crate::blocks::{add_multiple, add_product, weighted_matrix_sum};
 use crate::derivatives::Derivatives;
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
@@ -30,8 +30,8 @@ impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU>
 /// Returns the acceleration of a Runge–Kutta stage `after` seconds after the start, with derivatives.
 /// Multiples of the earlier accelerations `near` and `far` are added to the velocity and to the displacement
 /// of the stage.
-fn acceleration_stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+fn stage_acceleration_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     after: T,
     near: Option<EarlierStage<'_, T, NV, NU>>,
@@ -49,7 +49,7 @@ where
         displacement += far.value * r;
     }
     let q = start.mechanism.integrate(start.q, &displacement);
-    let mut found = start.acceleration_in_state(after, (&q, &velocity));
+    let mut found = start.acceleration_with_derivatives(after, (&q, &velocity));
     if near.is_none() && far.is_none() {
         return found;
     }
@@ -66,7 +66,7 @@ where
 
 /// Returns the Runge–Kutta step of `h` seconds from a start with the velocity `v`, with its Jacobians.
 pub(super) fn runge_kutta_transition<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     h: T,
 ) -> Transition<T, NQ, NV, NU>
@@ -75,10 +75,10 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let half = h * constant(0.5);
-    let k1 = acceleration_stage(start, v, T::zero(), None, None);
-    let k2 = acceleration_stage(start, v, half, Some((half, &k1)), None);
-    let k3 = acceleration_stage(start, v, half, Some((half, &k2)), Some((half * half, &k1)));
-    let k4 = acceleration_stage(start, v, h, Some((h, &k3)), Some((h * half, &k2)));
+    let k1 = stage_acceleration_derivatives(start, v, T::zero(), None, None);
+    let k2 = stage_acceleration_derivatives(start, v, half, Some((half, &k1)), None);
+    let k3 = stage_acceleration_derivatives(start, v, half, Some((half, &k2)), Some((half * half, &k1)));
+    let k4 = stage_acceleration_derivatives(start, v, h, Some((h, &k3)), Some((h * half, &k2)));
     // q⁺ = q + h v + h²/6 (a₁ + a₂ + a₃), v⁺ = v + h/6 (a₁ + 2 a₂ + 2 a₃ + a₄).
     let sixth = h / constant(6.0);
     let change = weighted_sum(sixth, [(1.0, &k1), (2.0, &k2), (2.0, &k3), (1.0, &k4)]);
@@ -105,9 +105,9 @@ fn weighted_sum<T: Real, const NV: usize, const NU: usize, const N: usize>(
 ) -> VectorWithDerivatives<T, NV, NU> {
     let weights = terms.map(|(weight, _)| s * constant(weight));
     VectorWithDerivatives {
-        value: combined(&weights, terms.map(|(_, k)| &k.value)),
-        by_q: combined(&weights, terms.map(|(_, k)| &k.by_q)),
-        by_v: combined(&weights, terms.map(|(_, k)| &k.by_v)),
-        by_u: combined(&weights, terms.map(|(_, k)| &k.by_u)),
+        value: weighted_matrix_sum(&weights, terms.map(|(_, k)| &k.value)),
+        by_q: weighted_matrix_sum(&weights, terms.map(|(_, k)| &k.by_q)),
+        by_v: weighted_matrix_sum(&weights, terms.map(|(_, k)| &k.by_v)),
+        by_u: weighted_matrix_sum(&weights, terms.map(|(_, k)| &k.by_u)),
     }
 }

@@ -4,8 +4,8 @@ use super::Transition;
 use crate::Real;
 use crate::blocks::product;
 use crate::constraint::{
-    ConstrainedDerivatives, ConstraintError, EquationDerivatives, column_or_zeros, matrix_of_columns,
-    multipliers_of_forces,
+    ConstrainedDerivatives, ConstraintError, EquationDerivatives, column_or_zeros,
+    matrix_from_column_function, multipliers_from_constraint_forces,
 };
 use crate::integrate::Error;
 use crate::private::{constant, epsilon, to_f64};
@@ -16,7 +16,7 @@ use nalgebra::{SMatrix, SVector};
 pub(super) const MOST_CORRECTIONS: usize = 8;
 
 /// First derivatives of a Newton correction `x` of a configuration: `M x = Jᵀ λ`, `J x = −φ`.
-pub(super) struct ConfigurationCorrection<T, const NV: usize, const NC: usize> {
+pub(super) struct ConfigurationCorrectionDerivatives<T, const NV: usize, const NC: usize> {
     pub(super) x: SVector<T, NV>,
     /// Multipliers `λ` of the Newton correction of the configuration.
     pub(super) own: SVector<T, NC>,
@@ -29,7 +29,7 @@ pub(super) struct ConfigurationCorrection<T, const NV: usize, const NC: usize> {
 }
 
 /// First derivatives of the correction `x` of a velocity: `M x = Jᵀ λ`, `J (v + x) + … = 0`.
-pub(super) struct VelocityCorrection<T, const NV: usize, const NC: usize> {
+pub(super) struct VelocityCorrectionDerivatives<T, const NV: usize, const NC: usize> {
     /// Multipliers `λ` of the correction of the velocity.
     pub(super) own: SVector<T, NC>,
     /// Derivatives of `M x − Jᵀ λ` with respect to the configuration.
@@ -52,7 +52,7 @@ pub(super) trait StepCorrections<
 {
     /// Returns the derivatives of the correction equations `M x − Jᵀ λ` and `J x` with respect to the
     /// configuration.
-    fn balance_derivatives(
+    fn correction_equation_derivatives(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -78,43 +78,47 @@ pub(super) trait StepCorrections<
     }
 
     /// Returns the Newton correction of a configuration at time `t`, with its derivatives.
-    fn configuration_correction(&self, t: T, near: &SVector<T, NQ>) -> ConfigurationCorrection<T, NV, NC> {
+    fn configuration_correction_derivatives(
+        &self,
+        t: T,
+        near: &SVector<T, NQ>,
+    ) -> ConfigurationCorrectionDerivatives<T, NV, NC> {
         let residuals = self.constraint_residuals(t, near);
         let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
         let x = self.constraint_correction(t, near, &gap);
         let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
-        let own = multipliers_of_forces(self, t, near, &(self.mass_matrix(t, near) * x));
-        let (forces, mut gaps) = self.balance_derivatives(t, near, &x, &own);
+        let own = multipliers_from_constraint_forces(self, t, near, &(self.mass_matrix(t, near) * x));
+        let (forces, mut gaps) = self.correction_equation_derivatives(t, near, &x, &own);
         let jacobian = self.constraint_jacobian(t, near);
         for k in 0..NH {
             gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
         }
-        let change = matrix_of_columns(|j| {
+        let change = matrix_from_column_function(|j| {
             self.constraint_response(t, near, &-column_or_zeros(&forces, j), &column_or_zeros(&gaps, j))
         });
-        ConfigurationCorrection { x, own, forces, change, done }
+        ConfigurationCorrectionDerivatives { x, own, forces, change, done }
     }
 
     /// Returns the derivatives of the velocity correction `x` that results in the velocity `v`.
-    fn velocity_correction(
+    fn velocity_correction_derivatives(
         &self,
         t: T,
         (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
         x: &SVector<T, NV>,
-    ) -> VelocityCorrection<T, NV, NC> {
-        let own = multipliers_of_forces(self, t, q, &(self.mass_matrix(t, q) * x));
-        let forces = self.balance_derivatives(t, q, x, &own).0;
+    ) -> VelocityCorrectionDerivatives<T, NV, NC> {
+        let own = multipliers_from_constraint_forces(self, t, q, &(self.mass_matrix(t, q) * x));
+        let forces = self.correction_equation_derivatives(t, q, x, &own).0;
         let (still, none) = (SVector::zeros(), SVector::zeros());
         let rates = self.equation_derivatives(t, q, v, &still, &SVector::zeros()).rates_by_q;
         let jacobian = self.constraint_jacobian(t, q);
-        let turned = matrix_of_columns(|j| {
+        let turned = matrix_from_column_function(|j| {
             self.constraint_response(t, q, &-column_or_zeros(&forces, j), &column_or_zeros(&rates, j))
         });
         let kept: SMatrix<T, NV, NV> = SMatrix::identity()
-            + matrix_of_columns::<T, NV, NV>(|j| {
+            + matrix_from_column_function::<T, NV, NV>(|j| {
                 self.constraint_response(t, q, &none, &column_or_zeros(&jacobian, j))
             });
-        VelocityCorrection { own, forces, turned, kept }
+        VelocityCorrectionDerivatives { own, forces, turned, kept }
     }
 }
 
@@ -154,7 +158,8 @@ where
     let mut near = free.q;
     let mut moved = SMatrix::<T, NV, NV>::identity();
     for _ in 0..MOST_CORRECTIONS {
-        let ConfigurationCorrection { x, change, done, .. } = m.configuration_correction(t, &near);
+        let ConfigurationCorrectionDerivatives { x, change, done, .. } =
+            m.configuration_correction_derivatives(t, &near);
         let (by_q, by_x) = m.integrate_derivatives_at(&near, &x);
         moved = product(&(by_q + product(&by_x, &change)), &moved);
         near = m.integrate(&near, &x);
@@ -162,7 +167,8 @@ where
             break;
         }
     }
-    let VelocityCorrection { turned, kept, .. } = m.velocity_correction(t, (&q, &v), &(v - free.v));
+    let VelocityCorrectionDerivatives { turned, kept, .. } =
+        m.velocity_correction_derivatives(t, (&q, &v), &(v - free.v));
     let turned = product(&turned, &moved);
     Ok(Transition {
         q,

@@ -1,12 +1,14 @@
 //! Second derivatives of the projection onto constraints at the end of a step.
 
-use super::curvature::{SecondDerivativesOfTwo, SecondOrderDisplacement};
-use super::projected::{ConfigurationCorrection, MOST_CORRECTIONS, StepCorrections, VelocityCorrection};
+use super::curvature::{SecondOrderDisplacement, TwoVectorSecondDerivatives};
+use super::projected::{
+    ConfigurationCorrectionDerivatives, MOST_CORRECTIONS, StepCorrections, VelocityCorrectionDerivatives,
+};
 use crate::Real;
 use crate::blocks::product;
 use crate::constraint::{
     ConstrainedSecondDerivatives, EquationSecondDerivatives, adjoint_variables, column_or_zeros,
-    multipliers_of_forces, set_column, with_transpose,
+    multipliers_from_constraint_forces, plus_matrix_and_transpose, set_column,
 };
 use crate::integrate::Error;
 use crate::private::{constant, to_f64};
@@ -19,12 +21,12 @@ pub(super) struct ProjectionContraction<T, const NV: usize> {
     pub(super) gradient: (SVector<T, NV>, SVector<T, NV>),
     /// Second derivatives of the contracted projection; the block of second derivatives with respect to the
     /// velocity is zero.
-    pub(super) second: SecondDerivativesOfTwo<T, NV>,
+    pub(super) second: TwoVectorSecondDerivatives<T, NV>,
 }
 
 /// Equations of a correction `x` with multipliers `λ`, contracted with `w`, `z` and `y`: `wᵀ (M x − Jᵀ λ) +
 /// zᵀ J x + yᵀ (J v + …)`.
-struct ContractedCorrection<'a, T, const NV: usize, const NC: usize> {
+struct ContractedCorrectionEquations<'a, T, const NV: usize, const NC: usize> {
     x: &'a SVector<T, NV>,
     lambda: &'a SVector<T, NC>,
     w: &'a SVector<T, NV>,
@@ -32,7 +34,7 @@ struct ContractedCorrection<'a, T, const NV: usize, const NC: usize> {
     y: &'a SVector<T, NC>,
 }
 
-impl<T: Real, const NV: usize, const NC: usize> ContractedCorrection<'_, T, NV, NC> {
+impl<T: Real, const NV: usize, const NC: usize> ContractedCorrectionEquations<'_, T, NV, NC> {
     /// Returns the second derivatives of the contracted correction equations: those of the equations of
     /// motion with acceleration `x`, minus those at zero acceleration.
     fn curvature_of_equations<M, const NQ: usize, const NU: usize, const NH: usize>(
@@ -56,7 +58,7 @@ impl<T: Real, const NV: usize, const NC: usize> ContractedCorrection<'_, T, NV, 
 
 /// Returns the derivatives of the multipliers `λ` of a correction, given the derivatives of the correction
 /// `x` and the additional derivatives `forces` of `M x − Jᵀ λ`.
-fn multiplier_changes<
+fn correction_multiplier_derivatives<
     M,
     T,
     const NQ: usize,
@@ -78,7 +80,7 @@ where
     let all = product(&m.mass_matrix(t, q), change) + forces;
     let mut changes = SMatrix::zeros();
     for j in 0..NV {
-        set_column(&mut changes, j, &multipliers_of_forces(m, t, q, &column_or_zeros(&all, j)));
+        set_column(&mut changes, j, &multipliers_from_constraint_forces(m, t, q, &column_or_zeros(&all, j)));
     }
     changes
 }
@@ -96,7 +98,7 @@ fn correction_curvature<
     m: &M,
     t: T,
     q: &SVector<T, NQ>,
-    found: &ConfigurationCorrection<T, NV, NC>,
+    found: &ConfigurationCorrectionDerivatives<T, NV, NC>,
     factors: &SVector<T, NV>,
 ) -> SMatrix<T, NV, NV>
 where
@@ -104,19 +106,19 @@ where
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     let (w, z) = adjoint_variables(m, t, q, factors);
-    let ConfigurationCorrection { x, own, forces, change, .. } = found;
+    let ConfigurationCorrectionDerivatives { x, own, forces, change, .. } = found;
     let (still, none) = (SVector::zeros(), SVector::zeros());
-    let equations = ContractedCorrection { x, lambda: own, w: &-w, z: &-z, y: &none }
+    let equations = ContractedCorrectionEquations { x, lambda: own, w: &-w, z: &-z, y: &none }
         .curvature_of_equations(m, t, q, &still);
     // The second derivatives of the residuals are derivatives of the Jacobian's rows.
-    let residual_factor = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
-    let holonomic = SVector::from_fn(|k, _| residual_factor(k));
-    let residuals = m.balance_derivatives(t, q, &still, &holonomic).0;
+    let multiplier_or_zero = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
+    let holonomic = SVector::from_fn(|k, _| multiplier_or_zero(k));
+    let residuals = m.correction_equation_derivatives(t, q, &still, &holonomic).0;
     // Derivatives along body axes are not symmetric, but derivatives along `q ⊕ ε dq` are.
-    let residuals = with_transpose(SMatrix::zeros(), &(residuals * constant::<T>(0.5)));
-    let multipliers = multiplier_changes(m, t, q, change, forces);
+    let residuals = plus_matrix_and_transpose(SMatrix::zeros(), &(residuals * constant::<T>(0.5)));
+    let multipliers = correction_multiplier_derivatives(m, t, q, change, forces);
     let mixed = product(&equations.qa, change) + product(&equations.q_lambda, &multipliers);
-    with_transpose(equations.qq + residuals, &mixed)
+    plus_matrix_and_transpose(equations.qq + residuals, &mixed)
 }
 
 /// Returns the derivatives of the projection of a state, contracted with factors of the projected state.
@@ -150,7 +152,7 @@ where
     for stage in &mut way {
         *stage = (near, moved);
         count += 1;
-        let found = m.configuration_correction(t, &near);
+        let found = m.configuration_correction_derivatives(t, &near);
         moved = match displacement_if_on_manifold(&found.x) {
             Some(along) => product(&(along.by_q + product(&along.by_dv, &found.change)), &moved),
             None => moved + product(&found.change, &moved),
@@ -162,39 +164,44 @@ where
     }
 
     let x = v - v_free;
-    let VelocityCorrection { own, forces, turned, kept } = m.velocity_correction(t, (&q, &v), &x);
+    let VelocityCorrectionDerivatives { own, forces, turned, kept } =
+        m.velocity_correction_derivatives(t, (&q, &v), &x);
     let (w, z) = adjoint_variables(m, t, &q, of_v);
     let none = SVector::zeros();
-    let equations = ContractedCorrection { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }
+    let equations = ContractedCorrectionEquations { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }
         .curvature_of_equations(m, t, &q, &v);
     let by_x = equations.qa + equations.qv;
     let identity = SMatrix::<T, NV, NV>::identity();
     let mixed = product(&by_x, &turned)
-        + product(&equations.q_lambda, &multiplier_changes(m, t, &q, &turned, &forces));
+        + product(&equations.q_lambda, &correction_multiplier_derivatives(m, t, &q, &turned, &forces));
     let change = kept - identity;
     let by_v = equations.qv
         + product(&by_x, &change)
-        + product(&equations.q_lambda, &multiplier_changes(m, t, &q, &change, &SMatrix::zeros()));
-    let mut qq = moved.tr_mul(&product(&with_transpose(equations.qq, &mixed), &moved));
+        + product(
+            &equations.q_lambda,
+            &correction_multiplier_derivatives(m, t, &q, &change, &SMatrix::zeros()),
+        );
+    let mut qq = moved.tr_mul(&product(&plus_matrix_and_transpose(equations.qq, &mixed), &moved));
     let qv = moved.tr_mul(&by_v);
 
     let mut gradient = of_q + turned.tr_mul(of_v);
     for (near, moved) in way.iter().take(count).rev() {
-        let found = m.configuration_correction(t, near);
+        let found = m.configuration_correction_derivatives(t, near);
         let mut of_x = gradient;
         let mut own = SMatrix::zeros();
         if let Some(along) = displacement_if_on_manifold(&found.x) {
             of_x = along.by_dv.tr_mul(&gradient);
-            let SecondDerivativesOfTwo { mixed, second, .. } = along.curvature_of_displacement(m, &gradient);
+            let TwoVectorSecondDerivatives { mixed, second, .. } =
+                along.curvature_of_displacement(m, &gradient);
             let twice =
                 second.map_or_else(SMatrix::zeros, |b| found.change.tr_mul(&product(&b, &found.change)));
-            own = with_transpose(twice, &product(&mixed, &found.change));
+            own = plus_matrix_and_transpose(twice, &product(&mixed, &found.change));
             gradient = along.by_q.tr_mul(&gradient);
         }
         own += correction_curvature(m, t, near, &found, &of_x);
         qq += moved.tr_mul(&product(&own, moved));
         gradient += found.change.tr_mul(&of_x);
     }
-    let second = SecondDerivativesOfTwo { first: Some(qq), mixed: qv, second: None };
+    let second = TwoVectorSecondDerivatives { first: Some(qq), mixed: qv, second: None };
     Ok(ProjectionContraction { gradient: (gradient, kept.tr_mul(of_v)), second })
 }

@@ -1,8 +1,8 @@
 //! Second derivatives of steps, contracted with factors: the curvature that differential dynamic programming
 //! adds to the costs.
 
-use super::curvature::{SecondDerivativesOfTwo, SecondOrderDisplacement};
-use super::explicit::{DifferentiatedStart, VectorWithDerivatives};
+use super::curvature::{SecondOrderDisplacement, TwoVectorSecondDerivatives};
+use super::explicit::{DifferentiatedStepStart, VectorWithDerivatives};
 use super::{ContactStepVisitor, DifferentiableStep, projection};
 use crate::constraint::{ConstrainedSecondDerivatives, ConstraintError, CurvatureVisitor};
 use crate::derivatives::LinearMotion;
@@ -82,7 +82,8 @@ where
     method.check()?;
     let found = if M::CONSTRAINED {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
-        let through = ConstrainedCurvature { through: ContactStepVisitor { method, t, q, v, u }, factors };
+        let through =
+            ConstrainedHessianArguments { through: ContactStepVisitor { method, t, q, v, u }, factors };
         mechanism.visit_constraint_curvature(through).unwrap_or(Err(undetermined))?
     } else {
         method.differentiate_twice(mechanism, t, q, v, u, factors)
@@ -93,13 +94,13 @@ where
 
 /// Arguments of a step with constraints, and the factors of the state after it in the contracted second
 /// derivatives.
-struct ConstrainedCurvature<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
+struct ConstrainedHessianArguments<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
     through: ContactStepVisitor<'a, S, T, NQ, NV, NU>,
     factors: (&'a SVector<T, NV>, &'a SVector<T, NV>),
 }
 
 impl<S, T, const NQ: usize, const NV: usize, const NU: usize> CurvatureVisitor<T, NQ, NV, NU>
-    for ConstrainedCurvature<'_, S, T, NQ, NV, NU>
+    for ConstrainedHessianArguments<'_, S, T, NQ, NV, NU>
 where
     T: Real,
     S: TwiceDifferentiableStep<T>,
@@ -118,10 +119,12 @@ where
         let added = projection::curvature_of_projection(mechanism, end, (&free.q, &free.v), self.factors)?;
         let mut sum =
             method.differentiate_twice(mechanism, t, q, v, u, (&added.gradient.0, &added.gradient.1));
-        let new_sensitive = |value, by_q, by_v, by_u| VectorWithDerivatives { value, by_q, by_v, by_u };
-        let displacement = new_sensitive(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
-        let velocity = new_sensitive(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
-        added.second.add_to(&mut sum, &displacement, &velocity);
+        let new_vector_with_derivatives =
+            |value, by_q, by_v, by_u| VectorWithDerivatives { value, by_q, by_v, by_u };
+        let displacement =
+            new_vector_with_derivatives(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
+        let velocity = new_vector_with_derivatives(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
+        added.second.add_second_derivatives_to(&mut sum, &displacement, &velocity);
         Ok(sum)
     }
 }
@@ -171,7 +174,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
             return now.second_order_motion(q, v, u, &((by_v + by_q * h) * h));
         }
         let motion = Derivatives::linear_motion(&now, q, v, u);
-        let first = VectorWithDerivatives::start_velocity(v);
+        let first = VectorWithDerivatives::start_velocity_with_derivatives(v);
         let change = VectorWithDerivatives {
             value: motion.acceleration,
             by_q: motion.by_q,
@@ -182,9 +185,9 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
         let moved = SecondOrderDisplacement::new(mechanism, &displacement.value);
         let of_displacement = moved.by_dv.tr_mul(by_q);
         let mut sum = now.second_order_motion(q, v, u, &((by_v + of_displacement * h) * h));
-        moved.curvature_of_displacement(mechanism, by_q).add_to(
+        moved.curvature_of_displacement(mechanism, by_q).add_second_derivatives_to(
             &mut sum,
-            &VectorWithDerivatives::zero_displacement(),
+            &VectorWithDerivatives::zero_displacement_with_derivatives(),
             &displacement,
         );
         sum
@@ -216,9 +219,9 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        let (h, start) = (self.nominal_step_length(), DifferentiatedStart { mechanism, t, q, u });
+        let (h, start) = (self.nominal_step_length(), DifferentiatedStepStart { mechanism, t, q, u });
         let half = h * constant(0.5);
-        let first = VectorWithDerivatives::start_velocity(v);
+        let first = VectorWithDerivatives::start_velocity_with_derivatives(v);
         let begin = DifferentiatedStage::new(&start, T::zero(), first.scaled_derivatives(T::zero()), first);
         let next_stage = |after: T, stage: &DifferentiatedStage<T, NQ, NV, NU>| {
             let v = first.plus_scaled(after, &stage.stage_acceleration());
@@ -244,7 +247,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
                 .plus_scaled(two, &k3)
                 .plus_scaled(T::one(), &k4)
                 .scaled_derivatives(sixth);
-            of_end = add_displacement(mechanism, &displacement, by_q, &mut sum);
+            of_end = add_displacement_second_derivatives(mechanism, &displacement, by_q, &mut sum);
         }
         // Backwards: factors of each stage's rates, from the end of the step and from later stages.
         let (mut of_displacement, mut of_v) = (SVector::zeros(), SVector::zeros());
@@ -256,7 +259,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
         ] {
             let (rate, acceleration) =
                 (of_end * weight + of_displacement * reach, by_v * weight + of_v * reach);
-            stage.add_curvature(&start, &acceleration, &mut sum);
+            stage.add_stage_second_derivatives(&start, &acceleration, &mut sum);
             of_displacement = stage.motion.by_q.tr_mul(&acceleration);
             of_v = stage.motion.by_v.tr_mul(&acceleration);
             if NQ == NV {
@@ -264,12 +267,13 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
                 continue;
             }
             let (way, v) = (&stage.displacement, &stage.v);
-            of_displacement = add_displacement(mechanism, way, &of_displacement, &mut sum);
+            of_displacement = add_displacement_second_derivatives(mechanism, way, &of_displacement, &mut sum);
             let (by_way, by_v) = mechanism.tangent_rate_derivatives(&way.value, &v.value);
             of_displacement += by_way.tr_mul(&rate);
             of_v += by_v.tr_mul(&rate);
             let (twice, mixed) = mechanism.tangent_rate_second_derivatives(&way.value, &v.value, &rate);
-            SecondDerivativesOfTwo { first: Some(twice), mixed, second: None }.add_to(&mut sum, way, v);
+            TwoVectorSecondDerivatives { first: Some(twice), mixed, second: None }
+                .add_second_derivatives_to(&mut sum, way, v);
         }
         sum
     }
@@ -277,7 +281,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
 
 /// Adds the second derivatives of `λᵀ ξ`, with `ξ` the motion of a configuration displaced from the start.
 /// Returns the gradient with respect to the displacement.
-fn add_displacement<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn add_displacement_second_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     displacement: &VectorWithDerivatives<T, NV, NU>,
     lambda: &SVector<T, NV>,
@@ -288,9 +292,9 @@ where
     M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
     let moved = SecondOrderDisplacement::new(mechanism, &displacement.value);
-    moved.curvature_of_displacement(mechanism, lambda).add_to(
+    moved.curvature_of_displacement(mechanism, lambda).add_second_derivatives_to(
         sum,
-        &VectorWithDerivatives::zero_displacement(),
+        &VectorWithDerivatives::zero_displacement_with_derivatives(),
         displacement,
     );
     moved.by_dv.tr_mul(lambda)
@@ -303,7 +307,7 @@ fn zero_second_order<T: Real, const NV: usize, const NU: usize>() -> InputSecond
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedStage<T, NQ, NV, NU> {
     fn new<M>(
-        start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+        start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
         after: T,
         displacement: VectorWithDerivatives<T, NV, NU>,
         v: VectorWithDerivatives<T, NV, NU>,
@@ -321,7 +325,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedS
     /// the step.
     fn displacement_rate<M>(
         &self,
-        start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+        start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
@@ -344,9 +348,9 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedS
     }
 
     /// Adds the second derivatives of `λᵀ v̇` at this stage with respect to the start of the step.
-    fn add_curvature<M>(
+    fn add_stage_second_derivatives<M>(
         &self,
-        start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+        start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
         lambda: &SVector<T, NV>,
         sum: &mut InputSecondOrder<T, NV, NU>,
     ) where
@@ -360,6 +364,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedS
         sum.4 += q.by_v.tr_mul(&qu) + v.by_v.tr_mul(&vu);
         let crossed = qu.tr_mul(&q.by_u) + vu.tr_mul(&v.by_u);
         sum.5 += crossed + crossed.transpose() + uu;
-        SecondDerivativesOfTwo { first: Some(qq), mixed: qv, second: Some(vv) }.add_to(sum, q, v);
+        TwoVectorSecondDerivatives { first: Some(qq), mixed: qv, second: Some(vv) }
+            .add_second_derivatives_to(sum, q, v);
     }
 }

@@ -1,7 +1,7 @@
 //! Derivatives of steps of [`TimeStepping`]: the motion without contact impulses at the end, and
 //! displacements and transported velocities. Derivatives of the impulses are in `contact`.
 
-use super::explicit::{DifferentiatedStart, VectorWithDerivatives, runge_kutta_change};
+use super::explicit::{DifferentiatedStepStart, VectorWithDerivatives, runge_kutta_change};
 use super::{DifferentiableStep, Transition};
 use crate::Real;
 use crate::blocks::{NearlyIdentity, add_product, add_product_of_some, is_zero, scale};
@@ -38,19 +38,19 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     }
 
     /// Returns the indices of the velocities of ball and free joints.
-    fn rotating_indices(&self) -> &[usize] {
+    fn ball_and_free_velocity_indices(&self) -> &[usize] {
         self.indices.get(self.rotating.0..self.rotating.1).unwrap_or(&[])
     }
 
     /// Adds a matrix, which is zero outside of the rows and columns of ball and free joints, times the
     /// derivatives of a vector.
-    fn add_mapped<T: Real, const NU: usize>(
+    fn add_rotational_block_product<T: Real, const NU: usize>(
         &self,
         sum: &mut VectorWithDerivatives<T, NV, NU>,
         by: &SMatrix<T, NV, NV>,
         of: &VectorWithDerivatives<T, NV, NU>,
     ) {
-        let places = self.rotating_indices();
+        let places = self.ball_and_free_velocity_indices();
         add_product_of_some(&mut sum.by_q, places, by, &of.by_q);
         add_product_of_some(&mut sum.by_v, places, by, &of.by_v);
         if !is_zero(&of.by_u) {
@@ -60,7 +60,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
 
     /// Multiplies derivatives from the left by a matrix that is the identity outside of the rows and columns
     /// of ball and free joints.
-    fn multiply_from_left<T: Real, const NU: usize>(
+    fn multiply_derivatives_from_left<T: Real, const NU: usize>(
         &self,
         by: &SMatrix<T, NV, NV>,
         of: &mut VectorWithDerivatives<T, NV, NU>,
@@ -87,14 +87,14 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         }
         let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(q, &by.value);
         let (mut turned, mut way) = (*motion, *by);
-        self.multiply_from_left(&by_q, &mut turned);
-        self.multiply_from_left(&by_dv, &mut way);
+        self.multiply_derivatives_from_left(&by_q, &mut turned);
+        self.multiply_derivatives_from_left(&by_dv, &mut way);
         (to, turned.plus_scaled(T::one(), &way))
     }
 
     /// Returns [`displaced_configuration`](Self::displaced_configuration) for a displacement during which the
     /// origins of free bodies move along straight lines.
-    fn displaced_in_space<T: Real, const NQ: usize, const NU: usize>(
+    fn displaced_along_straight_lines<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         from: (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
@@ -109,7 +109,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         }
         let mut translation =
             VectorWithDerivatives { value: self.mechanism.translation(t, &by.value), ..*by };
-        translation.keep_rows(|k| is_linear.get(k) == Some(&T::one()));
+        translation.zero_other_derivatives(|k| is_linear.get(k) == Some(&T::one()));
         let remainder = by.plus_scaled(-T::one(), &translation);
         let (q, motion) = self.displaced_configuration(from, &translation);
         self.displaced_configuration((&q, &motion), &remainder)
@@ -132,7 +132,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         }
         let (_, by_dv) = self.mechanism.integrate_derivatives_at(q, &by.value);
         let mut end = *by;
-        self.multiply_from_left(&by_dv, &mut end);
+        self.multiply_derivatives_from_left(&by_dv, &mut end);
         self.transport_to_end(t, q, (&by.value, &end), v)
     }
 
@@ -153,7 +153,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
 
     /// Returns an acceleration at the velocity `v`, with its derivatives with respect to the state, without
     /// the rotation of the axes of ball and free joints.
-    fn in_space<T: Real, const NQ: usize, const NU: usize>(
+    fn acceleration_without_axis_rotation<T: Real, const NQ: usize, const NU: usize>(
         &self,
         mut acceleration: VectorWithDerivatives<T, NV, NU>,
         (t, v): (T, &SVector<T, NV>),
@@ -163,7 +163,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     {
         let m = self.mechanism;
         acceleration.value -= m.carry_rate(t, v, v);
-        for k in self.rotating_indices() {
+        for k in self.ball_and_free_velocity_indices() {
             let unit = SVector::<T, NV>::from_fn(|i, _| if i == *k { T::one() } else { T::zero() });
             // The rate is bilinear.
             let change = m.carry_rate(t, &unit, v) + m.carry_rate(t, v, &unit);
@@ -196,21 +196,22 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
             |k: usize, length: T| SVector::<T, NV>::from_fn(|i, _| if i == k { length } else { T::zero() });
         let (mut axes, mut rotation) = (SMatrix::<T, NV, NV>::identity(), SMatrix::<T, NV, NV>::zeros());
         let right_angle = constant::<T>(core::f64::consts::FRAC_PI_2);
-        for k in self.rotating_indices() {
+        for k in self.ball_and_free_velocity_indices() {
             if let Some(column) = axes.data.0.get_mut(*k) {
                 *column = m.carry(t, q, dv, &unit(*k, T::one())).data.0[0];
             }
             // By Rodrigues' formula, half the difference of a vector rotated by right angles in both
             // directions is its cross product with the axis: the derivative of a rotation about it.
-            let rotated_value = |angle: T| m.carry(t, q, &unit(*k, angle), &value);
+            let transported_by_rotation = |angle: T| m.carry(t, q, &unit(*k, angle), &value);
             if let Some(column) = rotation.data.0.get_mut(*k) {
-                *column = ((rotated_value(right_angle) - rotated_value(-right_angle)) * constant::<T>(0.5))
-                    .data
-                    .0[0];
+                *column = ((transported_by_rotation(right_angle) - transported_by_rotation(-right_angle))
+                    * constant::<T>(0.5))
+                .data
+                .0[0];
             }
         }
-        self.multiply_from_left(&axes, &mut carried);
-        self.add_mapped(&mut carried, &rotation, end);
+        self.multiply_derivatives_from_left(&axes, &mut carried);
+        self.add_rotational_block_product(&mut carried, &rotation, end);
         carried
     }
 
@@ -236,7 +237,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
 }
 
 /// End of a step before the impulses of its contacts, with derivatives.
-pub(crate) struct SmoothMotion<T, const NQ: usize, const NV: usize, const NU: usize> {
+pub(crate) struct StepBeforeImpulses<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub(crate) q: (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
     /// Velocity at the end of the step, including the contribution of the assumed contact forces.
     pub(crate) v: VectorWithDerivatives<T, NV, NU>,
@@ -245,32 +246,33 @@ pub(crate) struct SmoothMotion<T, const NQ: usize, const NV: usize, const NU: us
 }
 
 /// Returns the acceleration without contacts at the start of a step, with the velocity `v`, as
-/// [`smooth_motion`] takes it.
-pub(crate) fn acceleration_at_start<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+/// [`motion_under_contact_forces`] takes it.
+pub(crate) fn smooth_acceleration_at_start<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     method: &TimeStepping<T>,
-    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
 ) -> VectorWithDerivatives<T, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    let acceleration = start.acceleration_in_state(T::zero(), (start.q, v));
+    let acceleration = start.acceleration_with_derivatives(T::zero(), (start.q, v));
     match method.has_four_stages() {
         true => acceleration,
-        false => ConfigurationManifold::new(start.mechanism).in_space(acceleration, (start.t, v)),
+        false => ConfigurationManifold::new(start.mechanism)
+            .acceleration_without_axis_rotation(acceleration, (start.t, v)),
     }
 }
 
 /// Returns the motion in a step with the accelerations `before` at its start, under contact forces that add
 /// `rate` to the velocity per second.
-pub(crate) fn smooth_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn motion_under_contact_forces<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     method: &TimeStepping<T>,
-    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     v: &VectorWithDerivatives<T, NV, NU>,
     before: &VectorWithDerivatives<T, NV, NU>,
     rate: Option<&VectorWithDerivatives<T, NV, NU>>,
-) -> SmoothMotion<T, NQ, NV, NU>
+) -> StepBeforeImpulses<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -282,12 +284,12 @@ where
 }
 
 fn midpoint_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     h: T,
     v: &VectorWithDerivatives<T, NV, NU>,
     before: &VectorWithDerivatives<T, NV, NU>,
     rate: Option<&VectorWithDerivatives<T, NV, NU>>,
-) -> SmoothMotion<T, NQ, NV, NU>
+) -> StepBeforeImpulses<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -295,22 +297,22 @@ where
     let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
     let to_middle = v.scaled_derivatives(half);
     // Only the configuration and the velocity at the start move the middle.
-    let (middle, motion) = manifold.displaced_in_space(
+    let (middle, motion) = manifold.displaced_along_straight_lines(
         start.t,
-        (start.q, &VectorWithDerivatives::zero_displacement()),
+        (start.q, &VectorWithDerivatives::zero_displacement_with_derivatives()),
         &to_middle,
     );
-    let in_middle = |x: &VectorWithDerivatives<T, NV, NU>| {
+    let velocity_at_midpoint_axes = |x: &VectorWithDerivatives<T, NV, NU>| {
         manifold.transported_or_same_speeds(start.t, start.q, &to_middle, x)
     };
     let rate = rate.map(|rate| manifold.transported_velocity(start.t, start.q, &to_middle, rate));
-    let under_contacts = |v: VectorWithDerivatives<T, NV, NU>, h: T| match &rate {
+    let velocity_with_contact_rate = |v: VectorWithDerivatives<T, NV, NU>, h: T| match &rate {
         Some(rate) => v.plus_scaled(h, rate),
         None => v,
     };
-    let velocity = under_contacts(in_middle(&v.plus_scaled(half, before)), half);
-    let own = start.acceleration_in_state(half, (&middle, &velocity.value));
-    let own = manifold.in_space(own, (start.t + half, &velocity.value));
+    let velocity = velocity_with_contact_rate(velocity_at_midpoint_axes(&v.plus_scaled(half, before)), half);
+    let own = start.acceleration_with_derivatives(half, (&middle, &velocity.value));
+    let own = manifold.acceleration_without_axis_rotation(own, (start.t + half, &velocity.value));
     let mut acceleration =
         VectorWithDerivatives { value: own.value, by_q: own.by_q, by_v: own.by_q, by_u: own.by_u };
     if !manifold.has_fixed_axes() {
@@ -322,23 +324,24 @@ where
     add_product(&mut acceleration.by_q, &own.by_v, &velocity.by_q);
     add_product(&mut acceleration.by_v, &own.by_v, &velocity.by_v);
     add_product(&mut acceleration.by_u, &own.by_v, &velocity.by_u);
-    let in_axes_of_middle = under_contacts(in_middle(v).plus_scaled(h, &acceleration), h);
+    let in_axes_of_middle =
+        velocity_with_contact_rate(velocity_at_midpoint_axes(v).plus_scaled(h, &acceleration), h);
     let to_end = in_axes_of_middle.scaled_derivatives(half);
     let end = manifold.transported_or_same_speeds(start.t + half, &middle, &to_end, &in_axes_of_middle);
     let given = rate.map(|rate| {
         manifold.transported_velocity(start.t + half, &middle, &to_end, &rate).scaled_derivatives(h)
     });
-    let q = manifold.displaced_in_space(start.t + half, (&middle, &motion), &to_end);
-    SmoothMotion { q, v: end, given }
+    let q = manifold.displaced_along_straight_lines(start.t + half, (&middle, &motion), &to_end);
+    StepBeforeImpulses { q, v: end, given }
 }
 
 fn four_stage_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     h: T,
     v: &VectorWithDerivatives<T, NV, NU>,
     before: &VectorWithDerivatives<T, NV, NU>,
     rate: Option<&VectorWithDerivatives<T, NV, NU>>,
-) -> SmoothMotion<T, NQ, NV, NU>
+) -> StepBeforeImpulses<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -374,7 +377,7 @@ where
         VectorWithDerivatives::plus_scaled,
         VectorWithDerivatives::scaled_derivatives,
     );
-    SmoothMotion {
+    StepBeforeImpulses {
         q: start.displace_configuration(&way),
         v: v.plus_scaled(T::one(), &change),
         given: at_end.map(|rate| rate.scaled_derivatives(h)),
@@ -430,11 +433,13 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
         if let Some(done) = mechanism.visit_contacts(step) {
             return done;
         }
-        let (start, v) =
-            (DifferentiatedStart { mechanism, t, q, u }, VectorWithDerivatives::start_velocity(v));
-        let before = acceleration_at_start(self, &start, &v.value);
-        let motion = smooth_motion(self, &start, &v, &before, None);
-        *into = Transition::from_sensitive(&motion.q, &motion.v);
+        let (start, v) = (
+            DifferentiatedStepStart { mechanism, t, q, u },
+            VectorWithDerivatives::start_velocity_with_derivatives(v),
+        );
+        let before = smooth_acceleration_at_start(self, &start, &v.value);
+        let motion = motion_under_contact_forces(self, &start, &v, &before, None);
+        *into = Transition::from_differentiated_state(&motion.q, &motion.v);
         Ok(())
     }
 }

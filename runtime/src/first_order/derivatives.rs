@@ -9,7 +9,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// Returns the block matrix of `block` (velocities), with the rows of the first-order states below it and
 /// their columns next to it.
-fn bordered_matrix<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+fn matrix_bordered_by_states<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     block: &SMatrix<T, NV, NV>,
     below: &SMatrix<T, NX, NV>,
     beside: &SMatrix<T, NV, NX>,
@@ -100,8 +100,8 @@ where
         let by_x = m.inverse_dynamics_by_states(t, q, &v, &a);
         let (zero, none) = (SMatrix::zeros(), SMatrix::zeros());
         (
-            bordered_matrix(&by_q, &-rates.by_q, &zero, &none),
-            bordered_matrix(&by_v, &-rates.by_v, &by_x, &-rates.by_x),
+            matrix_bordered_by_states(&by_q, &-rates.by_q, &zero, &none),
+            matrix_bordered_by_states(&by_v, &-rates.by_v, &by_x, &-rates.by_x),
         )
     }
 
@@ -118,8 +118,8 @@ where
         let by_x = m.forward_dynamics_by_states(t, q, &v, &tau);
         let (zero, none) = (SMatrix::zeros(), SMatrix::zeros());
         (
-            bordered_matrix(&by_q, &rates.by_q, &zero, &none),
-            bordered_matrix(&by_v, &rates.by_v, &by_x, &rates.by_x),
+            matrix_bordered_by_states(&by_q, &rates.by_q, &zero, &none),
+            matrix_bordered_by_states(&by_v, &rates.by_v, &by_x, &rates.by_x),
             with_diagonal::<_, NV, NX, NE>(&by_force, nalgebra::one()),
         )
     }
@@ -156,8 +156,8 @@ where
             entry.copied().unwrap_or(nalgebra::zero())
         });
         (
-            bordered_matrix(&by_q, &(rates.by_q - alone.by_q), &zero, &none),
-            bordered_matrix(&by_v, &(rates.by_v - alone.by_v), &by_x, &(rates.by_x - alone.by_x)),
+            matrix_bordered_by_states(&by_q, &(rates.by_q - alone.by_q), &zero, &none),
+            matrix_bordered_by_states(&by_v, &(rates.by_v - alone.by_v), &by_x, &(rates.by_x - alone.by_x)),
             by_inputs,
         )
     }

@@ -49,7 +49,7 @@ pub fn with_diagonal<T: Real, const NV: usize, const NX: usize, const NE: usize>
 }
 
 /// Concatenates the names, or the units, of velocities and first-order states.
-const fn join_names<const NV: usize, const NX: usize, const NE: usize>(
+const fn join_velocity_and_state_names<const NV: usize, const NX: usize, const NE: usize>(
     velocities: [&'static str; NV],
     states: [&'static str; NX],
 ) -> [&'static str; NE] {
@@ -93,9 +93,10 @@ where
 {
     type Scalar = M::Scalar;
     const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NE] = join_names(M::VELOCITIES, M::STATES);
+    const VELOCITIES: [&'static str; NE] = join_velocity_and_state_names(M::VELOCITIES, M::STATES);
     const INPUTS: [&'static str; NU] = M::INPUTS;
-    const VELOCITY_UNITS: [&'static str; NE] = join_names(M::VELOCITY_UNITS, M::STATE_UNITS);
+    const VELOCITY_UNITS: [&'static str; NE] =
+        join_velocity_and_state_names(M::VELOCITY_UNITS, M::STATE_UNITS);
     const INPUT_UNITS: [&'static str; NU] = M::INPUT_UNITS;
 
     fn neutral(&self) -> SVector<M::Scalar, NQ> {

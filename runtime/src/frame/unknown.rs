@@ -37,7 +37,7 @@ impl Message {
 
     /// Returns the message that a list does not contain this name, with the most similar names, or all names
     /// if there are few.
-    pub const fn unknown_name(list: &str, names: &[&str], name: &str) -> Message {
+    pub const fn message_for_unknown_name(list: &str, names: &[&str], name: &str) -> Message {
         let start = Message::empty_message()
             .append_text("`")
             .append_text(list)
@@ -121,7 +121,8 @@ const fn edit_distance(a: &[u8], b: &[u8]) -> usize {
     } else {
         limit
     };
-    let far = if least >= 3 && (contains_name(a, b) || contains_name(b, a)) { EDITS + 1 } else { EDITS + 2 };
+    let far =
+        if least >= 3 && (contains_bytes(a, b) || contains_bytes(b, a)) { EDITS + 1 } else { EDITS + 2 };
     if a.len() > LETTERS || b.len() > LETTERS || a.len().abs_diff(b.len()) > limit {
         return far;
     }
@@ -167,7 +168,7 @@ const fn edit_distance(a: &[u8], b: &[u8]) -> usize {
 }
 
 /// Whether the bytes `b` occur as a substring in `a`.
-const fn contains_name(a: &[u8], b: &[u8]) -> bool {
+const fn contains_bytes(a: &[u8], b: &[u8]) -> bool {
     let mut start = 0;
     while start + b.len() <= a.len() {
         let mut k = 0;

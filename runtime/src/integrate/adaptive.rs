@@ -48,7 +48,7 @@ impl<T: Real, const NV: usize> AdaptiveMemory<T, NV> {
     /// # Errors
     ///
     /// [`Error::TooManySteps`] above the maximum number of trials.
-    pub(super) fn count_trial(&mut self, settings: &AdaptiveSettings<T>, t: T) -> Result<(), Error> {
+    pub(super) fn count_trial_step(&mut self, settings: &AdaptiveSettings<T>, t: T) -> Result<(), Error> {
         self.trials += 1;
         if self.trials > settings.most_steps { Err(Error::TooManySteps { t: to_f64(t) }) } else { Ok(()) }
     }
@@ -115,7 +115,7 @@ impl<T: Real> AdaptiveSettings<T> {
 
     /// Returns the next step sizes after an error estimate, for an accepted and for a rejected step: the
     /// controller of DOPRI5 and related programs.
-    fn next_steps(control: &StepControl, h: T, error: T, last: T) -> (T, T) {
+    fn next_step_sizes(control: &StepControl, h: T, error: T, last: T) -> (T, T) {
         let ([longer, shorter], safety) = (control.factors, constant::<T>(0.9));
         let raw = error.powf(constant(control.exponent));
         let smooth = raw / last.powf(constant(control.beta)) / safety;
@@ -162,12 +162,12 @@ impl<T: Real> AdaptiveSettings<T> {
         loop {
             let (h, t) = self.fit_step_length(wanted, start.t, until);
             self.check_step_size([start.t, t], h, wanted, finite, system.time(start.t))?;
-            memory.count_trial(self, start.t)?;
+            memory.count_trial_step(self, start.t)?;
             let trial =
                 attempt(system, &TrialStep { start, acceleration: &acceleration, scale: &scale, h, t })?;
             let error = trial.error;
             finite = error.is_finite() && is_finite(&trial.step.end.q);
-            let (larger, smaller) = Self::next_steps(control, h, error, memory.error);
+            let (larger, smaller) = Self::next_step_sizes(control, h, error, memory.error);
             if !finite || error > T::one() {
                 wanted = if finite { smaller } else { h * constant(0.1) };
                 rejected = true;

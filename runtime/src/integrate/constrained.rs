@@ -35,19 +35,19 @@ pub(super) fn displacement_to_midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ
     half: T,
 ) -> SVector<T, NV> {
     if system.has_speeds() {
-        speeds::displacement_from_end_speeds(|way| system.displacement_rate(q, way, v), v, half)
+        speeds::displacement_given_final_velocity(|way| system.displacement_rate(q, way, v), v, half)
     } else {
         v * half
     }
 }
 
 /// Convergence test for the iteration of a midpoint velocity: whether changes are at rounding level.
-pub(super) struct VelocityConvergence<T> {
+pub(super) struct VelocityConvergenceTest<T> {
     half: T,
     last: Option<T>,
 }
 
-impl<T: Real> VelocityConvergence<T> {
+impl<T: Real> VelocityConvergenceTest<T> {
     /// Returns the test for steps of length `2 half`.
     pub(super) fn new(half: T) -> Self {
         Self { half, last: None }
@@ -80,7 +80,7 @@ pub(super) fn divergence_error<T: Real>(t: T, iterations: usize) -> Error {
 }
 
 /// Maximum number of iterations of a reliable step, if it changed the velocity much (`FEW_ITERATIONS`) or
-/// little (`MANY_ITERATIONS`), see [`is_crossing`].
+/// little (`MANY_ITERATIONS`), see [`crosses_singular_configuration`].
 const FEW_ITERATIONS: usize = 8;
 const MANY_ITERATIONS: usize = 24;
 
@@ -101,24 +101,29 @@ pub(super) struct MidpointSolution<T, const NV: usize> {
 
 /// Whether the configuration at the end of the previous step is singular; `None` if unknown.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Ended(Option<bool>);
+pub struct PreviousEndSingularity(Option<bool>);
 
 /// Whether the step passes a singular configuration, so that its solution `found` is not reliable. This is
 /// tested at its start and end; if the iteration failed, took many iterations or changed the velocity much,
 /// also in between.
-pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn crosses_singular_configuration<
+    T: Real,
+    D: Dynamics<T, NQ, NV>,
+    const NQ: usize,
+    const NV: usize,
+>(
     system: &D,
     start: &State<T, NQ, NV>,
     h: T,
     found: &Result<MidpointSolution<T, NV>, Error>,
-    ended: &mut Ended,
+    ended: &mut PreviousEndSingularity,
 ) -> bool {
     let is_singular_state = |t: T, q: &SVector<T, NQ>| system.is_nearly_singular(t, q, &SVector::zeros());
-    let is_small_change = |v: &SVector<T, NV>| {
+    let is_small_velocity_change = |v: &SVector<T, NV>| {
         largest_magnitude(&(v - start.v)) <= largest_magnitude(&start.v) * constant(LEAP)
     };
     let has_few_iterations = |found: &&MidpointSolution<T, NV>| {
-        found.iterations <= if is_small_change(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
+        found.iterations <= if is_small_velocity_change(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
     };
     if let Some(found) = found.as_ref().ok().filter(has_few_iterations) {
         // Constraint impulses at a singular end do not remove the velocities that only the constraints of
@@ -148,7 +153,7 @@ struct AitkenRelaxation<T, const NV: usize> {
 impl<T: Real, const NV: usize> AitkenRelaxation<T, NV> {
     /// Returns the relaxation factor for the next change of an iteration: one while the changes decrease
     /// fast.
-    fn next_factor(&mut self, change: &SVector<T, NV>) -> T {
+    fn next_relaxation_factor(&mut self, change: &SVector<T, NV>) -> T {
         let (now, before) = (largest_magnitude(change), largest_magnitude(&self.last));
         let slow = before > T::zero() && now > before * constant(0.3) && now < before * constant(1e3);
         // Scaled by their magnitudes, so that the squares neither overflow nor underflow.
@@ -165,7 +170,12 @@ impl<T: Real, const NV: usize> AitkenRelaxation<T, NV> {
 /// the impulse at its end. With the momentum `p` at the start and its `rate` `ṗ(t, q, v)`, the midpoint
 /// satisfies `M(q_m) v = p + Jᵀ(q₀) λ + (h/2) ṗ(q_m, v)` where `q_m = q₀ ⊕ (h/2) v`, and the constraints are
 /// satisfied at `q₀ ⊕ h v`.
-pub(super) fn solve_midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn solve_for_midpoint_velocity<
+    T: Real,
+    D: Dynamics<T, NQ, NV>,
+    const NQ: usize,
+    const NV: usize,
+>(
     system: &mut D,
     rate: impl Fn(&mut D, T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,
     start: &State<T, NQ, NV>,
@@ -175,14 +185,14 @@ pub(super) fn solve_midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, c
 ) -> Result<MidpointSolution<T, NV>, Error> {
     let (half, two) = (h * constant(0.5), constant::<T>(2.0));
     let t = start.t + half;
-    let mut settling = VelocityConvergence::new(half);
+    let mut settling = VelocityConvergenceTest::new(half);
     let mut pace = AitkenRelaxation { last: SVector::zeros(), share: T::one() };
     for iterations in 0..MOST_ITERATIONS {
         let q = system.integrate(&start.q, &displacement_to_midpoint(system, &start.q, &v, half));
         let gain = rate(system, t, &q, &v) * half;
         let own = system.momentum(t, &q, &v);
         let change = system.impulse(start.t, &start.q, &v, h, &(p + gain - own));
-        v += change * pace.next_factor(&change);
+        v += change * pace.next_relaxation_factor(&change);
         if !is_finite(&v) {
             return Err(divergence_error(start.t, iterations));
         }

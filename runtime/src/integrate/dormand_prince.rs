@@ -6,7 +6,7 @@ use crate::Real;
 
 mod stages;
 
-use stages::step_stages;
+use stages::dormand_prince_step;
 
 /// Constants of the step-size controller of DOPRI5.
 const CONTROL: StepControl = StepControl { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, factors: [10.0, 5.0] };
@@ -32,4 +32,4 @@ pub struct DormandPrince<T> {
     settings: AdaptiveSettings<T>,
 }
 
-adaptive!(DormandPrince, CONTROL, |system, attempt, _| step_stages(system, attempt));
+adaptive!(DormandPrince, CONTROL, |system, attempt, _| dormand_prince_step(system, attempt));

@@ -79,10 +79,11 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
         };
         let (square, cube) = path_coefficients(&start.v, &displacement, &after.displacement);
         let terms = [square, cube, a.displacement, b.displacement, c.displacement, d.displacement];
-        step.displacement = step.displacement.with_terms(terms);
+        step.displacement = step.displacement.with_coefficients_from_third(terms);
         let (square, cube) = path_coefficients(acceleration, &(end.v - start.v), &after.velocity);
-        step.velocity =
-            step.velocity.with_terms([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);
+        step.velocity = step
+            .velocity
+            .with_coefficients_from_third([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);
     }
     StepTrial { step, acceleration: Some(after.velocity), error }
 }

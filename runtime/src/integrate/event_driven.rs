@@ -3,7 +3,7 @@
 use super::adaptive::{AdaptiveMemory, AdaptiveSettings, TrialStep, adaptive};
 use super::control::ErrorScale;
 use super::eighth::{CONTROL, trial_step};
-use super::local::ShiftedSystem;
+use super::local::TimeShiftedSystem;
 use super::{
     ContinuousInputs, Dynamics, Error, Inputs, Jump, Method, State, Step, System, TimeStepping,
     project_end_of_step,
@@ -105,7 +105,7 @@ const LONGEST: u32 = 14;
 
 impl<T: Real, const NV: usize> EventMemory<T, NV> {
     /// Counts a step of the given length, in multiples of the shortest time-stepping step.
-    fn count_step(&mut self, length: T, is_shared: bool) {
+    fn count_step_in_short_steps(&mut self, length: T, is_shared: bool) {
         self.shared = if is_shared { LATELY } else { self.shared.saturating_sub(1) };
         let (short, weight) = if self.shared > 0 { (SHORT_SHARED, FEWER) } else { (SHORT, 1) };
         if length < constant(short) {
@@ -117,12 +117,12 @@ impl<T: Real, const NV: usize> EventMemory<T, NV> {
 
     /// Returns whether very short steps accumulate, so that the next step uses time stepping; if so,
     /// decreases their count below the threshold.
-    fn is_stuck(&mut self) -> bool {
-        let is_stuck = self.short > SHORT_STEPS;
-        if is_stuck {
+    fn is_slowed_by_short_steps(&mut self) -> bool {
+        let is_slowed_by_short_steps = self.short > SHORT_STEPS;
+        if is_slowed_by_short_steps {
             self.short = SHORT_STEPS - 1;
         }
-        is_stuck
+        is_slowed_by_short_steps
     }
 }
 
@@ -189,13 +189,13 @@ impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
 }
 
 /// Event-located step of a mechanism with contacts: arguments of the step, and the inputs.
-pub(super) struct LocatedStep<'a, T, I, const NQ: usize, const NV: usize> {
+pub(super) struct EventLocatedStep<'a, T, I, const NQ: usize, const NV: usize> {
     pub(super) section: Section<'a, T, NQ, NV>,
     pub(super) inputs: &'a mut I,
 }
 
 impl<T, I, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
-    for LocatedStep<'_, T, I, NQ, NV>
+    for EventLocatedStep<'_, T, I, NQ, NV>
 where
     T: Real,
     I: Inputs<T, NQ, NV, NU>,
@@ -218,10 +218,12 @@ where
         }
         let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.evaluate(now, &begin.q, &v));
         let (mut located, mut shared) = (None, false);
-        if memory.is_stuck() {
+        if memory.is_slowed_by_short_steps() {
             // The next step locates events again.
-        } else if let Ok((phase, acceleration)) = ContactPhase::of_state(mechanism, now, &begin.q, &v, &tau) {
-            shared = phase.has_ambiguous_slip();
+        } else if let Ok((phase, acceleration)) =
+            ContactPhase::contact_phase_of_state(mechanism, now, &begin.q, &v, &tau)
+        {
+            shared = phase.has_nonunique_sliding_forces();
             let phased = PhasedMechanism { mechanism, phase };
             let mut within =
                 PhaseStepper { phased: &phased, inputs: &mut *inputs, origin, begin, acceleration };
@@ -229,16 +231,16 @@ where
         }
         let resolution = epsilon::<T>().sqrt();
         if let Some(Ok(step)) = located {
-            memory.count_step((step.end.t - start.t) / resolution, shared);
+            memory.count_step_in_short_steps((step.end.t - start.t) / resolution, shared);
             Ok(step)
         } else {
             let h = resolution * constant(f64::from(1_u32 << memory.stretch));
             memory.stretch = (memory.stretch + 1).min(LONGEST);
-            memory.adaptive.count_trial(&settings, start.t)?;
+            memory.adaptive.count_trial_step(&settings, start.t)?;
             let until = until.map_or(start.t + h, |until| until.min(start.t + h));
             let mut system =
                 System::new(mechanism, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-            let mut local = ShiftedSystem { system: &mut system, origin };
+            let mut local = TimeShiftedSystem { system: &mut system, origin };
             TimeStepping::step(h).advance(
                 &mut TimeStepping::step(h).memory(),
                 &mut local,
@@ -274,7 +276,7 @@ where
         let State { t, q, v } = state;
         let (s, t) = (*t - self.begin.t, self.origin + *t);
         let tau = self.phased.mechanism.generalized_forces(t, q, v, &self.inputs.evaluate(t, q, v));
-        PhaseState { s, t, q, v, tau: &tau }.margin_to_event(self.phased)
+        PhaseState { s, t, q, v, tau: &tau }.smallest_event_function_value(self.phased)
     }
 
     /// Advances a step that ends at or before the first event. Returns `None` if an event occurs at the start
@@ -290,7 +292,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
     {
         let Self { phased, origin, begin, .. } = *self;
-        let landing = phased.phase.time_to_landing();
+        let landing = phased.phase.time_to_touchdown();
         let near = landing.map(|s| begin.t + s * constant(1.5));
         let until = match (near, until) {
             (Some(near), Some(until)) => Some(near.min(until)),
@@ -300,7 +302,7 @@ where
             let inputs = &mut *self.inputs;
             let mut system =
                 System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-            let mut local = ShiftedSystem { system: &mut system, origin };
+            let mut local = TimeShiftedSystem { system: &mut system, origin };
             memory.acceleration = Some(self.acceleration);
             let made = settings.advance(&CONTROL, memory, &mut local, &begin, until, |system, attempt| {
                 Ok(trial_step(system, attempt, true))
@@ -350,17 +352,17 @@ where
             if after.0 < least {
                 return None;
             }
-            let state = self.try_step(settings, middle, false).end;
+            let state = self.step_without_event_search(settings, middle, false).end;
             let left = self.event_value(&state);
             // The function is steep where one event follows another, so the smallest negative value counts as
             // past the event.
             if left < T::zero() { after = (middle, Some(left)) } else { before = (middle, Some(left)) }
         }
-        Some(self.try_step(settings, after.0, true))
+        Some(self.step_without_event_search(settings, after.0, true))
     }
 
     /// Returns a trial step of `h` seconds with the current contact modes, without a search for events.
-    fn try_step<const NU: usize>(
+    fn step_without_event_search<const NU: usize>(
         &mut self,
         settings: &AdaptiveSettings<T>,
         h: T,
@@ -373,7 +375,7 @@ where
         let Self { phased, origin, begin, .. } = *self;
         let inputs = &mut *self.inputs;
         let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-        let mut local = ShiftedSystem { system: &mut system, origin };
+        let mut local = TimeShiftedSystem { system: &mut system, origin };
         let dimensions = phased.mechanism.features().dimensions;
         let scale = ErrorScale { relative: settings.relative, absolute: settings.absolute, dimensions };
         let attempt =
@@ -395,7 +397,7 @@ where
         let (q, v) = kept(phased, origin + end.t, &end.q, &end.v);
         let inputs = &mut *self.inputs;
         let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-        let local = ShiftedSystem { system: &mut system, origin };
+        let local = TimeShiftedSystem { system: &mut system, origin };
         Ok(Step { end: project_end_of_step(&local, State { q, v, ..end }, begin.t)?, ..step })
     }
 }

@@ -1,12 +1,12 @@
 //! Implicit midpoint rule, formulated in generalized momenta.
 
 use super::constrained::{
-    Ended, MOST_ITERATIONS, MidpointSolution, VelocityConvergence, divergence_error, is_crossing,
-    solve_midpoint, step_past_singularity,
+    MOST_ITERATIONS, MidpointSolution, PreviousEndSingularity, VelocityConvergenceTest,
+    crosses_singular_configuration, divergence_error, solve_for_midpoint_velocity, step_past_singularity,
 };
 use super::{
-    Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, is_finite, largest_magnitude,
-    project_end_of_step,
+    Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step_length_and_end, is_finite,
+    largest_magnitude, project_end_of_step,
 };
 use crate::Real;
 use crate::private::{constant, to_f64};
@@ -46,7 +46,7 @@ pub struct ImplicitMidpoint<T> {
 pub struct MidpointMemory<T, const NV: usize> {
     momentum: Option<SVector<T, NV>>,
     change: SVector<T, NV>,
-    ended: Ended,
+    ended: PreviousEndSingularity,
 }
 
 /// Solution of the midpoint: configuration, then displacement to it, velocity, rate of the momentum.
@@ -78,14 +78,14 @@ fn improved_displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
 }
 
 /// Solves the midpoint equations by iteration, starting with the estimate `v` of the midpoint's velocity.
-fn iterate_midpoint_equations<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn solve_midpoint_equations_iteratively<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     p: &SVector<T, NV>,
     half: T,
     mut v: SVector<T, NV>,
 ) -> Result<SolvedMidpoint<T, NQ, NV>, Error> {
-    let mut settling = VelocityConvergence::new(half);
+    let mut settling = VelocityConvergenceTest::new(half);
     let mut way = v * half;
     for iterations in 0..MOST_ITERATIONS {
         way = improved_displacement(system, &start.q, &way, &v, half);
@@ -116,7 +116,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        MidpointMemory { momentum: None, change: SVector::zeros(), ended: Ended::default() }
+        MidpointMemory { momentum: None, change: SVector::zeros(), ended: PreviousEndSingularity::default() }
     }
 
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
@@ -133,13 +133,13 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         until: Option<T>,
         dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
-        let (h, t) = equal_step(self.step, start.t, until)?;
+        let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
         let half = h * constant(0.5);
         let p = memory.momentum.unwrap_or_else(|| system.momentum(start.t, &start.q, &start.v));
         let guess = start.v + memory.change;
         let (displacement, v, end, momentum) = if system.is_constrained() {
-            let found = solve_midpoint(system, D::momentum_rate, start, &p, h, guess);
-            let crossing = is_crossing(system, start, h, &found, &mut memory.ended);
+            let found = solve_for_midpoint_velocity(system, D::momentum_rate, start, &p, h, guess);
+            let crossing = crosses_singular_configuration(system, start, h, &found, &mut memory.ended);
             let passed = if crossing { step_past_singularity(system, start, t, h) } else { None };
             let (way, end) = match passed {
                 Some(passed) => passed,
@@ -153,7 +153,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
             // The constraint impulse at the end changes the momentum.
             (way, way / h, end, None)
         } else {
-            let (q, [way, v, rate]) = iterate_midpoint_equations(system, start, &p, half, guess)?;
+            let (q, [way, v, rate]) = solve_midpoint_equations_iteratively(system, start, &p, half, guess)?;
             let p = p + rate * h;
             let (q, displacement) = match system.has_speeds() {
                 true => (system.integrate(&start.q, &(way * constant::<T>(2.0))), way * constant::<T>(2.0)),

@@ -9,13 +9,13 @@ use nalgebra::{SMatrix, SVector};
 
 /// System of equations of motion with time counted from `origin`, so that single precision resolves times
 /// within a step at any time of the run.
-pub(super) struct ShiftedSystem<'a, D, T> {
+pub(super) struct TimeShiftedSystem<'a, D, T> {
     pub(super) system: &'a mut D,
     pub(super) origin: T,
 }
 
 impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics<T, NQ, NV>
-    for ShiftedSystem<'_, D, T>
+    for TimeShiftedSystem<'_, D, T>
 {
     fn time(&self, t: T) -> T {
         self.origin + t
@@ -98,8 +98,13 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.momentum_rate(self.origin + t, q, v)
     }
 
-    fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        self.system.inertial_rate(self.origin + t, q, v)
+    fn velocity_dependent_momentum_rate(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
+        self.system.velocity_dependent_momentum_rate(self.origin + t, q, v)
     }
 
     fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
@@ -143,7 +148,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
     /// Returns the same state with the time `t`, counted from another origin.
-    pub(crate) fn state_with_time(self, t: T) -> Self {
+    pub(crate) fn with_time_replaced(self, t: T) -> Self {
         Self { t, ..self }
     }
 }

@@ -49,7 +49,7 @@ impl<T: Real, const N: usize> Path<T, N> {
 
     /// Sets the coefficients of the interpolating polynomial from the third on (`r₃`) to `terms`; further
     /// coefficients become zero.
-    pub(super) fn with_terms<const K: usize>(self, terms: [SVector<T, N>; K]) -> Self {
+    pub(super) fn with_coefficients_from_third<const K: usize>(self, terms: [SVector<T, N>; K]) -> Self {
         let zero = SVector::zeros();
         let term_or_zero = |k: usize| terms.get(k).copied().unwrap_or(zero);
         Self {

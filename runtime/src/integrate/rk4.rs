@@ -1,6 +1,9 @@
 //! Classical Runge–Kutta method of order 4 with fixed steps.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
+use super::{
+    Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step_length_and_end,
+    project_end_of_step,
+};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -103,7 +106,7 @@ impl<T: Real> Method<T> for Rk4<T> {
         until: Option<T>,
         dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
-        let (h, t) = equal_step(self.step, start.t, until)?;
+        let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
         let known = memory.take();
         let before = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
         let ((displacement, change), _) = rk4_change(system, start, h, before, None);

@@ -1,7 +1,9 @@
 //! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
 
 use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, StepTrial, TrialStep, adaptive};
-use super::rosenbrock::{JacobianDirections, Slopes, elapsed_time, sampling_delay, slopes_at_start};
+use super::rosenbrock::{
+    AccelerationJacobian, JacobianDirections, derivatives_at_step_start, elapsed_time, sampling_delay,
+};
 use super::stages::RungeKuttaRates;
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
@@ -92,7 +94,7 @@ adaptive!(Rodas);
 pub struct RodasMemory<T, const NV: usize> {
     steps: AdaptiveMemory<T, NV>,
     /// Derivatives of the last step, used at configurations where branches of the motion intersect.
-    slopes: Option<Slopes<T, NV>>,
+    slopes: Option<AccelerationJacobian<T, NV>>,
 }
 
 impl<T: Real> Method<T> for Rodas<T> {
@@ -140,7 +142,7 @@ impl<T: Real> Method<T> for Rodas<T> {
 /// Equations of motion linearised about the start of a step.
 #[derive(Clone, Copy)]
 struct LinearisedStep<T, const NV: usize> {
-    slopes: Slopes<T, NV>,
+    slopes: AccelerationJacobian<T, NV>,
     /// Derivatives of the displacement's rate with respect to the displacement.
     turn: SMatrix<T, NV, NV>,
 }
@@ -148,12 +150,12 @@ struct LinearisedStep<T, const NV: usize> {
 fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &TrialStep<'_, T, NQ, NV>,
-    before: Option<Slopes<T, NV>>,
+    before: Option<AccelerationJacobian<T, NV>>,
 ) -> LinearisedStep<T, NV> {
     let TrialStep { start, acceleration, h, .. } = *attempt;
-    let mut slopes = slopes_at_start(system, start, acceleration, h, JacobianDirections::All)
+    let mut slopes = derivatives_at_step_start(system, start, acceleration, h, JacobianDirections::All)
         .or(before)
-        .unwrap_or(Slopes::zero_slopes());
+        .unwrap_or(AccelerationJacobian::zero_jacobian());
     // Order 4 requires a better time derivative than a forward difference; inputs may jump at the start.
     let later = sampling_delay(system, start.t, h);
     let [first, second] = [later, later * constant(2.0)].map(|later| {
@@ -235,8 +237,9 @@ fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>
     let end = State { t, q: system.integrate(&start.q, &displacement), v };
     let mut step = Step::linear(*start, end, displacement);
     let [square, cube] = TERMS.map(|weights| weighted_sum_of_stages(&weights, &u));
-    step.displacement = step.displacement.with_terms([square.displacement, cube.displacement]);
-    step.velocity = step.velocity.with_terms([square.velocity, cube.velocity]);
+    step.displacement =
+        step.displacement.with_coefficients_from_third([square.displacement, cube.displacement]);
+    step.velocity = step.velocity.with_coefficients_from_third([square.velocity, cube.velocity]);
     let error = scale.relative_error(&step, &displacement, &error);
     Some(StepTrial { step, acceleration: None, error })
 }

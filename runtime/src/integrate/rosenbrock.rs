@@ -1,6 +1,9 @@
 //! Linearly implicit (Rosenbrock) integration method for stiff mechanisms.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
+use super::{
+    Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step_length_and_end,
+    project_end_of_step,
+};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
@@ -34,14 +37,14 @@ impl<T: Real> Rosenbrock<T> {
 
 /// Derivatives of the acceleration with respect to displacement, velocity and time.
 #[derive(Clone, Copy, Debug)]
-pub struct Slopes<T, const NV: usize> {
+pub struct AccelerationJacobian<T, const NV: usize> {
     pub(super) by_q: SMatrix<T, NV, NV>,
     pub(super) by_v: SMatrix<T, NV, NV>,
     pub(super) by_t: SVector<T, NV>,
 }
 
-impl<T: Real, const NV: usize> Slopes<T, NV> {
-    pub(super) fn zero_slopes() -> Self {
+impl<T: Real, const NV: usize> AccelerationJacobian<T, NV> {
+    pub(super) fn zero_jacobian() -> Self {
         Self { by_q: SMatrix::zeros(), by_v: SMatrix::zeros(), by_t: SVector::zeros() }
     }
 }
@@ -50,7 +53,7 @@ impl<T: Real, const NV: usize> Slopes<T, NV> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum JacobianDirections {
     /// Displacements that the constraints allow: for methods whose order does not depend on the matrix.
-    Allowed,
+    AllowedQuantities,
     /// All displacements, including those that constraints forbid: for methods whose order requires the exact
     /// Jacobian. The stages of such methods violate the constraints, because of curvature and centripetal
     /// accelerations.
@@ -59,24 +62,24 @@ pub(super) enum JacobianDirections {
 
 /// Returns the derivatives at the start of a step, with a zero time derivative. `None` in and near singular
 /// configurations, where branches of the motion intersect.
-pub(super) fn slopes_at_start<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn derivatives_at_step_start<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
     h: T,
     along: JacobianDirections,
-) -> Option<Slopes<T, NV>> {
+) -> Option<AccelerationJacobian<T, NV>> {
     let State { t, q, v } = start;
     if system.is_nearly_singular(*t, q, &(v * h)) {
         return None;
     }
-    let mut out = Slopes::<T, NV>::zero_slopes();
+    let mut out = AccelerationJacobian::<T, NV>::zero_jacobian();
     let known = system.acceleration_derivatives(*t, q, v);
-    let is_part = along == JacobianDirections::Allowed && system.is_constrained();
+    let is_part = along == JacobianDirections::AllowedQuantities && system.is_constrained();
     if let Some((by_q, by_v)) = known
         && !is_part
     {
-        return Some(Slopes { by_q, by_v, ..out });
+        return Some(AccelerationJacobian { by_q, by_v, ..out });
     }
     let root = epsilon::<T>().sqrt();
     let momentum = system.momentum(*t, q, v);
@@ -159,7 +162,7 @@ fn solve_linear_system<T: Real, const N: usize>(
 
 impl<T: Real> Method<T> for Rosenbrock<T> {
     /// Acceleration derivatives of the previous step, if available.
-    type Memory<const NV: usize> = Option<Slopes<T, NV>>;
+    type Memory<const NV: usize> = Option<AccelerationJacobian<T, NV>>;
 
     const FIXED: bool = true;
 
@@ -185,11 +188,12 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         until: Option<T>,
         dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
-        let (h, t) = equal_step(self.step, start.t, until)?;
+        let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
-        let mut slopes = slopes_at_start(system, start, &before, h, JacobianDirections::Allowed)
-            .or(*memory)
-            .unwrap_or(Slopes::zero_slopes());
+        let mut slopes =
+            derivatives_at_step_start(system, start, &before, h, JacobianDirections::AllowedQuantities)
+                .or(*memory)
+                .unwrap_or(AccelerationJacobian::zero_jacobian());
         let later = sampling_delay(system, start.t, h);
         let passed = elapsed_time(system, start.t, later);
         if passed > T::zero() {
@@ -199,18 +203,18 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let part = gamma * h;
         // (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv] reduces to kφ = a + γh kv and one system for kv.
         let matrix = SMatrix::identity() - slopes.by_v * part - slopes.by_q * (part * part);
-        let solve_stage = |a: SVector<T, NV>, b: SVector<T, NV>| {
+        let solve_rosenbrock_stage = |a: SVector<T, NV>, b: SVector<T, NV>| {
             let kv = solve_linear_system(matrix, b + slopes.by_q * a * part)?;
             Some((a + kv * part, kv))
         };
         let singular = Error::NotConverged { t: to_f64(start.t), iterations: 0 };
-        let first = solve_stage(start.v, before + slopes.by_t * part).ok_or(singular)?;
+        let first = solve_rosenbrock_stage(start.v, before + slopes.by_t * part).ok_or(singular)?;
         let (moved, v) = (first.0 * h, start.v + first.1 * h);
         let q = system.integrate(&start.q, &moved);
         let two = constant::<T>(2.0);
         let rate = system.displacement_rate(&start.q, &moved, &v) - first.0 * two;
         let force = system.acceleration(t, &q, &v) - slopes.by_t * part - first.1 * two;
-        let second = solve_stage(rate, force).ok_or(singular)?;
+        let second = solve_rosenbrock_stage(rate, force).ok_or(singular)?;
         let (three, half) = (constant::<T>(3.0), h * constant(0.5));
         let displacement = (first.0 * three + second.0) * half;
         let v = start.v + (first.1 * three + second.1) * half;

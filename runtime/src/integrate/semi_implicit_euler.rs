@@ -1,7 +1,13 @@
 //! Semi-implicit (symplectic) Euler method.
 
-use super::constrained::{Ended, MidpointSolution, is_crossing, solve_midpoint, step_past_singularity};
-use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
+use super::constrained::{
+    MidpointSolution, PreviousEndSingularity, crosses_singular_configuration, solve_for_midpoint_velocity,
+    step_past_singularity,
+};
+use super::{
+    Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step_length_and_end,
+    project_end_of_step,
+};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -47,7 +53,7 @@ fn velocity_independent_forces<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize,
     state: &State<T, NQ, NV>,
 ) -> SVector<T, NV> {
     let State { t, q, v } = state;
-    system.momentum_rate(*t, q, v) - system.inertial_rate(*t, q, v)
+    system.momentum_rate(*t, q, v) - system.velocity_dependent_momentum_rate(*t, q, v)
 }
 
 /// Advances a semi-implicit Euler step near a singular configuration. As elsewhere, the method is equivalent
@@ -72,7 +78,7 @@ fn advance_past_singularity<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, co
 }
 
 impl<T: Real> Method<T> for SemiImplicitEuler<T> {
-    type Memory<const NV: usize> = Ended;
+    type Memory<const NV: usize> = PreviousEndSingularity;
 
     const FIXED: bool = true;
 
@@ -81,12 +87,12 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        Ended::default()
+        PreviousEndSingularity::default()
     }
 
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
         if jump == Jump::State {
-            *memory = Ended::default();
+            *memory = PreviousEndSingularity::default();
         }
     }
 
@@ -98,7 +104,7 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         until: Option<T>,
         dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
-        let (h, t) = equal_step(self.step, start.t, until)?;
+        let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
         let constrained = system.is_constrained();
         let before = if dense || !constrained {
             system.acceleration(start.t, &start.q, &start.v)
@@ -108,9 +114,10 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         let (way, end) = if constrained {
             let p =
                 system.momentum(start.t, &start.q, &start.v) + velocity_independent_forces(system, start) * h;
-            let inertial_rate_of_state = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
-            let found = solve_midpoint(system, inertial_rate_of_state, start, &p, h, start.v);
-            let crossing = is_crossing(system, start, h, &found, memory);
+            let inertial_rate_of_state =
+                |system: &mut D, t, q: &_, v: &_| system.velocity_dependent_momentum_rate(t, q, v);
+            let found = solve_for_midpoint_velocity(system, inertial_rate_of_state, start, &p, h, start.v);
+            let crossing = crosses_singular_configuration(system, start, h, &found, memory);
             let passed = if crossing { advance_past_singularity(system, start, t, h) } else { None };
             match passed {
                 Some(passed) => passed,

@@ -1,7 +1,7 @@
 //! A mechanism with its inputs: the ordinary differential equation to be integrated.
 
-use super::event_driven::{LocatedStep, Section};
-use super::local::ShiftedSystem;
+use super::event_driven::{EventLocatedStep, Section};
+use super::local::TimeShiftedSystem;
 use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::{Assumed, Touched};
@@ -149,7 +149,12 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
 
     /// Returns the part of the momentum rate `ṗ` that depends on the velocity, from inertia and dashpots,
     /// without inputs.
-    fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
+    fn velocity_dependent_momentum_rate(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV>;
 
     /// Returns the velocity for the generalized momentum `p`, refined from the estimate `v`: exact up to
     /// rounding for any estimate, most accurate for a close one. Constraint impulses make the velocity
@@ -291,7 +296,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
             );
         }
         self.undetermined = None;
-        let mut local = ShiftedSystem { system: &mut *self, origin };
+        let mut local = TimeShiftedSystem { system: &mut *self, origin };
         let step = method.advance(memory, &mut local, start, until, dense);
         step.map_err(|error| match (error.shift_time_origin(to_f64(origin)), self.undetermined) {
             (
@@ -389,7 +394,12 @@ where
         rate + self.input_forces(t, q, v)
     }
 
-    fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
+    fn velocity_dependent_momentum_rate(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> SVector<T, NV> {
         self.mechanism.momentum_rate(t, q, v) - self.mechanism.momentum_rate(t, q, &SVector::zeros())
     }
 
@@ -454,7 +464,7 @@ where
     }
 
     fn follow(&mut self, section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
-        self.mechanism.visit_contacts(LocatedStep { section, inputs: &mut self.inputs })
+        self.mechanism.visit_contacts(EventLocatedStep { section, inputs: &mut self.inputs })
     }
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {

@@ -1,7 +1,10 @@
 //! Time stepping: motion with impacts and friction in steps of fixed length.
 
 use super::rk4::rk4_change;
-use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
+use super::{
+    Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step_length_and_end,
+    project_end_of_step,
+};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::contact::{Impulses, Touched};
@@ -65,12 +68,12 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeStepping<T> {
     step: T,
-    stages: StageVariant,
+    stages: TimeStepVariant,
 }
 
 /// Variants of a time step: four or two evaluations of the dynamics, or leapfrog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum StageVariant {
+enum TimeStepVariant {
     RungeKutta,
     Midpoint,
     Leapfrog,
@@ -80,7 +83,7 @@ impl<T: Real> TimeStepping<T> {
     /// Returns the time-stepping method with steps of `step` seconds. Steps are slightly shorter where they
     /// must end on a sample time.
     pub const fn step(step: T) -> Self {
-        Self { step, stages: StageVariant::RungeKutta }
+        Self { step, stages: TimeStepVariant::RungeKutta }
     }
 
     /// Selects steps with two evaluations of the dynamics instead of four. As in Moreau's own scheme, half a
@@ -122,7 +125,7 @@ impl<T: Real> TimeStepping<T> {
     /// assert!((end.q[0] - 0.25).abs() < 1e-3);
     /// ```
     pub const fn midpoint(self) -> Self {
-        Self { stages: StageVariant::Midpoint, ..self }
+        Self { stages: TimeStepVariant::Midpoint, ..self }
     }
 
     /// Selects steps with one evaluation of the dynamics, and a second one where contact modes have changed.
@@ -153,7 +156,7 @@ impl<T: Real> TimeStepping<T> {
     /// assert!(end.q[0].abs() < 1e-9 && end.v[0].abs() < 1e-12);
     /// ```
     pub const fn leapfrog(self) -> Self {
-        Self { stages: StageVariant::Leapfrog, ..self }
+        Self { stages: TimeStepVariant::Leapfrog, ..self }
     }
 
     /// Returns the length of a step, s.
@@ -163,14 +166,14 @@ impl<T: Real> TimeStepping<T> {
 
     /// Whether steps have the four stages of [`Rk4`](super::Rk4), instead of a midpoint.
     pub(crate) fn has_four_stages(&self) -> bool {
-        self.stages == StageVariant::RungeKutta
+        self.stages == TimeStepVariant::RungeKutta
     }
 }
 
 /// Contribution of the contacts to the velocity in the last step, per second, with the data that the next
 /// step uses.
 #[derive(Clone, Copy, Debug)]
-pub struct TouchMemory<T, const NV: usize> {
+pub struct ContactStepMemory<T, const NV: usize> {
     rate: SVector<T, NV>,
     /// Impulses of the contacts in the last step.
     impulses: Impulses<T, NV>,
@@ -186,7 +189,7 @@ pub struct TouchMemory<T, const NV: usize> {
 /// Maximum relative change of the contacts' contribution between two steps for which it counts as steady.
 const STEADY: f64 = 0.125;
 
-impl<T: Real, const NV: usize> TouchMemory<T, NV> {
+impl<T: Real, const NV: usize> ContactStepMemory<T, NV> {
     fn new(rate: SVector<T, NV>) -> Self {
         let impulses = Impulses::none();
         Self { rate, impulses, steady: false, violation: T::zero(), acceleration: None }
@@ -195,9 +198,9 @@ impl<T: Real, const NV: usize> TouchMemory<T, NV> {
     /// Records the contribution of the contacts in a step, their impulses, and the violation of the contact
     /// conditions.
     fn record_contact_step(&mut self, rate: SVector<T, NV>, impulses: Impulses<T, NV>, violation: T) {
-        let max_magnitude = |size: T, x: &T| size.max(x.abs());
-        let size = rate.iter().fold(T::zero(), max_magnitude);
-        let change = (rate - self.rate).iter().fold(T::zero(), max_magnitude);
+        let larger_of_size_and_magnitude = |size: T, x: &T| size.max(x.abs());
+        let size = rate.iter().fold(T::zero(), larger_of_size_and_magnitude);
+        let change = (rate - self.rate).iter().fold(T::zero(), larger_of_size_and_magnitude);
         *self = Self {
             rate,
             impulses,
@@ -209,7 +212,7 @@ impl<T: Real, const NV: usize> TouchMemory<T, NV> {
 }
 
 impl<T: Real> Method<T> for TimeStepping<T> {
-    type Memory<const NV: usize> = TouchMemory<T, NV>;
+    type Memory<const NV: usize> = ContactStepMemory<T, NV>;
 
     const FIXED: bool = true;
     const CONTACTS: bool = true;
@@ -219,7 +222,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        TouchMemory::new(SVector::zeros())
+        ContactStepMemory::new(SVector::zeros())
     }
 
     fn take_violation<const NV: usize>(memory: &mut Self::Memory<NV>) -> T {
@@ -240,7 +243,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         until: Option<T>,
         _dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
-        let (h, t) = equal_step(self.step, start.t, until)?;
+        let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
         let constraint_error = |reason| match reason {
             ConstraintError::NotFinite => Error::NotFinite { t: to_f64(start.t) },
             reason => Error::Constraint { t: to_f64(start.t), reason },
@@ -249,23 +252,23 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         let before = earlier.unwrap_or_else(|| {
             let acceleration = system.acceleration(start.t, &start.q, &start.v);
             match self.stages {
-                StageVariant::RungeKutta => acceleration,
-                StageVariant::Midpoint | StageVariant::Leapfrog => {
-                    acceleration_in_space(system, (start.t, &start.v), acceleration)
+                TimeStepVariant::RungeKutta => acceleration,
+                TimeStepVariant::Midpoint | TimeStepVariant::Leapfrog => {
+                    rate_without_axis_rotation(system, (start.t, &start.v), acceleration)
                 }
             }
         });
         let (rate, impulses) = match memory.steady {
             true => (memory.rate, memory.impulses),
-            false => enforce_closed_contacts(system, start, &before, &memory.impulses, h)
+            false => acceleration_from_closed_contacts(system, start, &before, &memory.impulses, h)
                 .map_err(constraint_error)?,
         };
         let (free, given) = match self.stages {
-            StageVariant::RungeKutta => rk4_step_with_contacts(system, start, (&before, &rate), h, t),
-            StageVariant::Midpoint | StageVariant::Leapfrog => {
+            TimeStepVariant::RungeKutta => rk4_step_with_contacts(system, start, (&before, &rate), h, t),
+            TimeStepVariant::Midpoint | TimeStepVariant::Leapfrog => {
                 let (free, given, at_middle) =
                     midpoint_step_with_contacts(system, start, (&before, &rate), h, t);
-                memory.acceleration = matches!(self.stages, StageVariant::Leapfrog).then_some(at_middle);
+                memory.acceleration = matches!(self.stages, TimeStepVariant::Leapfrog).then_some(at_middle);
                 (free, given)
             }
         };
@@ -284,7 +287,12 @@ impl<T: Real> Method<T> for TimeStepping<T> {
 /// Returns the contribution to the velocity, per second, of the impulses that enforce the contacts closed at
 /// the start of a step of `h` seconds; `before` are the accelerations without these impulses, and the search
 /// begins at the impulses of the previous step.
-pub(crate) fn enforce_closed_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(crate) fn acceleration_from_closed_contacts<
+    T: Real,
+    D: Dynamics<T, NQ, NV>,
+    const NQ: usize,
+    const NV: usize,
+>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     before: &SVector<T, NV>,
@@ -310,9 +318,9 @@ pub(crate) fn rk4_step_with_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: 
 ) -> (State<T, NQ, NV>, SVector<T, NV>) {
     let still = SVector::zeros();
     let added = (*rate != still).then_some(rate);
-    let ((displacement, change), at_end) = rk4_change(system, start, h, *before, added);
+    let ((displacement, change), transported_to_step_end) = rk4_change(system, start, h, *before, added);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
-    (end, at_end.map_or(still, |rate| rate * h))
+    (end, transported_to_step_end.map_or(still, |rate| rate * h))
 }
 
 /// Returns the end of a step through the [midpoint](TimeStepping::midpoint) with the accelerations `before`
@@ -328,26 +336,33 @@ fn midpoint_step_with_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize,
 ) -> (State<T, NQ, NV>, SVector<T, NV>, SVector<T, NV>) {
     let (half, still) = (h * constant(0.5), SVector::zeros());
     let to_middle = start.v * half;
-    let middle = displaced_in_space(system, (start.t, &start.q), &to_middle);
-    let in_middle = |system: &D, x: &SVector<T, NV>| transported(system, (start.t, &start.q), &to_middle, x);
+    let middle = displaced_along_straight_lines(system, (start.t, &start.q), &to_middle);
+    let velocity_at_midpoint_axes = |system: &D, x: &SVector<T, NV>| {
+        velocity_at_displaced_configuration(system, (start.t, &start.q), &to_middle, x)
+    };
     let is_free = *rate == still;
     // Impulses keep their directions in space, like forces that act in the middle.
     let rate = if is_free { still } else { system.carry(start.t, &start.q, &to_middle, rate) };
-    let v = in_middle(system, &(start.v + before * half)) + rate * half;
+    let v = velocity_at_midpoint_axes(system, &(start.v + before * half)) + rate * half;
     let acceleration = system.acceleration(start.t + half, &middle, &v);
-    let acceleration = acceleration_in_space(system, (start.t + half, &v), acceleration);
-    let v = in_middle(system, &start.v) + (acceleration + rate) * h;
+    let acceleration = rate_without_axis_rotation(system, (start.t + half, &v), acceleration);
+    let v = velocity_at_midpoint_axes(system, &start.v) + (acceleration + rate) * h;
     let to_end = v * half;
-    let at_end = |system: &D, x: &SVector<T, NV>| transported(system, (start.t + half, &middle), &to_end, x);
+    let transported_to_step_end = |system: &D, x: &SVector<T, NV>| {
+        velocity_at_displaced_configuration(system, (start.t + half, &middle), &to_end, x)
+    };
     let given = if is_free { still } else { system.carry(start.t + half, &middle, &to_end, &rate) * h };
-    let end =
-        State { t, q: displaced_in_space(system, (start.t + half, &middle), &to_end), v: at_end(system, &v) };
-    (end, given, at_end(system, &acceleration))
+    let end = State {
+        t,
+        q: displaced_along_straight_lines(system, (start.t + half, &middle), &to_end),
+        v: transported_to_step_end(system, &v),
+    };
+    (end, given, transported_to_step_end(system, &acceleration))
 }
 
 /// Returns the configuration after a displacement during which the origins of free bodies move along straight
 /// lines.
-fn displaced_in_space<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn displaced_along_straight_lines<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     (t, q): (T, &SVector<T, NQ>),
     by: &SVector<T, NV>,
@@ -360,7 +375,7 @@ fn displaced_in_space<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
 }
 
 /// Returns a velocity in the axes after a displacement; with declared generalized speeds, the same speeds.
-fn transported<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn velocity_at_displaced_configuration<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     (t, q): (T, &SVector<T, NQ>),
     displacement: &SVector<T, NV>,
@@ -370,7 +385,7 @@ fn transported<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize
 }
 
 /// Returns the rate of a velocity without the rotation of the axes of ball and free joints.
-fn acceleration_in_space<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn rate_without_axis_rotation<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     (t, v): (T, &SVector<T, NV>),
     acceleration: SVector<T, NV>,

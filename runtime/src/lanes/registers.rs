@@ -8,7 +8,7 @@ use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::trigonometry;
 #[cfg(feature = "std")]
-use crate::trigonometry::{LARGEST, same_type_reference};
+use crate::trigonometry::{LARGEST, reference_if_same_type};
 
 /// Loop that a generated body delegates to the runtime.
 pub trait VectorLoop {
@@ -57,7 +57,7 @@ pub trait Registers: Copy + 'static {
     fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2];
     /// Whether all angles are within the range of the fast argument reduction.
     #[cfg(feature = "std")]
-    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool;
+    fn are_angles_in_fast_range<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool;
     /// Returns the sines and cosines of the angles `x`, rad. This is the slow path, called if at least one
     /// angle is outside the range of the fast argument reduction.
     fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]);
@@ -74,11 +74,11 @@ macro_rules! register {
     ($number:ident $lanes:literal $register:ident: ($($a:ident)+) => $f:expr) => {
         if N == $lanes
             && size_of::<T>() == size_of::<$number>()
-            && let ($(Some($a),)+) = ($(same_type_reference::<_, [$number; $lanes]>($a),)+)
+            && let ($(Some($a),)+) = ($(reference_if_same_type::<_, [$number; $lanes]>($a),)+)
         {
             $(let $a = wide::$register::new(*$a);)+
             let result = $f.to_array();
-            if let Some(result) = same_type_reference(&result) {
+            if let Some(result) = reference_if_same_type(&result) {
                 return *result;
             }
         }
@@ -144,8 +144,11 @@ impl Registers for Compiled {
         macro_rules! case {
             ($lanes:literal $register:ident $bits:ident) => {
                 if L == $lanes
-                    && let (Some(s), Some(c), Some(shifted)) =
-                        (same_type_reference(s), same_type_reference(c), same_type_reference(shifted))
+                    && let (Some(s), Some(c), Some(shifted)) = (
+                        reference_if_same_type(s),
+                        reference_if_same_type(c),
+                        reference_if_same_type(shifted),
+                    )
                 {
                     use wide::{$bits, $register};
                     let [s, c, quadrant] = [s, c, shifted].map(|x| $register::new(*x).to_bits());
@@ -154,7 +157,7 @@ impl Registers for Compiled {
                     let s = s ^ exchange ^ ((quadrant << 62_u32) & sign);
                     let c = c ^ exchange ^ (((quadrant + one) << 62_u32) & sign);
                     let result: [[f64; $lanes]; 2] = [s, c].map(|x| $register::from_bits(x).to_array());
-                    if let Some(result) = same_type_reference(&result) {
+                    if let Some(result) = reference_if_same_type(&result) {
                         return *result;
                     }
                 }
@@ -177,11 +180,11 @@ impl Registers for Compiled {
     #[cfg(feature = "std")]
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+    fn are_angles_in_fast_range<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
         macro_rules! case {
             ($lanes:literal $register:ident) => {
                 if L == $lanes
-                    && let Some(x) = same_type_reference::<_, [[f64; $lanes]; N]>(x)
+                    && let Some(x) = reference_if_same_type::<_, [[f64; $lanes]; N]>(x)
                 {
                     use wide::$register;
                     // An ordered comparison: NaN is not large.
@@ -202,7 +205,7 @@ impl Registers for Compiled {
     #[cold]
     #[inline(never)]
     fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
-        trigonometry::sin_cos_with_large_angles::<Self, N>(x)
+        trigonometry::sin_cos_with_library_fallback::<Self, N>(x)
     }
 }
 

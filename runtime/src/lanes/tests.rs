@@ -6,7 +6,7 @@ use nalgebra::{ComplexField, Matrix3, RealField, SVector, Vector3};
 use std::format;
 
 /// Returns lanes with numbers in (0.05, 0.95), negated in odd lanes.
-fn sample_lanes<const N: usize>(seed: u64) -> Lanes<f64, N> {
+fn pseudorandom_lanes<const N: usize>(seed: u64) -> Lanes<f64, N> {
     let mut state = seed;
     Lanes::from_fn(|k| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -17,12 +17,13 @@ fn sample_lanes<const N: usize>(seed: u64) -> Lanes<f64, N> {
 
 /// Checks that every lane of a result equals the result of the function for the numbers in that lane, bit for
 /// bit.
-fn check_lanes<const N: usize>(
+fn check_lanes_equal_scalar_function<const N: usize>(
     wide: impl Fn(Lanes<f64, N>, Lanes<f64, N>, Lanes<f64, N>) -> Lanes<f64, N>,
     narrow: impl Fn(f64, f64, f64) -> f64,
 ) {
     for seed in 0..100 {
-        let (a, b, c) = (sample_lanes(seed), sample_lanes(seed + 100), sample_lanes(seed + 200));
+        let (a, b, c) =
+            (pseudorandom_lanes(seed), pseudorandom_lanes(seed + 100), pseudorandom_lanes(seed + 200));
         let found = wide(a, b, c);
         for k in 0..N {
             let expected = narrow(a[k], b[k], c[k]);
@@ -31,23 +32,23 @@ fn check_lanes<const N: usize>(
     }
 }
 
-fn check_arithmetic<const N: usize>() {
-    check_lanes::<N>(|a, b, _| a + b, |a, b, _| a + b);
-    check_lanes::<N>(|a, b, _| a - b, |a, b, _| a - b);
-    check_lanes::<N>(|a, b, _| a * b, |a, b, _| a * b);
-    check_lanes::<N>(|a, b, _| a / b, |a, b, _| a / b);
-    check_lanes::<N>(|a, b, _| a % b, |a, b, _| a % b);
-    check_lanes::<N>(|a, _, _| -a, |a, _, _| -a);
-    check_lanes::<N>(|a, _, _| a * 0.7 + 0.3, |a, _, _| a * 0.7 + 0.3);
-    check_lanes::<N>(A::mul_add, A::mul_add);
-    check_lanes::<N>(A::mul_sub, A::mul_sub);
-    check_lanes::<N>(A::neg_mul_add, A::neg_mul_add);
-    check_lanes::<N>(|a, b, c| a.mul_add(b, c), A::mul_add);
-    check_lanes::<N>(|a, _, _| ComplexField::abs(a), |a, _, _| a.abs());
-    check_lanes::<N>(|a, b, _| RealField::max(a, b), |a, b, _| a.max(b));
-    check_lanes::<N>(|a, b, _| RealField::min(a, b), |a, b, _| a.min(b));
-    check_lanes::<N>(|a, b, _| a.copysign(b), |a, b, _| a.copysign(b));
-    check_lanes::<N>(|a, _, _| ComplexField::signum(a), |a, _, _| a.signum());
+fn check_lane_arithmetic<const N: usize>() {
+    check_lanes_equal_scalar_function::<N>(|a, b, _| a + b, |a, b, _| a + b);
+    check_lanes_equal_scalar_function::<N>(|a, b, _| a - b, |a, b, _| a - b);
+    check_lanes_equal_scalar_function::<N>(|a, b, _| a * b, |a, b, _| a * b);
+    check_lanes_equal_scalar_function::<N>(|a, b, _| a / b, |a, b, _| a / b);
+    check_lanes_equal_scalar_function::<N>(|a, b, _| a % b, |a, b, _| a % b);
+    check_lanes_equal_scalar_function::<N>(|a, _, _| -a, |a, _, _| -a);
+    check_lanes_equal_scalar_function::<N>(|a, _, _| a * 0.7 + 0.3, |a, _, _| a * 0.7 + 0.3);
+    check_lanes_equal_scalar_function::<N>(A::mul_add, A::mul_add);
+    check_lanes_equal_scalar_function::<N>(A::mul_sub, A::mul_sub);
+    check_lanes_equal_scalar_function::<N>(A::neg_mul_add, A::neg_mul_add);
+    check_lanes_equal_scalar_function::<N>(|a, b, c| a.mul_add(b, c), A::mul_add);
+    check_lanes_equal_scalar_function::<N>(|a, _, _| ComplexField::abs(a), |a, _, _| a.abs());
+    check_lanes_equal_scalar_function::<N>(|a, b, _| RealField::max(a, b), |a, b, _| a.max(b));
+    check_lanes_equal_scalar_function::<N>(|a, b, _| RealField::min(a, b), |a, b, _| a.min(b));
+    check_lanes_equal_scalar_function::<N>(|a, b, _| a.copysign(b), |a, b, _| a.copysign(b));
+    check_lanes_equal_scalar_function::<N>(|a, _, _| ComplexField::signum(a), |a, _, _| a.signum());
     let assign_all_operators = |mut a: Lanes<f64, N>, b: Lanes<f64, N>, c| {
         a += b;
         a -= c;
@@ -55,23 +56,23 @@ fn check_arithmetic<const N: usize>() {
         a /= c;
         a
     };
-    check_lanes::<N>(assign_all_operators, |a, b, c| (a + b - c) * b / c);
+    check_lanes_equal_scalar_function::<N>(assign_all_operators, |a, b, c| (a + b - c) * b / c);
 }
 
 #[test]
 fn lane_arithmetic_matches_scalars() {
-    check_arithmetic::<1>();
-    check_arithmetic::<2>();
-    check_arithmetic::<3>();
-    check_arithmetic::<4>();
-    check_arithmetic::<8>();
-    check_arithmetic::<16>();
+    check_lane_arithmetic::<1>();
+    check_lane_arithmetic::<2>();
+    check_lane_arithmetic::<3>();
+    check_lane_arithmetic::<4>();
+    check_lane_arithmetic::<8>();
+    check_lane_arithmetic::<16>();
 }
 
 #[test]
 fn lane_functions_match_scalars() {
-    type Twice = (fn(f64x8) -> f64x8, fn(f64) -> f64);
-    let functions: [Twice; 16] = [
+    type LaneAndScalarFunction = (fn(f64x8) -> f64x8, fn(f64) -> f64);
+    let functions: [LaneAndScalarFunction; 16] = [
         (|a| ComplexField::sqrt(a * a), |a| ComplexField::sqrt(a * a)),
         (ComplexField::tan, ComplexField::tan),
         (ComplexField::sin, ComplexField::sin),
@@ -90,12 +91,12 @@ fn lane_functions_match_scalars() {
         (ComplexField::recip, ComplexField::recip),
     ];
     for (wide, narrow) in functions {
-        check_lanes(|a, _, _| wide(a), |a, _, _| narrow(a));
+        check_lanes_equal_scalar_function(|a, _, _| wide(a), |a, _, _| narrow(a));
     }
-    check_lanes::<8>(|a, b, _| A::atan2(a, b), |a, b, _| A::atan2(a, b));
-    check_lanes::<8>(|a, b, _| A::powf(a * a, b), |a, b, _| A::powf(a * a, b));
-    check_lanes::<8>(|a, _, _| a.sin_cos().0, |a, _, _| A::sin_cos(a).0);
-    check_lanes::<8>(|a, _, _| a.sin_cos().1, |a, _, _| A::sin_cos(a).1);
+    check_lanes_equal_scalar_function::<8>(|a, b, _| A::atan2(a, b), |a, b, _| A::atan2(a, b));
+    check_lanes_equal_scalar_function::<8>(|a, b, _| A::powf(a * a, b), |a, b, _| A::powf(a * a, b));
+    check_lanes_equal_scalar_function::<8>(|a, _, _| a.sin_cos().0, |a, _, _| A::sin_cos(a).0);
+    check_lanes_equal_scalar_function::<8>(|a, _, _| a.sin_cos().1, |a, _, _| A::sin_cos(a).1);
 }
 
 #[test]
@@ -114,7 +115,7 @@ fn sums_have_a_fixed_order() {
     // (1 + tiny) + (tiny + tiny) and so on: the order of the additions determines the result.
     assert_eq!(Lanes([1.0, 0.1, tiny, 0.2]).sum(), (1.0 + tiny) + (0.1 + 0.2));
     assert_eq!(Lanes([0.1, 0.2, 0.3]).sum(), (0.1 + 0.3) + 0.2);
-    let x: f64x8 = sample_lanes(5);
+    let x: f64x8 = pseudorandom_lanes(5);
     let halves: Lanes<f64, 4> = Lanes::from_fn(|k| x[k] + x[k + 4]);
     assert_eq!(x.sum(), (halves[0] + halves[2]) + (halves[1] + halves[3]));
     assert_eq!((Lanes([3.0_f64]).sum(), Lanes::<f64, 0>([]).sum()), (3.0, 0.0));
@@ -159,7 +160,7 @@ fn nalgebra_computes_with_lanes() {
 
 #[test]
 fn lanes_contain_lanes() {
-    let x = Lanes([sample_lanes::<4>(1), sample_lanes::<4>(2)]);
+    let x = Lanes([pseudorandom_lanes::<4>(1), pseudorandom_lanes::<4>(2)]);
     let y = A::mul_add(x, x, constant(1.0));
     assert_eq!(y[1][2], A::mul_add(x[1][2], x[1][2], 1.0));
     assert_eq!(x.sum(), x[0] + x[1]);
@@ -178,14 +179,14 @@ fn check_vector_operations<R: Registers, const N: usize>() {
     let several_operations_in_lanes = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
         several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes()
     };
-    check_lanes::<N>(several_operations_in_lanes, several_operations::<R, f64>);
-    let several_in_single_precision = |a, b, c| several_operations::<R, f32>(a, b, c);
-    let [a, b, c] = [3, 4, 5].map(|seed| sample_lanes::<N>(seed).map(|x| x as f32));
+    check_lanes_equal_scalar_function::<N>(several_operations_in_lanes, several_operations::<R, f64>);
+    let several_operations_in_f32 = |a, b, c| several_operations::<R, f32>(a, b, c);
+    let [a, b, c] = [3, 4, 5].map(|seed| pseudorandom_lanes::<N>(seed).map(|x| x as f32));
     let found = several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes();
     for k in 0..N {
         assert_eq!(
             found[k].to_bits(),
-            several_in_single_precision(a[k], b[k], c[k]).to_bits(),
+            several_operations_in_f32(a[k], b[k], c[k]).to_bits(),
             "lane {k} of {a}, {b}, {c}"
         );
     }
@@ -223,24 +224,30 @@ fn vectors_compute_lane_by_lane() {
 }
 
 /// Checks that lanes `I` and `J` of two vectors are stored to rows 1 and 2, and that no other row changes.
-fn check_stored_lanes<T: crate::Real, const I: usize, const J: usize, const N: usize, const M: usize>(
+fn check_lane_pair_stored_to_rows<
+    T: crate::Real,
+    const I: usize,
+    const J: usize,
+    const N: usize,
+    const M: usize,
+>(
     number: fn(usize) -> T,
 ) {
     let (a, b) = (Lanes::<T, N>::from_fn(number), Lanes::<T, M>::from_fn(|k| number(100 + k)));
     let mut column = [T::zero(); 4];
-    A::store_two::<I, J, 1, T, N, M, 4>(&mut column, A::lanes(a.0), A::lanes(b.0));
+    A::store_two_lanes::<I, J, 1, T, N, M, 4>(&mut column, A::lanes(a.0), A::lanes(b.0));
     assert_eq!(column, [T::zero(), a[I], b[J], T::zero()], "lanes {I} of {N} and {J} of {M}");
 }
 
 #[test]
 fn lanes_are_stored_in_rows() {
-    let half_plus_index = |k| 0.5 + k as f64;
-    check_stored_lanes::<f64, 0, 0, 2, 2>(half_plus_index);
-    check_stored_lanes::<f64, 1, 1, 2, 2>(half_plus_index);
-    check_stored_lanes::<f64, 0, 1, 2, 2>(half_plus_index);
-    check_stored_lanes::<f64, 1, 3, 2, 4>(half_plus_index);
-    check_stored_lanes::<f64, 2, 0, 4, 4>(half_plus_index);
-    check_stored_lanes::<f64, 5, 3, 8, 4>(half_plus_index);
-    check_stored_lanes::<f64, 2, 1, 3, 3>(half_plus_index);
-    check_stored_lanes::<f32, 3, 1, 4, 2>(|k| 0.5 + k as f32);
+    let index_plus_half = |k| 0.5 + k as f64;
+    check_lane_pair_stored_to_rows::<f64, 0, 0, 2, 2>(index_plus_half);
+    check_lane_pair_stored_to_rows::<f64, 1, 1, 2, 2>(index_plus_half);
+    check_lane_pair_stored_to_rows::<f64, 0, 1, 2, 2>(index_plus_half);
+    check_lane_pair_stored_to_rows::<f64, 1, 3, 2, 4>(index_plus_half);
+    check_lane_pair_stored_to_rows::<f64, 2, 0, 4, 4>(index_plus_half);
+    check_lane_pair_stored_to_rows::<f64, 5, 3, 8, 4>(index_plus_half);
+    check_lane_pair_stored_to_rows::<f64, 2, 1, 3, 3>(index_plus_half);
+    check_lane_pair_stored_to_rows::<f32, 3, 1, 4, 2>(|k| 0.5 + k as f32);
 }

@@ -3,7 +3,7 @@
 
 use super::jacobians::{ball_tangent_rate_derivatives, even_factor_slopes, free_tangent_rate_derivatives};
 use super::{
-    SERIES_ANGLE, bernoulli_series, choose_by_limit, cross, dot, even_bracket_factors, lie_bracket,
+    SERIES_ANGLE, bernoulli_series, choose_by_limit, cross, dot, lie_bracket, se3_inverse_jacobian_factors,
     second_bracket_factor,
 };
 use crate::Real;
@@ -73,7 +73,7 @@ fn bracket_curvature<T: Real, const N: usize>(
         }
     }
     // The derivative of θ² along a direction of the rotation vector is 2 dvⱼ.
-    let square_derivative = |j: usize| if j + 3 < N { T::zero() } else { two * dv[j] };
+    let squared_angle_derivative = |j: usize| if j + 3 < N { T::zero() } else { two * dv[j] };
     let entry_of_curvature = |i: usize, j: usize| {
         let mut second = [T::zero(); N];
         let mut total = T::zero();
@@ -91,9 +91,10 @@ fn bracket_curvature<T: Real, const N: usize>(
             total = total
                 + value * weighted_sum(&second)
                 + slope
-                    * (square_derivative(i) * weighted_sum(&changes[k][j])
-                        + square_derivative(j) * weighted_sum(&changes[k][i]))
-                + (curvature * square_derivative(i) * square_derivative(j) + bent) * weighted_sum(&powers[k]);
+                    * (squared_angle_derivative(i) * weighted_sum(&changes[k][j])
+                        + squared_angle_derivative(j) * weighted_sum(&changes[k][i]))
+                + (curvature * squared_angle_derivative(i) * squared_angle_derivative(j) + bent)
+                    * weighted_sum(&powers[k]);
         }
         total
     };
@@ -128,7 +129,7 @@ pub fn ball_tangent_rate_second_derivatives<T: Real>(
 ) -> (SquareBlock<T, 3>, SquareBlock<T, 3>) {
     let square = dot(dv, dv);
     // The derivative of the factor with respect to θ² is the negative factor of the fourth bracket of SE(3).
-    let ([_, fall], [_, slope]) = (even_bracket_factors(square), even_factor_slopes(square));
+    let ([_, fall], [_, slope]) = (se3_inverse_jacobian_factors(square), even_factor_slopes(square));
     let factors = [[second_bracket_factor(square), -fall, -slope], [T::zero(); 3]];
     (
         bracket_curvature(dv, v, lambda, cross, factors),
@@ -146,7 +147,7 @@ pub fn free_tangent_rate_second_derivatives<T: Real>(
     let [_, _, _, x, y, z] = dv;
     let square = dot([x, y, z], [x, y, z]);
     let ([f, g], [f1, g1], [f2, g2]) =
-        (even_bracket_factors(square), even_factor_slopes(square), even_factor_curvatures(square));
+        (se3_inverse_jacobian_factors(square), even_factor_slopes(square), even_factor_curvatures(square));
     (
         bracket_curvature(dv, v, lambda, lie_bracket, [[f, f1, f2], [g, g1, g2]]),
         contracted_derivatives(lambda, |e| free_tangent_rate_derivatives(dv, e).0),
@@ -164,7 +165,7 @@ mod tests {
 
     /// Returns derivatives of `λᵀ` times a block of columns, by central differences of fourth order, column
     /// by column.
-    fn difference_columns<const N: usize>(
+    fn contracted_difference_columns<const N: usize>(
         lambda: [f64; N],
         f: impl Fn([f64; N]) -> SquareBlock<f64, N>,
     ) -> SquareBlock<f64, N> {
@@ -216,9 +217,9 @@ mod tests {
                 pseudorandom_numbers(seed + 90, 1.0),
             );
             let (twice, mixed) = second(dv, v, lambda);
-            let by_dv = difference_columns(lambda, |e| first(sum_of_vectors(dv, e), v).0);
+            let by_dv = contracted_difference_columns(lambda, |e| first(sum_of_vectors(dv, e), v).0);
             assert_blocks_agree(twice, by_dv, "twice");
-            let by_v = difference_columns(lambda, |e| first(dv, sum_of_vectors(v, e)).0);
+            let by_v = contracted_difference_columns(lambda, |e| first(dv, sum_of_vectors(v, e)).0);
             assert_blocks_agree(mixed, by_v, "mixed");
         }
     }

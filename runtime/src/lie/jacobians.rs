@@ -2,9 +2,9 @@
 //! of ball and free joints. Blocks are lists of columns; displacements are expressed in body axes.
 
 use super::{
-    ball_tangent_rate, bernoulli_series, choose_by_limit, cross, dot, even_bracket_factors, free_integrate,
-    free_tangent_rate, left_jacobian_factors, lie_bracket, plus_scaled, quaternion_exponential,
-    rotated_vector, scaled_vector, second_bracket_factor, vector_sum,
+    ball_tangent_rate, bernoulli_series, choose_by_limit, cross, dot, free_integrate, free_tangent_rate,
+    left_jacobian_factors, lie_bracket, plus_scaled, quaternion_exponential, rotated_vector, scaled_vector,
+    se3_inverse_jacobian_factors, second_bracket_factor, vector_sum,
 };
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
@@ -30,7 +30,7 @@ fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) ->
 /// columns follow from the angular ones, because motions of SE(3) are rotations with dual numbers (Selig,
 /// *Geometric Fundamentals of Robotics*, § 7.5).
 #[inline(always)]
-fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> SquareBlock<T, 6> {
+fn matrix_of_twist_function<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> SquareBlock<T, 6> {
     let mut all = [[T::zero(); 6]; 6];
     let (linear, angular) = all.split_at_mut(3);
     for (j, (linear, angular)) in linear.iter_mut().zip(angular).enumerate() {
@@ -64,7 +64,7 @@ pub fn ball_tangent_rate_derivatives<T: Real>(
     let square = dot(dv, dv);
     let second = second_bracket_factor(square);
     // The derivative of the second bracket's factor with respect to θ² is the negative factor of the fourth.
-    let [_, slope] = even_bracket_factors(square);
+    let [_, slope] = se3_inverse_jacobian_factors(square);
     let first = cross(dv, v);
     let twice = cross(dv, first);
     let rate_derivative_column = |e: [T; 3]| {
@@ -82,7 +82,7 @@ pub fn ball_tangent_rate_derivatives<T: Real>(
 /// Returns the factors of `ad`, `ad²`, `ad³` and `ad⁴` in the left Jacobian of SE(3), `Σ adᵏ / (k + 1)!`, as
 /// functions of `θ²`: `ad` has the minimal polynomial `ad (ad² + θ²)²` (Selig, *Geometric Fundamentals of
 /// Robotics*, § 4.6).
-fn jacobian_factors<T: Real>(square: T) -> [T; 4] {
+fn se3_left_jacobian_factors<T: Real>(square: T) -> [T; 4] {
     choose_by_limit(
         square,
         constant(1.0),
@@ -136,7 +136,7 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (SquareBlock<T, 6>, Sq
         let [a, b, c] = rotated_vector(back, [a, b, c]);
         [x, y, z, a, b, c]
     };
-    let [c1, c2, c3, c4] = jacobian_factors(dot(turn, turn));
+    let [c1, c2, c3, c4] = se3_left_jacobian_factors(dot(turn, turn));
     let right_jacobian_column = |e: [T; 6]| {
         let first = lie_bracket(dv, e);
         let second = lie_bracket(dv, first);
@@ -147,7 +147,7 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (SquareBlock<T, 6>, Sq
             lie_bracket(dv, third),
         )
     };
-    (dual_columns(adjoint_column), dual_columns(right_jacobian_column))
+    (matrix_of_twist_function(adjoint_column), matrix_of_twist_function(right_jacobian_column))
 }
 
 /// Returns the derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of
@@ -188,7 +188,7 @@ pub fn free_tangent_rate_derivatives<T: Real>(
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
     let square = dot(turn, turn);
-    let [second, fourth] = even_bracket_factors(square);
+    let [second, fourth] = se3_inverse_jacobian_factors(square);
     let [second_slope, fourth_slope] = even_factor_slopes(square);
     let b1 = lie_bracket(dv, v);
     let b2 = lie_bracket(dv, b1);
@@ -206,7 +206,7 @@ pub fn free_tangent_rate_derivatives<T: Real>(
         let changed = plus_scaled(plus_scaled(plus_scaled(zero, constant(0.5), c1), second, c2), fourth, c4);
         plus_scaled(plus_scaled(changed, second_slope * along, b2), fourth_slope * along, b4)
     };
-    (dual_columns(rate_derivative_column), dual_columns(|e| free_tangent_rate(dv, e)))
+    (matrix_of_twist_function(rate_derivative_column), matrix_of_twist_function(|e| free_tangent_rate(dv, e)))
 }
 
 #[cfg(test)]
@@ -319,7 +319,7 @@ mod tests {
                 .for_each(|(a, b)| assert!((a - b).abs() < 1e-13 + 1e-11 * a.abs(), "{a} {b}"));
         };
         assert_continuous(even_factor_slopes, super::super::SERIES_ANGLE);
-        assert_continuous(|x| [jacobian_factors(x)[0], jacobian_factors(x)[1]], 1.0);
-        assert_continuous(|x| [jacobian_factors(x)[2], jacobian_factors(x)[3]], 1.0);
+        assert_continuous(|x| [se3_left_jacobian_factors(x)[0], se3_left_jacobian_factors(x)[1]], 1.0);
+        assert_continuous(|x| [se3_left_jacobian_factors(x)[2], se3_left_jacobian_factors(x)[3]], 1.0);
     }
 }

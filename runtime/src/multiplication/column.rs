@@ -54,7 +54,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Sou
     const COUNT: usize = K;
 
     #[inline(always)]
-    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F> {
+    fn load_column(&self, k: usize) -> Column<A, T, E, F> {
         match (self.eights.get(k), self.fours.get(k)) {
             (Some(eights), Some(fours)) => Column { eights: *eights, fours: *fours },
             _ => Column::zero(),
@@ -79,7 +79,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
 
     /// Returns the column with the entries `1 − x`, for each entry `x` of this column.
     #[inline(always)]
-    pub fn complement(&self) -> Self {
+    pub fn one_minus_entries(&self) -> Self {
         let mut rest = Self::all(T::one());
         rest.add_multiple::<true>(T::one(), self);
         rest
@@ -174,7 +174,7 @@ pub fn write_entries<A: Arithmetic, T: Real, const W: usize>(
     from: usize,
 ) {
     let rest = column.get_mut(from.min(column.len().saturating_sub(W))..).unwrap_or(&mut []);
-    let numbers = register.numbers_of_lanes();
+    let numbers = register.lane_numbers();
     if let Some(all) = rest.first_chunk_mut() {
         *all = *numbers;
     } else {
@@ -190,7 +190,7 @@ pub trait Source<A, T, const E: usize, const F: usize> {
     const COUNT: usize;
 
     /// Returns column `k` of the list, in registers; zeros if `k` is out of range.
-    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F>;
+    fn load_column(&self, k: usize) -> Column<A, T, E, F>;
 }
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const W: usize>
@@ -199,7 +199,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, con
     const COUNT: usize = W;
 
     #[inline(always)]
-    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F> {
+    fn load_column(&self, k: usize) -> Column<A, T, E, F> {
         match self.get(k) {
             Some(column) => Column::read(column),
             None => Column::zero(),

@@ -1,7 +1,7 @@
 //! Gauss–Jordan elimination of several pivots at a time.
 
 use super::column::Column;
-use super::kernels::{read_columns, write};
+use super::kernels::{load_columns_into_registers, write};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 
@@ -71,20 +71,24 @@ fn eliminate_pivots<
     let Some((before, rest)) = columns.split_at_mut_checked(first) else { return };
     let Some((panel, after)) = rest.split_first_chunk_mut::<P>() else { return };
     let Some(divisors) = divisors.get_mut(first..).and_then(<[T]>::first_chunk_mut::<P>) else { return };
-    let Some(pivots) = Pivots::<A, T, E, F, P>::eliminate_panel(panel, first, divisors) else { return };
+    let Some(pivots) = PivotColumnMultiples::<A, T, E, F, P>::eliminate_panel(panel, first, divisors) else {
+        return;
+    };
     for column in before.iter_mut().chain(after) {
         pivots.eliminate_column(column, first);
     }
 }
 
 /// Multiples of the columns of `P` pivots that the elimination adds to the other columns.
-struct Pivots<A, T, const E: usize, const F: usize, const P: usize> {
+struct PivotColumnMultiples<A, T, const E: usize, const F: usize, const P: usize> {
     columns: [Column<A, T, E, F>; P],
     /// Entries of the columns in the rows of the pivots.
     block: [[T; P]; P],
 }
 
-impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const P: usize> Pivots<A, T, E, F, P> {
+impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const P: usize>
+    PivotColumnMultiples<A, T, E, F, P>
+{
     /// Eliminates the pivots in their own columns, and stores the reciprocals of the pivots. The rows of the
     /// pivots are eliminated as scalars, too: the division by a pivot then does not wait for whole columns.
     #[inline(always)]
@@ -100,14 +104,14 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const P: usize> Piv
         // A one among zeros: reading from an earlier index yields a unit vector of a later row.
         let mut one = [[T::zero(); N]; 2];
         *one[1].first_mut()? = T::one();
-        let mut columns = read_columns::<A, T, E, F, N, P>(panel);
-        let mut taken = Pivots { columns: [Column::zero(); P], block: [[T::zero(); P]; P] };
+        let mut columns = load_columns_into_registers::<A, T, E, F, N, P>(panel);
+        let mut taken = PivotColumnMultiples { columns: [Column::zero(); P], block: [[T::zero(); P]; P] };
         for_each_index!(K in 0..P {
             let unit = Column::<A, T, E, F>::read(one.as_flattened().get(N.saturating_sub(first + K)..)?);
             let by = T::one() / block[K][K];
             divisors[K] = by;
             taken.columns[K] = columns[K];
-            taken.columns[K].multiply(&unit.complement());
+            taken.columns[K].multiply(&unit.one_minus_entries());
             taken.columns[K].multiply(&Column::all(-by));
             for_each_index!(I in 0..P {
                 taken.block[K][I] = if I == K { T::zero() } else { block[K][I] * -by };
@@ -161,7 +165,7 @@ mod tests {
 
     const N: usize = 12;
 
-    fn check_inverse<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const K: usize>(
+    fn check_inverted_leading_block<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const K: usize>(
         matrix: &SMatrix<f64, N, N>,
         block: &SMatrix<f64, K, K>,
     ) {
@@ -178,7 +182,7 @@ mod tests {
         macro_rules! check_sizes {
             ($($size:literal)*) => {$({
                 let block: SMatrix<f64, $size, $size> = matrix.fixed_view::<$size, $size>(0, 0).into_owned();
-                everywhere!(check_inverse by N, (&matrix, &block));
+                everywhere!(check_inverted_leading_block by N, (&matrix, &block));
             })*};
         }
         check_sizes!(1 2 3 4 5 6 7 8 9 10 11 12);

@@ -2,7 +2,7 @@
 //! for a large mechanism, straight-line code of these products would exceed the processor's instruction fetch
 //! rate.
 
-use super::{IndexRange, Run, Tiling, is_long};
+use super::{IndexRange, Run, Tiling, occupies_several_registers};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 use crate::lanes::VectorLoop;
@@ -12,7 +12,8 @@ use nalgebra::SMatrix;
 
 /// Completes the inverse mass matrix `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`. On entry, the matrix contains `H` in the
 /// columns of the trunk and `C⁻¹` in the others, whose `factors` are columns of `Gᵀ`. Columns are read in
-/// tiles as for [`minus_products`](super::minus_products), but with all rows together.
+/// tiles as for [`replace_by_negative_products`](super::replace_by_negative_products), but with all rows
+/// together.
 #[inline]
 pub fn complete<A: Arithmetic, T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, N>,
@@ -34,7 +35,7 @@ struct CompletionLoop<'a, T, P, const N: usize, const K: usize, const M: usize> 
 impl<T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize> VectorLoop
     for CompletionLoop<'_, T, P, N, K, M>
 {
-    const IS_LONG: bool = is_long(N);
+    const IS_LONG: bool = occupies_several_registers(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
@@ -73,10 +74,18 @@ pub fn invert<
     solved: &mut [[T; N]; S],
 ) {
     let parts = PhantomData;
-    A::run_loop(InversionLoop::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
+    A::run_loop(MatrixInversionTask::<T, P, Q, N, K, L, S> {
+        matrix,
+        trunk,
+        borders,
+        limbs,
+        runs,
+        solved,
+        parts,
+    });
 }
 
-struct InversionLoop<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
+struct MatrixInversionTask<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     borders: &'a [[T; L]; N],
@@ -94,13 +103,13 @@ impl<
     const K: usize,
     const L: usize,
     const S: usize,
-> VectorLoop for InversionLoop<'_, T, P, Q, N, K, L, S>
+> VectorLoop for MatrixInversionTask<'_, T, P, Q, N, K, L, S>
 {
-    const IS_LONG: bool = is_long(N);
+    const IS_LONG: bool = occupies_several_registers(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let InversionLoop { matrix, trunk, borders, limbs, runs, solved, .. } = self;
+        let MatrixInversionTask { matrix, trunk, borders, limbs, runs, solved, .. } = self;
         // Gᵀ = −B C⁻¹ by columns, and the Schur complement S = A + B G, which is initialised with A.
         let mut g = AlignedColumns([[T::zero(); L]; N]);
         let mut inner = AlignedColumns([[T::zero(); L]; L]);
@@ -197,7 +206,7 @@ mod tests {
     use crate::arithmetic::Compiled;
 
     #[test]
-    fn columns_are_completed() {
+    fn inverse_columns_are_completed() {
         const N: usize = 14;
         fn check_completed_inverse<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             start: &SMatrix<f64, N, N>,

@@ -80,7 +80,7 @@ pub fn negative_products<
 
 /// Loads `C` columns of a matrix into registers.
 #[inline(always)]
-pub fn read_columns<
+pub fn load_columns_into_registers<
     A: Arithmetic,
     T: Real,
     const E: usize,
@@ -175,9 +175,9 @@ pub fn add_multiples_to_columns<
     for columns in columns {
         let Some((factors, left)) = factors_left.split_first_chunk::<C>() else { break };
         factors_left = left;
-        let mut sums = read_columns::<A, T, E, F, N, C>(columns);
+        let mut sums = load_columns_into_registers::<A, T, E, F, N, C>(columns);
         for k in first..end.min(V).min(S::COUNT) {
-            let from = source.column_in_registers(k);
+            let from = source.load_column(k);
             for (sums, factors) in sums.iter_mut().zip(factors) {
                 let Some(factor) = factors.get(k) else { continue };
                 sums.add_multiple::<MINUS>(*factor, &from);
@@ -205,7 +205,7 @@ pub fn add_products<
     (first, end): IndexRange,
 ) {
     for (place, columns) in sums.as_chunks_mut::<C>().0.iter_mut().enumerate() {
-        let mut sums = read_columns::<A, T, E, F, N, C>(columns);
+        let mut sums = load_columns_into_registers::<A, T, E, F, N, C>(columns);
         for k in first..end.min(W) {
             let Some(factors) = factors[k].as_chunks::<C>().0.get(place) else { continue };
             let from = Column::read(&vectors[k]);

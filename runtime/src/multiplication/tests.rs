@@ -12,7 +12,10 @@ fn check_negated_product<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const
     expected: &SMatrix<f64, N, M>,
 ) {
     let (mut found, mut other) = (*b, *b);
-    minus_products::<A, _, P, N, M, 2>(a, [(&mut found, &[], groups), (&mut other, &[], groups)]);
+    replace_by_negative_products::<A, _, P, N, M, 2>(
+        a,
+        [(&mut found, &[], groups), (&mut other, &[], groups)],
+    );
     assert_eq!(found, other);
     assert!((found + expected).amax() < 1e-13);
 }
@@ -26,7 +29,7 @@ fn product_matches_nalgebra() {
 }
 
 #[test]
-fn product_of_row_groups() {
+fn row_group_products_are_correct() {
     const N: usize = 29;
     let (a, b) = (pseudorandom_matrix::<N, N>(0.0), pseudorandom_matrix::<N, 7>(1.0));
     let rows: [usize; N] = core::array::from_fn(|k| k);
@@ -39,7 +42,7 @@ fn product_of_row_groups() {
 }
 
 #[test]
-fn product_smaller_than_register() {
+fn products_smaller_than_register_are_correct() {
     let (a, b) = (pseudorandom_matrix::<3, 3>(0.0), pseudorandom_matrix::<3, 7>(1.0));
     everywhere!(check_negated_product by 3, (&a, &b, &[((0, 7), &[0, 1, 2])], &(a * b)));
 }
@@ -56,11 +59,11 @@ fn unlisted_rows_are_skipped() {
 }
 
 #[test]
-fn listed_entries_become_zero() {
+fn product_zeroes_listed_factor_entries() {
     let (a, b) = (pseudorandom_matrix::<7, 7>(2.0), pseudorandom_matrix::<7, 3>(3.0));
     let (mut found, mut given) = (b, b);
     let groups: [(IndexRange, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
-    minus_products::<Compiled, _, (rows_of!(7, true), rows_of!(7, false)), 7, 3, 1>(
+    replace_by_negative_products::<Compiled, _, (rows_of!(7, true), rows_of!(7, false)), 7, 3, 1>(
         &a,
         [(&mut found, &[(1, 4), (2, 0)], &groups)],
     );

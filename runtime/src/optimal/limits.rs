@@ -76,7 +76,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
     }
 
     /// Returns true for inputs that may change against the gradient of the costs.
-    fn free_inputs(&self, change: &SVector<T, NU>, gradient: &SVector<T, NU>) -> [bool; NU] {
+    fn free_input_mask(&self, change: &SVector<T, NU>, gradient: &SVector<T, NU>) -> [bool; NU] {
         let mut free = [true; NU];
         let ranges = self.lower.iter().zip(&self.upper);
         for ((free, x), ((lower, upper), slope)) in free.iter_mut().zip(change).zip(ranges.zip(gradient)) {
@@ -98,7 +98,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
         let quadratic_cost =
             |x: &SVector<T, NU>| gradient.dot(x) + x.dot(&product(hessian, x)) * constant(0.5);
         let mut slope = cost_slope_at(&x);
-        let mut free = self.free_inputs(&x, &slope);
+        let mut free = self.free_input_mask(&x, &slope);
         for _ in 0..ITERATIONS[0] * NU + ITERATIONS[1] {
             let reach = gradient.amax() + product(&hessian.abs(), &x.abs()).amax();
             let is_still =
@@ -106,9 +106,9 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
             if slope.iter().zip(&free).all(is_still) {
                 break;
             }
-            let mut step = masked_vector(&slope, &free);
-            let (factor, pivots) =
-                factors(&masked_square(hessian, &free), T::zero()).map_err(|input| Indefinite { input })?;
+            let mut step = vector_of_free_inputs(&slope, &free);
+            let (factor, pivots) = factors(&matrix_with_fixed_inputs_masked(hessian, &free), T::zero())
+                .map_err(|input| Indefinite { input })?;
             solve(&factor, &pivots, &mut step);
             let (before, mut length) = (quadratic_cost(&x), T::one());
             let mut next = x;
@@ -124,21 +124,24 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
             }
             x = next;
             slope = cost_slope_at(&x);
-            free = self.free_inputs(&x, &slope);
+            free = self.free_input_mask(&x, &slope);
         }
         Ok((x, free))
     }
 }
 
 /// Returns the vector with zeros at the inputs that are not free.
-fn masked_vector<T: Real, const NU: usize>(vector: &SVector<T, NU>, free: &[bool; NU]) -> SVector<T, NU> {
+fn vector_of_free_inputs<T: Real, const NU: usize>(
+    vector: &SVector<T, NU>,
+    free: &[bool; NU],
+) -> SVector<T, NU> {
     let mut masked = *vector;
     masked.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(x, _)| *x = T::zero());
     masked
 }
 
 /// Returns the matrix with the rows and columns of the identity at the inputs that are not free.
-fn masked_square<T: Real, const NU: usize>(
+fn matrix_with_fixed_inputs_masked<T: Real, const NU: usize>(
     matrix: &SMatrix<T, NU, NU>,
     free: &[bool; NU],
 ) -> SMatrix<T, NU, NU> {
@@ -154,7 +157,7 @@ fn masked_square<T: Real, const NU: usize>(
 }
 
 /// Sets the columns of a matrix to zero where inputs are not free.
-fn mask_columns<T: Real, const NV: usize, const NU: usize>(
+fn clear_limited_input_columns<T: Real, const NV: usize, const NU: usize>(
     matrix: &mut SMatrix<T, NV, NU>,
     free: &[bool; NU],
 ) {
@@ -185,17 +188,17 @@ pub(super) fn minimise_over_limited_inputs<T: Real, const NV: usize, const NU: u
     let (change, free) = limits.minimise_within_limits((&before.u, &hessian), &policy.change)?;
     let expected = [before.u.dot(&change), change.dot(&product(&before.uu, &change)) * constant(0.5)];
     // Inputs at their limits change the costs like a known disturbance.
-    let fixed = change - masked_vector(&change, &free);
+    let fixed = change - vector_of_free_inputs(&change, &free);
     let mut disturbance = zeros();
     add_product(&mut disturbance, &before.uu, &fixed);
     let disturbed = before.u + disturbance;
-    before.u = masked_vector(&disturbed, &free);
+    before.u = vector_of_free_inputs(&disturbed, &free);
     let Quadratic { q, v, qu, vu, uu, .. } = before;
     add_product(q, qu, &fixed);
     add_product(v, vu, &fixed);
-    mask_columns(qu, &free);
-    mask_columns(vu, &free);
-    *uu = masked_square(uu, &free);
+    clear_limited_input_columns(qu, &free);
+    clear_limited_input_columns(vu, &free);
+    *uu = matrix_with_fixed_inputs_masked(uu, &free);
     super::minimise_over_inputs(before, regularisation, policy, to_go)?;
     (policy.change, policy.expected) = (change, expected);
     Ok(())

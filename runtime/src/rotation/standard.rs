@@ -34,19 +34,19 @@ impl StandardSequence {
     }
 
     /// Negates the third value if the third rotation axis is opposite to the cross product of the first two.
-    fn with_sign_of_third_axis<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
+    fn with_third_axis_sign_applied<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
         if self.symmetric || self.is_cyclic() { [a, b, c] } else { [a, b, -c] }
     }
 
     /// Converts Euler angles or their rates from the given sequence to the standard sequence.
     pub(super) fn to_standard_sequence<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
-        self.with_sign_of_third_axis(if self.reversed { [c, b, a] } else { [a, b, c] })
+        self.with_third_axis_sign_applied(if self.reversed { [c, b, a] } else { [a, b, c] })
     }
 
     /// Converts Euler angles, their rates, or the columns that multiply rates, from the standard sequence to
     /// the given sequence.
     pub(super) fn reorder_from_standard<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
-        let [a, b, c] = self.with_sign_of_third_axis(standard);
+        let [a, b, c] = self.with_third_axis_sign_applied(standard);
         if self.reversed { [c, b, a] } else { [a, b, c] }
     }
 

@@ -58,7 +58,7 @@ fn largest_entry_difference<const N: usize, const M: usize>(
 }
 
 /// Returns the largest difference between three angles and three others, rad, modulo 2π.
-fn angle_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
+fn largest_euler_angle_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
     largest_entry_difference(&Vector3::from(a), &Vector3::from(b))
 }
 
@@ -82,7 +82,7 @@ fn derivative_at_zero<const N: usize, const M: usize>(
 }
 
 /// Asserts that an error is at most a bound. The panic message contains `place`, which identifies the case.
-fn assert_below(error: f64, bound: f64, place: impl core::fmt::Debug) {
+fn assert_error_below_bound(error: f64, bound: f64, place: impl core::fmt::Debug) {
     assert!(error <= bound, "{error:e} > {bound:e} at {place:?}");
 }
 

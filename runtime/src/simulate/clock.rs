@@ -26,8 +26,8 @@ pub(super) struct RunTimes {
 
 /// Returns the quotient `a / b` as numerator and denominator, if it equals a ratio of small integers up to
 /// rounding; otherwise `None`.
-fn integer_ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
-    let small_integer_ratio = |x: f64| {
+fn ratio_of_small_integers(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
+    let fraction_with_small_denominator = |x: f64| {
         (1..=MOST_PARTS).find_map(|parts| {
             let scaled = x * f64::from(parts);
             // Rounded to the nearest integer; for very large values, neighbouring integers cannot be
@@ -38,9 +38,9 @@ fn integer_ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
         })
     };
     if a >= b {
-        small_integer_ratio(a / b)
+        fraction_with_small_denominator(a / b)
     } else {
-        small_integer_ratio(b / a).map(|[whole, parts]| [parts, whole])
+        fraction_with_small_denominator(b / a).map(|[whole, parts]| [parts, whole])
     }
 }
 
@@ -50,16 +50,17 @@ impl RunTimes {
         let rounding = 8.0 * to_f64(epsilon::<T>());
         let [end, every, period] = [duration, every, period].map(|time| time.map(to_f64));
         let whole_step_count = |interval: Option<f64>| {
-            let [count, parts] = integer_ratio(end?, interval?, rounding)?;
+            let [count, parts] = ratio_of_small_integers(end?, interval?, rounding)?;
             (parts == 1).then_some(count)
         };
         let last = [whole_step_count(every), whole_step_count(period)];
-        let ratio = every.zip(period).and_then(|(every, period)| integer_ratio(period, every, rounding));
+        let ratio =
+            every.zip(period).and_then(|(every, period)| ratio_of_small_integers(period, every, rounding));
         Self { end, every, period, last, ratio }
     }
 
     /// Returns the duration of the run, s; `None` if it is unlimited.
-    pub(super) fn end_time(&self) -> Option<f64> {
+    pub(super) fn run_duration(&self) -> Option<f64> {
         self.end
     }
 
@@ -110,7 +111,7 @@ mod tests {
             assert!(t > last, "{count}: {t}");
             assert_eq!(clock.control_instant(count), Some(t));
             (last, count) = (t, count + 1);
-            if clock.end_time() == Some(t) {
+            if clock.run_duration() == Some(t) {
                 break;
             }
         }

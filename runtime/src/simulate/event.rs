@@ -280,7 +280,7 @@ where
         event.ahead = sign_of_value(end);
         if event.side == Ordering::Equal {
             (from, event.side) =
-                sign_after_zero(&mut |theta| event.value_of_function(&path(theta)), [from, to]);
+                position_and_sign_after_zero(&mut |theta| event.value_of_function(&path(theta)), [from, to]);
             match event.side {
                 // Still on the surface.
                 Ordering::Equal => event.ahead = Ordering::Equal,
@@ -309,8 +309,9 @@ where
     }
 
     fn due(&self, from: usize, limit: T) -> Option<usize> {
-        let own_index = || self.1.found.filter(|found| *found <= limit && from <= E::COUNT).map(|_| E::COUNT);
-        self.0.due(from, limit).or_else(own_index)
+        let index_of_found_event =
+            || self.1.found.filter(|found| *found <= limit && from <= E::COUNT).map(|_| E::COUNT);
+        self.0.due(from, limit).or_else(index_of_found_event)
     }
 
     fn act<P: Fn(&State<T, NQ, NV>) -> State<T, NQ, NV>>(
@@ -347,7 +348,7 @@ where
 
 /// Returns a position between `a` and `b` at which the function `f` differs from zero by more than rounding,
 /// and the sign of `f` there. The function is zero at `a` up to rounding, and may be zero again before `b`.
-fn sign_after_zero<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
+fn position_and_sign_after_zero<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
     let rounding = f(a).abs() * constant(4.0);
     for part in [1.5e-8, 1e-6, 6e-5, 4e-3, 0.1, 1.0] {
         let x = a + (b - a) * constant(part);
@@ -403,11 +404,11 @@ mod tests {
     /// Returns the position of the sign change of `f` between 0 and 1, and the number of evaluations of `f`.
     fn find_sign_change(f: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
-        let count_evaluation = |x| {
+        let evaluate_and_count = |x| {
             count += 1;
             f(x)
         };
-        let x = first_sign_change(count_evaluation, [0.0, 1.0], f(1.0));
+        let x = first_sign_change(evaluate_and_count, [0.0, 1.0], f(1.0));
         (x, count)
     }
 

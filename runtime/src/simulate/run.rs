@@ -27,7 +27,7 @@ fn has_significant_difference<T: Real>(a: T, b: T) -> bool {
 
 /// Checks that the quaternions of a configuration have unit norm; `unit` is the configuration with normalised
 /// quaternions.
-pub(super) fn check_quaternions<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+pub(super) fn check_unit_quaternions<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     q: &SVector<T, NQ>,
     unit: &SVector<T, NQ>,
 ) -> Result<(), Error>
@@ -45,7 +45,7 @@ where
 
 /// Returns the name and the change of the entry that differs most between two vectors, if any difference is
 /// significant (see [`has_significant_difference`]).
-fn farthest_entry<T: Real, const N: usize>(
+fn entry_with_largest_change<T: Real, const N: usize>(
     to: &SVector<T, N>,
     from: &SVector<T, N>,
     names: [&'static str; N],
@@ -132,13 +132,15 @@ where
 {
     /// Returns the progress with which a simulation continues: that of an interrupted run, otherwise the
     /// initial progress, after checks of all settings.
-    pub(super) fn begin_run(&mut self) -> Result<RunProgress<T, Memory<T, S, NV>, NQ, NV>, Error> {
+    pub(super) fn initial_or_resumed_progress(
+        &mut self,
+    ) -> Result<RunProgress<T, Memory<T, S, NV>, NQ, NV>, Error> {
         if let Some(run) = self.progress.take() {
             return Ok(run);
         }
         self.method.check()?;
         self.duration.map_or(Ok(()), |duration| check_not_negative("the duration", duration))?;
-        self.check_samples()?;
+        self.check_sample_times()?;
         self.system.inputs.period().map_or(Ok(()), |period| check_positive("the control period", period))?;
         let start = self.start.check_finite()?;
         // A zero displacement normalises quaternions.
@@ -147,12 +149,12 @@ where
         if self.system.mechanism.features().speeds && unit.iter().any(|x| !x.is_finite()) {
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
-        check_quaternions::<M, T, NQ, NV, NU>(&start.q, &unit)?;
-        let start = self.separate_surfaces(start)?;
+        check_unit_quaternions::<M, T, NQ, NV, NU>(&start.q, &unit)?;
+        let start = self.start_with_separated_surfaces(start)?;
         let node = self.project_on_constraints(start)?;
         let t = to_f64(node.t);
-        if let Some((entry, by)) = farthest_entry(&node.q, &start.q, M::CONFIGURATION)
-            .or_else(|| farthest_entry(&node.v, &start.v, M::VELOCITIES))
+        if let Some((entry, by)) = entry_with_largest_change(&node.q, &start.q, M::CONFIGURATION)
+            .or_else(|| entry_with_largest_change(&node.v, &start.v, M::VELOCITIES))
         {
             return Err(Error::OffConstraints { t, entry, by });
         }
@@ -177,7 +179,7 @@ where
     }
 
     /// Returns the initial state with separated contact surfaces, unless overlaps are permitted.
-    fn separate_surfaces(&self, start: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
+    fn start_with_separated_surfaces(&self, start: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
         if !M::CONTACTING || self.overlaps == Overlaps::Keep {
             return Ok(start);
         }
@@ -200,7 +202,7 @@ where
         loop {
             let sample = match (run.step, run.firing.is_some()) {
                 (Some(step), true) => self.fire_next_event(run, &step)?,
-                (Some(step), false) => self.advance_within(run, &step)?,
+                (Some(step), false) => self.advance_within_step(run, &step)?,
                 _ if self.has_reached_end(run) && run.shown => return Ok(None),
                 _ => self.continue_at_node(run)?,
             };
@@ -211,10 +213,10 @@ where
     }
 
     fn has_reached_end(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
-        run.stopped || run.clock.end_time().is_some_and(|end| run.elapsed >= end)
+        run.stopped || run.clock.run_duration().is_some_and(|end| run.elapsed >= end)
     }
 
-    fn check_samples(&self) -> Result<(), Error> {
+    fn check_sample_times(&self) -> Result<(), Error> {
         match self.samples {
             SampleTimes::Steps => Ok(()),
             SampleTimes::Every(interval) => check_positive("the sampling interval", interval),
@@ -247,27 +249,27 @@ where
     /// time, the instant is the end of the run.
     fn next_sample_instant(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let SampleTimes::At(times) = self.samples else { return run.clock.sample_instant(run.sample) };
-        let end = run.clock.end_time().unwrap_or(f64::INFINITY);
+        let end = run.clock.run_duration().unwrap_or(f64::INFINITY);
         let due = usize::try_from(run.sample).ok().and_then(|k| times.get(k));
         Some(due.map_or(end, |t| self.time_since_start(t).min(end)))
     }
 
     /// Returns the time of the run at an instant.
-    fn run_time_at(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
+    fn run_time_at_instant(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
         if let SampleTimes::At(times) = self.samples
             && let Some(asked) = usize::try_from(run.sample).ok().and_then(|k| times.get(k))
             && self.time_since_start(asked) == elapsed
         {
             return *asked;
         }
-        let end = self.duration.filter(|_| run.clock.end_time() == Some(elapsed));
+        let end = self.duration.filter(|_| run.clock.run_duration() == Some(elapsed));
         end.map_or_else(|| time_after(self.start.t, elapsed), |duration| self.start.t + duration)
     }
 
     /// Returns the latest instant at which the next step must end.
     fn next_step_limit(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let sample = self.next_sample_instant(run).filter(|_| S::FIXED);
-        let stops = [run.clock.end_time(), run.clock.control_instant(run.control), sample];
+        let stops = [run.clock.run_duration(), run.clock.control_instant(run.control), sample];
         stops.into_iter().flatten().reduce(f64::min)
     }
 
@@ -292,7 +294,7 @@ where
         let sample = self.next_sample_instant(run).filter(|_| !S::FIXED);
         let within = sample.is_some_and(|sample| stop.is_none_or(|stop| sample < stop));
         let dense = E::COUNT > 0;
-        let (origin, start) = (run.node.t, run.node.state_with_time(T::zero()));
+        let (origin, start) = (run.node.t, run.node.with_time_replaced(T::zero()));
         let step = self.system.advance_step(
             &self.method,
             &mut run.memory,
@@ -303,7 +305,7 @@ where
         )?;
         let arrived = stop.filter(|_| until == Some(step.end.t));
         let elapsed = arrived.unwrap_or_else(|| run.elapsed + to_f64(step.end.t));
-        run.ahead = (elapsed, self.run_time_at(run, elapsed));
+        run.ahead = (elapsed, self.run_time_at_instant(run, elapsed));
         if dense || self.next_sample_instant(run).is_some_and(|sample| sample < elapsed) {
             (run.step, run.cursor, run.hit) = (Some(step), T::zero(), None);
         } else {
@@ -315,17 +317,17 @@ where
     /// Moves the progress of the run to the end of the step.
     fn move_to_step_end(&self, run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
         let (elapsed, t) = run.ahead;
-        (run.node, run.elapsed, run.step, run.shown) = (step.end.state_with_time(t), elapsed, None, false);
+        (run.node, run.elapsed, run.step, run.shown) = (step.end.with_time_replaced(t), elapsed, None, false);
     }
 
     /// Returns the state at position `theta` on a step, with the time of the run.
     fn state_on_step(&self, origin: T, step: &Step<T, NQ, NV>, theta: T) -> State<T, NQ, NV> {
         let state = step.at(&self.system, theta);
-        state.state_with_time(origin + state.t)
+        state.with_time_replaced(origin + state.t)
     }
 
     /// Continues within a step: emits the next sample or event, otherwise advances to the end of the step.
-    fn advance_within(
+    fn advance_within_step(
         &mut self,
         run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
@@ -337,13 +339,13 @@ where
         let event = run.hit.map(|hit| (hit, run.elapsed + to_f64(hit.theta * step.end.t)));
         let limit = event.map_or(run.ahead.0, |(_, elapsed)| elapsed);
         if let Some(due) = self.next_sample_instant(run).filter(|due| *due < limit) {
-            let t = self.run_time_at(run, due);
+            let t = self.run_time_at_instant(run, due);
             run.sample += 1;
             if run.quiet {
                 return Ok(None);
             }
             let theta = constant((due - run.elapsed) / length);
-            let state = self.state_on_step(run.node.t, step, theta).state_with_time(t);
+            let state = self.state_on_step(run.node.t, step, theta).with_time_replaced(t);
             let state = self.project_on_constraints(state)?;
             return Ok(Some(self.make_sample(run, state, None)));
         }
@@ -373,10 +375,10 @@ where
         if E::COUNT == 0 {
             return Ok(());
         }
-        let (system, origin, end) = (&self.system, run.node.t, step.end.state_with_time(run.ahead.1));
+        let (system, origin, end) = (&self.system, run.node.t, step.end.with_time_replaced(run.ahead.1));
         let state_along_step = |theta: T| {
             let state = step.at(system, theta);
-            if theta < T::one() { state.state_with_time(origin + state.t) } else { end }
+            if theta < T::one() { state.with_time_replaced(origin + state.t) } else { end }
         };
         for part in 1..=SEARCHES {
             let to = constant::<T>(f64::from(part) / f64::from(SEARCHES));
@@ -433,8 +435,8 @@ where
             EventOutcome::Stop => firing.stopped = true,
             EventOutcome::Jump => {
                 let soon = (run.ahead.0 - run.elapsed) * SOON;
-                let is_repeated = |(last, elapsed)| last == index && firing.elapsed - elapsed < soon;
-                if run.jump.is_some_and(is_repeated) {
+                let is_repeated_event = |(last, elapsed)| last == index && firing.elapsed - elapsed < soon;
+                if run.jump.is_some_and(is_repeated_event) {
                     return Err(Error::Impacts { t: to_f64(firing.state.t), event: index });
                 }
                 run.jump = Some((index, firing.elapsed));

@@ -77,12 +77,12 @@ fn mechanism_reference_is_simulated() {
 
 #[test]
 fn run_starts_at_given_time() {
-    let simulate_pushed_from = |start| {
+    let simulate_pushed_oscillator_from = |start| {
         let oscillator = harmonic_oscillator::<f64>();
         let run = simulate(&oscillator).start_at(start).inputs(|t, _, _| SVector::from([t]));
         run.duration(1.0).finish().map(|end| (end.t, end.q[0])).unwrap()
     };
-    let (t, q) = simulate_pushed_from(2.0);
+    let (t, q) = simulate_pushed_oscillator_from(2.0);
     // q̈ = −q + t from rest at t = 2: q = t − 2 cos(t − 2) − sin(t − 2).
     assert_eq!(t, 3.0);
     assert!((q - (3.0 - 2.0 * 1.0_f64.cos() - 1.0_f64.sin())).abs() < 1e-7);
@@ -178,13 +178,13 @@ fn run_ends_at_stopping_event() {
     assert_stops_at_event(run.clone().method(ImplicitMidpoint::step(0.7)).finish());
     assert_stops_at_event(run.clone().sample_every(0.25).method(Rk4::step(0.07)).finish());
     // The stone passes 4 m on its way up, and again on its way down.
-    let time_of_fall_crossing = |crossing| {
+    let crossing_time_of_thrown_stone = |crossing| {
         let run = simulate(&stone).from([0.0], [3.0]).until_crossing(crossing, |_, q, _| q[0] - 4.0);
         run.finish().unwrap().t
     };
-    assert!((time_of_fall_crossing(Crossing::Rising) - 2.0).abs() < 1e-13);
-    assert!((time_of_fall_crossing(Crossing::Either) - 2.0).abs() < 1e-13);
-    assert!((time_of_fall_crossing(Crossing::Falling) - 4.0).abs() < 1e-13);
+    assert!((crossing_time_of_thrown_stone(Crossing::Rising) - 2.0).abs() < 1e-13);
+    assert!((crossing_time_of_thrown_stone(Crossing::Either) - 2.0).abs() < 1e-13);
+    assert!((crossing_time_of_thrown_stone(Crossing::Falling) - 4.0).abs() < 1e-13);
 }
 
 #[test]
@@ -465,7 +465,7 @@ fn check_listed_sample_times<S: Method<f64> + Clone>(method: S, tolerance: f64) 
 }
 
 #[test]
-fn samples_at_listed_times() {
+fn samples_lie_at_listed_times() {
     check_listed_sample_times(DormandPrince::new(), 1e-7);
     check_listed_sample_times(Rk4::step(1e-2), 1e-8);
 }

@@ -13,14 +13,14 @@ pub struct Shape {
 /// Position on an axis and order of the derivative, from which the weights of the axis are computed; no
 /// position for an axis that the table does not have.
 #[derive(Clone, Copy)]
-pub struct Weights<T> {
+pub struct WeightArguments<T> {
     pub place: Option<AxisPosition<T>>,
     pub order: u8,
 }
 
-impl<T> Weights<T> {
-    pub fn one() -> Weights<T> {
-        Weights { place: None, order: 0 }
+impl<T> WeightArguments<T> {
+    pub fn one() -> WeightArguments<T> {
+        WeightArguments { place: None, order: 0 }
     }
 }
 
@@ -40,8 +40,8 @@ fn step<T: Real>(x: T) -> T {
 
 impl<T: Real> AxisPosition<T> {
     pub fn locate_on_axis(points: &[f64], x: T) -> AxisPosition<T> {
-        let coordinate_or_zero = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
-        let (low, high) = (coordinate_or_zero(points.first()), coordinate_or_zero(points.last()));
+        let table_point_or_zero = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
+        let (low, high) = (table_point_or_zero(points.first()), table_point_or_zero(points.last()));
         let inner = x.max(low).min(high);
         // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
         let nothing = x * T::zero();
@@ -69,7 +69,7 @@ impl<T: Real> AxisPosition<T> {
     }
 
     /// Returns one in each lane in which the grid cell contains the argument, and zero in others.
-    pub fn share_of_cell(&self, points: &[f64], cell: usize) -> T {
+    pub fn cell_indicator(&self, points: &[f64], cell: usize) -> T {
         let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
         let low = if cell == 0 { T::one() } else { step_at_point(cell) };
@@ -78,31 +78,31 @@ impl<T: Real> AxisPosition<T> {
 
     /// Returns the weights of the four points around a cell, for a derivative of the given order.
     pub fn weights_of_points(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
-        let around = Around::new(points, cell, shape.smooth);
+        let around = GridCell::new(points, cell, shape.smooth);
         let s = (self.x - constant(around.start)) / constant(around.width);
-        let weights_of_order = |order| around.weights_at_fraction(s, order);
+        let weights_of_derivative_order = |order| around.weights_at_fraction(s, order);
         match (order, shape.extrapolated) {
             (0, true) => {
-                let (value, slope) = (weights_of_order(0), weights_of_order(1));
+                let (value, slope) = (weights_of_derivative_order(0), weights_of_derivative_order(1));
                 core::array::from_fn(|k| value[k] + self.beyond * slope[k])
             }
-            (0, false) => weights_of_order(0),
-            (1, true) => weights_of_order(1),
-            _ => weights_of_order(order).map(|w| w * self.within),
+            (0, false) => weights_of_derivative_order(0),
+            (1, true) => weights_of_derivative_order(1),
+            _ => weights_of_derivative_order(order).map(|w| w * self.within),
         }
     }
 }
 
 /// Cell of an axis: its start, its width and, for smooth tables, the weights of the four points around it
 /// that yield the slopes at both ends times the width.
-struct Around {
+struct GridCell {
     start: f64,
     width: f64,
     slopes: Option<[[f64; 4]; 2]>,
 }
 
-impl Around {
-    fn new(points: &[f64], cell: usize, smooth: bool) -> Around {
+impl GridCell {
+    fn new(points: &[f64], cell: usize, smooth: bool) -> GridCell {
         let coordinate_of_point = |k: usize| points.get(k).copied();
         let (start, end) =
             (coordinate_of_point(cell).unwrap_or(0.0), coordinate_of_point(cell + 1).unwrap_or(1.0));
@@ -126,7 +126,7 @@ impl Around {
             };
             [first, second]
         });
-        Around { start, width: h, slopes }
+        GridCell { start, width: h, slopes }
     }
 
     /// Returns the weights at the fraction `s` of the width, for a derivative of the given order.

@@ -102,7 +102,7 @@ fn lanes_are_looked_up_separately() {
 }
 
 #[test]
-fn single_precision_table_lookup() {
+fn table_lookup_works_in_single_precision() {
     fn smooth_table_value<T: Real>(x: f64) -> f64 {
         let x = crate::private::constant::<T>(x);
         crate::private::to_f64(cubic_grid_table().smooth().value([x, x, x]))
@@ -116,12 +116,13 @@ fn invalid_tables_are_rejected() {
     static BACK: [f64; 3] = [0.0, 2.0, 1.0];
     static HOLE: [f64; 2] = [0.0, f64::NAN];
     static TWO: [f64; 2] = [0.0, 1.0];
-    let error_of_table = |axes: [&'static [f64]; 1], values: &'static [f64]| Table::new(axes, values).err();
-    assert_eq!(error_of_table([&ONE], &ONE), Some(TableError::TooFewPoints { axis: 0 }));
-    assert_eq!(error_of_table([&BACK], &BACK), Some(TableError::NotIncreasing { axis: 0, place: 2 }));
-    assert_eq!(error_of_table([&HOLE], &TWO), Some(TableError::NotIncreasing { axis: 0, place: 1 }));
-    assert_eq!(error_of_table([&TWO], &HOLE), Some(TableError::NotFinite { place: 1 }));
-    assert_eq!(error_of_table([&TWO], &BACK), Some(TableError::Size { expected: 2, found: 3 }));
+    let construction_error =
+        |axes: [&'static [f64]; 1], values: &'static [f64]| Table::new(axes, values).err();
+    assert_eq!(construction_error([&ONE], &ONE), Some(TableError::TooFewPoints { axis: 0 }));
+    assert_eq!(construction_error([&BACK], &BACK), Some(TableError::NotIncreasing { axis: 0, place: 2 }));
+    assert_eq!(construction_error([&HOLE], &TWO), Some(TableError::NotIncreasing { axis: 0, place: 1 }));
+    assert_eq!(construction_error([&TWO], &HOLE), Some(TableError::NotFinite { place: 1 }));
+    assert_eq!(construction_error([&TWO], &BACK), Some(TableError::Size { expected: 2, found: 3 }));
     let said = std::string::ToString::to_string(&TableError::Size { expected: 2, found: 3 });
     assert_eq!(said, "the grid of the table has 2 points, but there are 3 values");
 }

@@ -6,7 +6,7 @@ use crate::arithmetic::Compiled as A;
 
 /// Checks sine and cosine of an angle with every instruction set that the processor has.
 fn check_angle(x: f64) {
-    check_with_instructions::<A>(x);
+    check_angle_with_instruction_set::<A>(x);
     #[cfg(all(
         feature = "std",
         target_arch = "x86_64",
@@ -15,12 +15,12 @@ fn check_angle(x: f64) {
     {
         use crate::lanes::x86::avx2;
         if avx2::is_available() {
-            check_with_instructions::<avx2::Avx2>(x);
+            check_angle_with_instruction_set::<avx2::Avx2>(x);
         }
     }
 }
 
-fn check_with_instructions<A: Arithmetic>(x: f64) {
+fn check_angle_with_instruction_set<A: Arithmetic>(x: f64) {
     let (s, c) = A::sin_cos(x);
     // The sine of a small angle is the angle itself; large angles use the library.
     if !(1e-8..=LARGEST).contains(&x.abs()) {
@@ -64,7 +64,7 @@ fn sines_near_quarter_turns_are_accurate() {
 }
 
 #[test]
-fn sines_of_arrays_and_single_precision() {
+fn sines_of_arrays_equal_sines_of_scalars() {
     let x = [0.1, -2.0, 7.0, 3e5];
     let (s, c) = A::sin_cos_all(x);
     for k in 0..4 {

@@ -109,7 +109,7 @@ impl<'a> ColladaReader<'a> {
             Entry::Occupied(found) => found.into_mut(),
             Entry::Vacant(free) => free.insert(triangles_of_geometry(geometry)?),
         };
-        check_corner_count(self.corners.len() + mesh.len())?;
+        check_triangle_limit(self.corners.len() + mesh.len())?;
         self.corners.extend(mesh.iter().map(|corner| {
             let at = place.transform_point(corner);
             [at.x as f32, at.y as f32, at.z as f32]
@@ -118,7 +118,7 @@ impl<'a> ColladaReader<'a> {
     }
 }
 
-fn check_corner_count(corners: usize) -> Result<(), String> {
+fn check_triangle_limit(corners: usize) -> Result<(), String> {
     match corners / 3 > MAX_TRIANGLES {
         true => Err(format!("more than {MAX_TRIANGLES} triangles: take a simplified mesh")),
         false => Ok(()),
@@ -142,7 +142,7 @@ fn triangles_of_geometry(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, Str
                         pairs.for_each(|pair| corners.extend([face[0], pair[0], pair[1]]));
                     }
                 }
-                check_corner_count(corners.len())?;
+                check_triangle_limit(corners.len())?;
             }
         }
     }
@@ -289,7 +289,7 @@ mod tests {
         )
     }
 
-    fn scene_of_nodes(nodes: &str) -> String {
+    fn collada_scene_text(nodes: &str) -> String {
         format!(
             "<library_visual_scenes><visual_scene id='s'>{nodes}</visual_scene></library_visual_scenes>
              <scene><instance_visual_scene url='#s'/></scene>"
@@ -331,7 +331,7 @@ mod tests {
         let found = corners_of_triangles(&collada_file(
             "<unit meter='0.01' name='cm'/>",
             TWO,
-            &scene_of_nodes(&nodes),
+            &collada_scene_text(&nodes),
         ))
         .unwrap();
         // (2, 2, 0) is scaled to (2, 6, 0), rotated to (−6, 2, 0) and translated to (94, 2, 0), in
@@ -341,7 +341,7 @@ mod tests {
         }
         let matrix = format!("<node><matrix>0 -3 0 100 1 0 0 0 0 0 1 0 0 0 0 1</matrix>{SHOWN}</node>");
         let by_matrix =
-            corners_of_triangles(&collada_file("<unit meter='0.01'/>", TWO, &scene_of_nodes(&matrix)))
+            corners_of_triangles(&collada_file("<unit meter='0.01'/>", TWO, &collada_scene_text(&matrix)))
                 .unwrap();
         for (a, b) in found.iter().flatten().zip(by_matrix.iter().flatten()) {
             assert!((a - b).abs() < 1e-6);
@@ -350,8 +350,9 @@ mod tests {
             "<library_nodes><node id='part'><instance_geometry url='#square'/></node></library_nodes>";
         let twice = "<node><instance_node url='#part'/><translate>0 0 1</translate>\
                      <instance_node url='#part'/></node>";
-        let both = corners_of_triangles(&collada_file("", TWO, &[library, &scene_of_nodes(twice)].concat()))
-            .unwrap();
+        let both =
+            corners_of_triangles(&collada_file("", TWO, &[library, &collada_scene_text(twice)].concat()))
+                .unwrap();
         assert_eq!((both.len(), both[0], both[6]), (12, [0.0; 3], [0.0, 0.0, 1.0]));
     }
 
@@ -360,7 +361,7 @@ mod tests {
         let vertex = "<input semantic='VERTEX' source='#v'/>";
         let corners_of_faces = |list: &str| corners_of_triangles(&collada_file("", list, ""));
         let corners_of_scene =
-            |nodes: &str| corners_of_triangles(&collada_file("", TWO, &scene_of_nodes(nodes)));
+            |nodes: &str| corners_of_triangles(&collada_file("", TWO, &collada_scene_text(nodes)));
         let bomb = (0..40).map(|k| {
             let next = format!("<instance_node url='#n{}'/>", k + 1);
             format!("<node id='n{k}'>{next}{next}</node>")

@@ -16,7 +16,7 @@ const LARGEST: f64 = 1.5e9;
 impl Stream {
     /// Appends a channel, quantised in multiples of `quantum`.
     pub fn channel(&mut self, values: impl Iterator<Item = f64>, quantum: f64) {
-        let steps: Vec<i64> = values.map(|x| step_count(x / quantum)).collect();
+        let steps: Vec<i64> = values.map(|x| quantised_integer(x / quantum)).collect();
         let Some(first) = steps.first() else { return };
         self.write_integer(*first);
         let moves = steps.iter().any(|step| step != first);
@@ -41,7 +41,7 @@ impl Stream {
     }
 }
 
-fn step_count(x: f64) -> i64 {
+fn quantised_integer(x: f64) -> i64 {
     x.round().clamp(-LARGEST, LARGEST) as i64
 }
 

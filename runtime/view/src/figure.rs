@@ -65,7 +65,7 @@ impl Figure {
             figure.shapes[before..].iter_mut().for_each(|shape| shape.first = Some(piece.first));
         }
         figure.shapes.iter_mut().for_each(|shape| shape.declared = true);
-        figure.limit_ellipsoids();
+        figure.shrink_ellipsoids_to_links();
         figure
     }
 
@@ -162,11 +162,11 @@ impl Figure {
     /// Returns the shapes of the drawing that are drawn. Shapes of mass properties are omitted if all meshes
     /// of their body were read.
     pub(crate) fn drawn_shapes(&self) -> impl Iterator<Item = &DrawnShape> {
-        self.shapes.iter().filter(|shape| shape.is_visible() && !self.has_meshes(shape))
+        self.shapes.iter().filter(|shape| shape.is_visible() && !self.is_represented_by_meshes(shape))
     }
 
     /// Returns whether a shape represents the mass properties of a body whose meshes were all read.
-    fn has_meshes(&self, shape: &DrawnShape) -> bool {
+    fn is_represented_by_meshes(&self, shape: &DrawnShape) -> bool {
         let is_mesh_of_shape = |s: &&DrawnShape| {
             s.declared && s.role == Role::Visual && matches!(s.kind, Kind::Mesh(_)) && s.name == shape.name
         };
@@ -216,7 +216,7 @@ impl Figure {
 
     /// Limits the equivalent ellipsoids to the length of the links, because many robot files have fictitious
     /// inertias.
-    fn limit_ellipsoids(&mut self) {
+    fn shrink_ellipsoids_to_links(&mut self) {
         let length =
             |s: &DrawnShape| (0..3).map(|k| (s.numbers[3 + k] - s.numbers[k]).powi(2)).sum::<f64>().sqrt();
         let bars: Vec<(Option<usize>, f64)> =
@@ -254,36 +254,36 @@ impl Figure {
 impl DrawnShape {
     /// Returns the index of the first number of the shape among the numbers of the declared pieces, and the
     /// count of these numbers. An equivalent ellipsoid takes only its position from them.
-    pub(crate) fn source_range(&self) -> Option<[usize; 2]> {
+    pub(crate) fn declared_number_range(&self) -> Option<[usize; 2]> {
         let count = if self.fitted { 3 } else { self.numbers.len() };
         self.first.map(|first| [first, count])
     }
 
     /// Returns the reference points of the shape, each with its frame and the distance by which the shape
     /// extends beyond it.
-    pub(crate) fn reference_points(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
+    pub(crate) fn reference_points_of_shape(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
-        let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+        let vector_at_index = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
         let [a, b] = self.frames;
         let spheres_at_ends = |half: f64, radius: f64| {
             vec![
-                (a, vector_from_numbers(0) - vector_from_numbers(3) * half, radius),
-                (a, vector_from_numbers(0) + vector_from_numbers(3) * half, radius),
+                (a, vector_at_index(0) - vector_at_index(3) * half, radius),
+                (a, vector_at_index(0) + vector_at_index(3) * half, radius),
             ]
         };
-        let norm_of_vector = |k: usize| vector_from_numbers(k).norm();
+        let norm_of_vector = |k: usize| vector_at_index(k).norm();
         match self.kind {
             Kind::Rod => spheres_at_ends(n[6] / 2.0, 0.0),
             Kind::Cylinder | Kind::Capsule => spheres_at_ends(n[7] / 2.0, n[6]),
             Kind::Cone => spheres_at_ends(n[7] * 0.75, n[6]),
             Kind::Tube => spheres_at_ends(n[8] / 2.0, n[7]),
-            Kind::Ring | Kind::Disk => vec![(a, vector_from_numbers(0), n[6])],
-            Kind::Torus => vec![(a, vector_from_numbers(0), n[6] + n[7])],
-            Kind::Sphere => vec![(a, vector_from_numbers(0), n[3])],
-            Kind::Cuboid => vec![(a, vector_from_numbers(0), norm_of_vector(12) / 2.0)],
-            Kind::Ellipsoid => vec![(a, vector_from_numbers(0), n[12].max(n[13]).max(n[14]))],
+            Kind::Ring | Kind::Disk => vec![(a, vector_at_index(0), n[6])],
+            Kind::Torus => vec![(a, vector_at_index(0), n[6] + n[7])],
+            Kind::Sphere => vec![(a, vector_at_index(0), n[3])],
+            Kind::Cuboid => vec![(a, vector_at_index(0), norm_of_vector(12) / 2.0)],
+            Kind::Ellipsoid => vec![(a, vector_at_index(0), n[12].max(n[13]).max(n[14]))],
             Kind::Bar | Kind::Coil | Kind::Damper => {
-                vec![(a, vector_from_numbers(0), 0.0), (b, vector_from_numbers(3), 0.0)]
+                vec![(a, vector_at_index(0), 0.0), (b, vector_at_index(3), 0.0)]
             }
             Kind::Terrain(_) => Vec::new(),
             // A surface has no definite size, like a plane.
@@ -292,7 +292,7 @@ impl DrawnShape {
                 Some(mesh) => {
                     vec![(
                         a,
-                        vector_from_numbers(0),
+                        vector_at_index(0),
                         mesh.radius_of_mesh() * n[12].abs().max(n[13].abs()).max(n[14].abs()),
                     )]
                 }
@@ -308,7 +308,7 @@ impl DrawnShape {
             | Kind::Spiral
             | Kind::Brake
             | Kind::Force(_)
-            | Kind::Torque(_) => vec![(a, vector_from_numbers(0), 0.0)],
+            | Kind::Torque(_) => vec![(a, vector_at_index(0), 0.0)],
         }
     }
 

@@ -100,7 +100,7 @@ pub fn free_body<T: Real, const N: usize>(diagram: &Diagram<T, N>, side: Side) -
         name = escaped(diagram.body)
     );
     write_body_and_arrows(&mut out, &all, side);
-    write_list(&mut out, diagram, &all);
+    write_action_list(&mut out, diagram, &all);
     out.push_str("</svg>\n");
     out
 }
@@ -117,7 +117,7 @@ struct ShownAction {
 
 impl ShownAction {
     fn new<T: Real>(action: &Action<T>, side: Side) -> ShownAction {
-        let figures = [action.point, action.force, action.torque].map(numbers_of_vector);
+        let figures = [action.point, action.force, action.torque].map(vector_as_f64_array);
         let [point, force, torque] = figures.map(|v| side.view_components(v));
         let colour = match action.origin {
             Origin::Gravity => "#5a5a5a",
@@ -135,7 +135,7 @@ impl ShownAction {
     }
 }
 
-fn numbers_of_vector<T: Real>(v: SVector<T, 3>) -> [f64; 3] {
+fn vector_as_f64_array<T: Real>(v: SVector<T, 3>) -> [f64; 3] {
     [v[0], v[1], v[2]].map(to_double)
 }
 
@@ -144,17 +144,17 @@ fn length_of_vector(x: f64, y: f64) -> f64 {
 }
 
 /// Returns the factor by which the maximum of `sizes` becomes `to`.
-fn scale_to_maximum(sizes: impl Iterator<Item = f64>, to: f64) -> f64 {
+fn scale_factor_to_maximum(sizes: impl Iterator<Item = f64>, to: f64) -> f64 {
     let largest = sizes.fold(0.0_f64, f64::max);
     if largest > 0.0 { to / largest } else { 0.0 }
 }
 
 fn write_body_and_arrows(out: &mut String, all: &[ShownAction], side: Side) {
     let all: Vec<&ShownAction> = all.iter().filter(|shown| shown.is_finite()).collect();
-    let places = scale_to_maximum(all.iter().map(|s| length_of_vector(s.point[0], s.point[1])), REACH);
+    let places = scale_factor_to_maximum(all.iter().map(|s| length_of_vector(s.point[0], s.point[1])), REACH);
     let vector_norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let forces = scale_to_maximum(all.iter().map(|s| vector_norm(s.force)), LONGEST);
-    let torques = scale_to_maximum(all.iter().map(|s| vector_norm(s.torque)), LONGEST / 2.0);
+    let forces = scale_factor_to_maximum(all.iter().map(|s| vector_norm(s.force)), LONGEST);
+    let torques = scale_factor_to_maximum(all.iter().map(|s| vector_norm(s.torque)), LONGEST / 2.0);
     let largest = all.iter().map(|s| vector_norm(s.torque)).fold(0.0, f64::max);
     let project_to_page = |v: [f64; 3]| (DRAWING / 2.0 + places * v[0], HEIGHT / 2.0 - places * v[1]);
     let center = project_to_page([0.0; 3]);
@@ -195,7 +195,7 @@ fn write_body_and_arrows(out: &mut String, all: &[ShownAction], side: Side) {
         }
         let [right, up, across] = shown.torque;
         if across.abs() > 1e-6 * vector_norm(shown.torque) {
-            draw_arc(out, (x, y), across > 0.0, shown.colour);
+            draw_rotation_arrow(out, (x, y), across > 0.0, shown.colour);
         }
         draw_arrow(out, (x, y), (right * torques, -up * torques), shown.colour, 2);
     }
@@ -253,7 +253,7 @@ fn draw_arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour
 }
 
 /// Draws three quarters of a circle about a point, with an arrow.
-fn draw_arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &str) {
+fn draw_rotation_arrow(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &str) {
     // Counterclockwise from the right through the top; otherwise the mirror image.
     let sign = if counterclockwise { 1.0 } else { -1.0 };
     let sweep = u8::from(!counterclockwise);
@@ -275,7 +275,11 @@ fn draw_arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour
 }
 
 /// Writes the values of all actions and their sum as a list next to the diagram.
-fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>, all: &[ShownAction]) {
+fn write_action_list<T: Real, const N: usize>(
+    out: &mut String,
+    diagram: &Diagram<T, N>,
+    all: &[ShownAction],
+) {
     let x = DRAWING + 10.0;
     let mut y = 26.0;
     let mut say = |out: &mut String, colour: &str, weight: &str, words: &str| {
@@ -293,7 +297,7 @@ fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>
         say(out, shown.colour, "normal", &format!("force {} N", format_components(force)));
         say(out, shown.colour, "normal", &format!("torque {} N·m", format_components(torque)));
     }
-    let (force, torque) = (numbers_of_vector(diagram.force()), numbers_of_vector(diagram.torque()));
+    let (force, torque) = (vector_as_f64_array(diagram.force()), vector_as_f64_array(diagram.torque()));
     say(out, "#000", "bold", "sum, m a and the rate of the angular momentum");
     say(out, "#000", "normal", &format!("force {} N", format_components(force)));
     say(out, "#000", "normal", &format!("torque {} N·m", format_components(torque)));

@@ -8,7 +8,7 @@ use crate::{Page, text};
 #[doc(hidden)]
 pub fn gallery(title: &str, pages: &[(String, Page)]) -> String {
     let title = text::html(title);
-    let cards: String = pages.iter().map(|(address, page)| page.link_card(address)).collect();
+    let cards: String = pages.iter().map(|(address, page)| page.html_link_to_page(address)).collect();
     format!(
         "{}<body class=\"linkwork-page\">\n<header><h1>{title}</h1></header>\n\
          <main class=\"linkwork-view cards\">\n{cards}</main>\n</body>\n</html>\n",

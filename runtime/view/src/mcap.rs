@@ -78,7 +78,7 @@ pub fn mcap<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU> + Frames<NQ, NV, Scalar = <M as Mechanism<NQ, NV, NU>>::Scalar>,
 {
-    let plain_list = |list: &[_]| list.iter().map(|x| to_double(*x)).collect();
+    let list_as_f64 = |list: &[_]| list.iter().map(|x| to_double(*x)).collect();
     let names = Names {
         frames: M::FRAMES,
         configuration: &M::CONFIGURATION,
@@ -89,9 +89,9 @@ where
         let frames = 0..M::FRAMES.len();
         Instant {
             t: to_double(sample.t),
-            q: plain_list(sample.q.as_slice()),
-            v: plain_list(sample.v.as_slice()),
-            u: plain_list(sample.u.as_slice()),
+            q: list_as_f64(sample.q.as_slice()),
+            v: list_as_f64(sample.v.as_slice()),
+            u: list_as_f64(sample.u.as_slice()),
             placements: frames
                 .filter_map(|k| Some(placement_in_double(&mechanism.placement_of(k, sample.t, &sample.q)?)))
                 .collect(),
@@ -161,7 +161,7 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
             )
         };
         let transforms = names.frames.iter().zip(&sample.placements).map(transform_message);
-        let joint_message = |(name, x): (&&str, &f64)| {
+        let joint_state_json = |(name, x): (&&str, &f64)| {
             let rate = names.velocities.iter().position(|rate| rate == name)?;
             Some(format!(
                 "{{\"name\":{},\"position\":{x},\"velocity\":{}}}",
@@ -169,7 +169,7 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
                 sample.v[rate]
             ))
         };
-        let joints = names.configuration.iter().zip(&sample.q).filter_map(joint_message);
+        let joints = names.configuration.iter().zip(&sample.q).filter_map(joint_state_json);
         let json_by_name = |names: &[&str], numbers: &[f64]| {
             let entries = names.iter().zip(numbers);
             let entries: Vec<String> = entries.map(|(name, x)| format!("{}:{x}", text::json(name))).collect();

@@ -57,7 +57,7 @@ impl TriangleMesh {
     }
 
     /// Returns at most `count` corners of the mesh, evenly chosen.
-    pub(crate) fn some_corners(&self, count: usize) -> Vec<[f64; 3]> {
+    pub(crate) fn sampled_corners(&self, count: usize) -> Vec<[f64; 3]> {
         let step = self.corners.len().div_ceil(count).max(1);
         self.corners.iter().step_by(step).map(|corner| corner.map(f64::from)).collect()
     }
@@ -65,11 +65,13 @@ impl TriangleMesh {
     /// Serialises the mesh as JSON, with 16 bits per coordinate and coinciding corners merged: lowest corner,
     /// step sizes, positions, indices.
     pub(crate) fn mesh_json(&self) -> String {
-        let bounds_of_corners = |f: fn(f32, f32) -> f32, from: f32| {
+        let extreme_corner_coordinates = |f: fn(f32, f32) -> f32, from: f32| {
             [0, 1, 2].map(|k| self.corners.iter().map(|c| c[k]).fold(from, f))
         };
-        let (low, high) =
-            (bounds_of_corners(f32::min, f32::INFINITY), bounds_of_corners(f32::max, f32::NEG_INFINITY));
+        let (low, high) = (
+            extreme_corner_coordinates(f32::min, f32::INFINITY),
+            extreme_corner_coordinates(f32::max, f32::NEG_INFINITY),
+        );
         let steps = [0, 1, 2].map(|k| (f64::from(high[k]) - f64::from(low[k])).max(1e-12) / 65535.0);
         let (mut numbers, mut places, mut indices) = (HashMap::new(), Vec::new(), Vec::new());
         for corner in &self.corners {
@@ -154,7 +156,8 @@ fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, String> {
         let mut words = line.split_whitespace();
         if words.next() == Some("vertex") {
             mesh.corners.push(
-                three_numbers(words).ok_or_else(|| format!("expected three numbers: `{}`", line.trim()))?,
+                parse_number_triple(words)
+                    .ok_or_else(|| format!("expected three numbers: `{}`", line.trim()))?,
             );
         }
     }
@@ -171,7 +174,7 @@ fn read_obj(text: &str) -> Result<TriangleMesh, String> {
         let unreadable_line_error = || format!("cannot be read: `{}`", line.trim());
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => corners.push(three_numbers(words).ok_or_else(unreadable_line_error)?),
+            Some("v") => corners.push(parse_number_triple(words).ok_or_else(unreadable_line_error)?),
             Some("f") => {
                 let corner_of_face = |word: &str| {
                     let n: i64 = word.split('/').next()?.parse().ok()?;
@@ -190,7 +193,7 @@ fn read_obj(text: &str) -> Result<TriangleMesh, String> {
     Ok(mesh)
 }
 
-fn three_numbers<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f32; 3]> {
+fn parse_number_triple<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f32; 3]> {
     let mut next = || words.next()?.parse().ok();
     Some([next()?, next()?, next()?])
 }

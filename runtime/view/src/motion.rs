@@ -123,9 +123,9 @@ impl Motion {
     ) -> Result<Motion, Error> {
         let motion_title = || title.to_string();
         check_times(title, times.iter().copied())?;
-        check_count(&format!("the placements of `{title}`"), times.len(), placements.len())?;
+        check_count_matches(&format!("the placements of `{title}`"), times.len(), placements.len())?;
         for (sample, list) in placements.iter().enumerate() {
-            check_count(
+            check_count_matches(
                 &format!("the placements of sample {sample} of `{title}`"),
                 figure.frames.len(),
                 list.len(),
@@ -164,7 +164,7 @@ impl Motion {
     ///
     /// [`Error::Count`] if the number of frames differs.
     pub fn figure(mut self, figure: Figure) -> Result<Motion, Error> {
-        check_count(
+        check_count_matches(
             &format!("the frames of `{}`", self.title),
             self.figure.frames.len(),
             figure.frames.len(),
@@ -183,8 +183,8 @@ impl Motion {
     /// terrain with this index at a position along its first two axes. Terrains whose height is not finite
     /// everywhere in the region are omitted.
     pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
-        let size = CameraView::new(&self.figure, &self.placements, &self.shown_samples()).size;
-        self.figure.raise_terrains(&self.placements, size, height);
+        let size = CameraView::new(&self.figure, &self.placements, &self.shown_sample_indices()).size;
+        self.figure.draw_terrains_as_surfaces(&self.placements, size, height);
         self
     }
 
@@ -203,7 +203,7 @@ impl Motion {
         let curves: Vec<(String, Vec<f64>)> =
             curves.into_iter().map(|(n, values)| (n.into(), values)).collect();
         for (name, values) in &curves {
-            check_count(&format!("the curve `{name}` of `{title}`"), self.times.len(), values.len())?;
+            check_count_matches(&format!("the curve `{name}` of `{title}`"), self.times.len(), values.len())?;
         }
         self.plots.push(PagePlot { title: title.to_string(), unit: unit.to_string(), curves });
         Ok(self)
@@ -310,7 +310,11 @@ impl Motion {
         values: Vec<[f64; 3]>,
     ) -> Result<Motion, Error> {
         let frame = frame.map(|frame| self.figure.frame_index(frame)).transpose()?;
-        check_count(&format!("the arrows of a {}", kind.to_lowercase()), self.times.len(), values.len())?;
+        check_count_matches(
+            &format!("the arrows of a {}", kind.to_lowercase()),
+            self.times.len(),
+            values.len(),
+        )?;
         self.arrows.push(PageArrow { kind, frame, point, values });
         Ok(self)
     }
@@ -323,7 +327,7 @@ impl Motion {
 
     /// Returns the indices of the samples that the page shows. Samples that follow each other faster than the
     /// screen refreshes are omitted.
-    fn shown_samples(&self) -> Vec<usize> {
+    fn shown_sample_indices(&self) -> Vec<usize> {
         let last = self.times.len() - 1;
         let apart = (1.0 / RATE).min((self.times[last] - self.times[0]) / SHOWN);
         let mut shown = vec![0];
@@ -374,7 +378,7 @@ impl Motion {
     }
 
     /// Returns whether the page simulates the mechanism in the browser.
-    pub(crate) fn is_simulated(&self) -> bool {
+    pub(crate) fn is_simulated_in_browser(&self) -> bool {
         self.simulated.is_some()
     }
 
@@ -388,7 +392,7 @@ impl Motion {
     pub(crate) fn motion_json(&self) -> String {
         let used = self.used_frames();
         let index_of_used_frame = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
-        let shown = self.shown_samples();
+        let shown = self.shown_sample_indices();
         let scene = CameraView::new(&self.figure, &self.placements, &shown);
         let quantum = scene.size / PARTS;
         let mut stream = Stream::default();
@@ -407,8 +411,9 @@ impl Motion {
         }
         let plots: Vec<String> = self.plots.iter().map(|plot| plot.plot_json(&shown, &mut stream)).collect();
         let count = self.inputs.iter().map(Vec::len).min().unwrap_or(0);
-        let inputs =
-            (0..count).map(|k| curve_json("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream));
+        let inputs = (0..count).map(|k| {
+            encode_curve_with_json_header("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream)
+        });
         let inputs: Vec<String> = inputs.collect();
         let arrows =
             self.arrows.iter().map(|arrow| arrow.arrow_json(&shown, index_of_used_frame, &mut stream));
@@ -441,7 +446,7 @@ impl Motion {
             ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
-        let source_range_json = |shape: &DrawnShape| match shape.source_range() {
+        let source_range_json = |shape: &DrawnShape| match shape.declared_number_range() {
             Some([first, count]) => format!("[{first},{count}]"),
             None => "null".to_string(),
         };
@@ -465,18 +470,18 @@ impl Motion {
 impl PageArrow {
     fn arrow_json(&self, shown: &[usize], renumber: impl Fn(usize) -> usize, stream: &mut Stream) -> String {
         let frame = self.frame.map_or("-1".to_string(), |frame| renumber(frame).to_string());
-        let curves: Vec<String> =
-            (0..3).map(|k| curve_json("", shown.iter().map(|s| self.values[*s][k]), stream)).collect();
+        let curves: Vec<String> = (0..3)
+            .map(|k| encode_curve_with_json_header("", shown.iter().map(|s| self.values[*s][k]), stream))
+            .collect();
         text::list([text::json(self.kind), frame, text::numbers(&self.point), text::list(curves)])
     }
 }
 
 impl PagePlot {
     fn plot_json(&self, shown: &[usize], stream: &mut Stream) -> String {
-        let curves = self
-            .curves
-            .iter()
-            .map(|(name, values)| curve_json(name, shown.iter().map(|k| values[*k]), stream));
+        let curves = self.curves.iter().map(|(name, values)| {
+            encode_curve_with_json_header(name, shown.iter().map(|k| values[*k]), stream)
+        });
         let curves = text::list(curves.collect::<Vec<_>>());
         text::list([text::json(&self.title), text::json(&self.unit), curves])
     }
@@ -484,7 +489,11 @@ impl PagePlot {
 
 /// Appends a curve to the stream of encoded samples, and returns its name, lowest value and quantisation step
 /// as JSON. A curve without finite values has the step −1.
-fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mut Stream) -> String {
+fn encode_curve_with_json_header(
+    name: &str,
+    values: impl Iterator<Item = f64> + Clone,
+    stream: &mut Stream,
+) -> String {
     let finite_values = || values.clone().filter(|x| x.is_finite());
     let (low, high) =
         (finite_values().fold(f64::INFINITY, f64::min), finite_values().fold(f64::NEG_INFINITY, f64::max));
@@ -492,11 +501,11 @@ fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mu
     let step = ((high - low) / LEVELS).max(f64::MIN_POSITIVE);
     let step = if high > low && step.is_finite() { step } else { 1.0 };
     stream.channel(values.map(|x| if x.is_finite() { (x - low) / step } else { -1.0 }), 1.0);
-    text::list([text::json(name), format_exact(low), format_exact(step)])
+    text::list([text::json(name), format_full_precision(low), format_full_precision(step)])
 }
 
 /// Formats a number with full precision in scientific notation.
-fn format_exact(x: f64) -> String {
+fn format_full_precision(x: f64) -> String {
     format!("{x:e}")
 }
 
@@ -524,7 +533,7 @@ pub(crate) fn check_times(motion: &str, times: impl Iterator<Item = f64>) -> Res
     last.map(|_| ()).ok_or(Error::Empty { motion: motion.to_string() })
 }
 
-fn check_count(what: &str, expected: usize, found: usize) -> Result<(), Error> {
+fn check_count_matches(what: &str, expected: usize, found: usize) -> Result<(), Error> {
     match found == expected {
         true => Ok(()),
         false => Err(Error::Count { what: what.to_string(), expected, found }),

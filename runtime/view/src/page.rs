@@ -82,7 +82,7 @@ impl Page {
     }
 
     /// Returns a link to the page with its title, the first paragraph of its text, and still pictures.
-    pub(crate) fn link_card(&self, address: &str) -> String {
+    pub(crate) fn html_link_to_page(&self, address: &str) -> String {
         let pictures: String = self.motions.iter().map(Motion::still_picture).collect();
         let about = text::blocks(&self.text).into_iter().next().unwrap_or_default();
         let (address, title) = (text::html(address), text::html(&self.title));
@@ -134,7 +134,7 @@ impl Page {
     }
 
     fn has_simulation(&self) -> bool {
-        self.motions.iter().any(Motion::is_simulated)
+        self.motions.iter().any(Motion::is_simulated_in_browser)
     }
 
     /// Writes the page to a file, and creates its folder if necessary.

@@ -49,7 +49,7 @@ pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], s
         outlines.push(SolidOutline { points, depth, colour: colour_of_shape(shape, &mut bodies), line });
     }
     outlines.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-    draw_outlines(&outlines)
+    outlines_svg(&outlines)
 }
 
 /// Returns the colour in which a shape is drawn. All shapes of one body have the same colour.
@@ -76,7 +76,7 @@ fn colour_of_shape(shape: &DrawnShape, bodies: &mut Vec<String>) -> &'static str
 }
 
 /// Returns the outlines as an SVG picture, in which later outlines cover earlier ones.
-fn draw_outlines(outlines: &[SolidOutline]) -> String {
+fn outlines_svg(outlines: &[SolidOutline]) -> String {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for point in outlines.iter().flat_map(|outline| &outline.points) {
         for k in 0..2 {
@@ -120,11 +120,11 @@ type FramePoint = (Option<usize>, Vector3<f64>);
 /// and its width. `size` is the size of the mechanism.
 fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64) {
     let n = &shape.numbers;
-    let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
+    let vector_at_index = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;
     let in_frame = |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
     let points_of_round_solid = |half: f64, radius: f64| {
-        let (axis, at) = (vector_from_numbers(3), vector_from_numbers(0));
+        let (axis, at) = (vector_at_index(3), vector_at_index(0));
         in_frame([-half, half].iter().flat_map(|h| points_on_circle(at + axis * *h, axis, radius)).collect())
     };
     let points_of_scaled_corners = |corners: &[[f64; 3]]| {
@@ -132,21 +132,17 @@ fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64)
         in_frame(
             corners
                 .iter()
-                .map(|c| {
-                    vector_from_numbers(0) + axes * Vector3::from(*c).component_mul(&vector_from_numbers(12))
-                })
+                .map(|c| vector_at_index(0) + axes * Vector3::from(*c).component_mul(&vector_at_index(12)))
                 .collect(),
         )
     };
     let points_of_ball = |radius: f64| {
-        in_frame(
-            points_on_sphere().iter().map(|c| vector_from_numbers(0) + Vector3::from(*c) * radius).collect(),
-        )
+        in_frame(points_on_sphere().iter().map(|c| vector_at_index(0) + Vector3::from(*c) * radius).collect())
     };
     let areas = match shape.kind {
-        Kind::Bar => return (vec![(a, vector_from_numbers(0)), (b, vector_from_numbers(3))], 0.018 * size),
+        Kind::Bar => return (vec![(a, vector_at_index(0)), (b, vector_at_index(3))], 0.018 * size),
         Kind::Coil | Kind::Damper => {
-            return (vec![(a, vector_from_numbers(0)), (b, vector_from_numbers(3))], 0.03 * size);
+            return (vec![(a, vector_at_index(0)), (b, vector_at_index(3))], 0.03 * size);
         }
         Kind::Rod => points_of_round_solid(n[6] / 2.0, (0.018 * n[6]).max(0.006 * size)),
         Kind::Ring | Kind::Disk => points_of_round_solid(0.04 * n[6], n[6]),
@@ -156,18 +152,18 @@ fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64)
         Kind::Tube => points_of_round_solid(n[8] / 2.0, n[7]),
         Kind::Cone => {
             let mut points = in_frame(points_on_circle(
-                vector_from_numbers(0) - vector_from_numbers(3) * (n[7] / 4.0),
-                vector_from_numbers(3),
+                vector_at_index(0) - vector_at_index(3) * (n[7] / 4.0),
+                vector_at_index(3),
                 n[6],
             ));
-            points.push((a, vector_from_numbers(0) + vector_from_numbers(3) * (0.75 * n[7])));
+            points.push((a, vector_at_index(0) + vector_at_index(3) * (0.75 * n[7])));
             points
         }
         Kind::Sphere => points_of_ball(n[3]),
         Kind::Cuboid => points_of_scaled_corners(&corners_of_cube()),
         Kind::Ellipsoid => points_of_scaled_corners(&points_on_sphere()),
         Kind::Mesh(_) => {
-            let corners = shape.mesh.as_ref().map(|mesh| mesh.some_corners(CORNERS)).unwrap_or_default();
+            let corners = shape.mesh.as_ref().map(|mesh| mesh.sampled_corners(CORNERS)).unwrap_or_default();
             points_of_scaled_corners(&corners)
         }
         Kind::Point => points_of_ball(0.028 * size),
@@ -192,11 +188,11 @@ fn points_on_circle(at: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Ve
 
 /// Returns points on the unit sphere, from which its outline is computed.
 fn points_on_sphere() -> Vec<[f64; 3]> {
-    let ring_of_sphere = |j: usize| {
+    let latitude_circle_points = |j: usize| {
         let (height, radius) = (std::f64::consts::PI * (j as f64 / 8.0 - 0.5)).sin_cos();
         points_on_circle(Vector3::z() * height, Vector3::z(), radius)
     };
-    (0..=8).flat_map(ring_of_sphere).map(Into::into).collect()
+    (0..=8).flat_map(latitude_circle_points).map(Into::into).collect()
 }
 
 /// Returns the corners of the cube with edges of length one about the origin.

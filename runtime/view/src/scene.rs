@@ -41,11 +41,12 @@ impl CameraView {
         };
         let (mut start, mut whole, mut lowest) =
             (BoundingBox::default(), BoundingBox::default(), f64::INFINITY);
-        for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reference_points())
+        for (frame, point, beyond) in
+            pieces.iter().filter(|s| s.is_part_of_mechanism()).flat_map(|s| s.reference_points_of_shape())
         {
             start.add_point(&place_in_world(0, frame, point), beyond);
         }
-        let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reference_points()).collect();
+        let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reference_points_of_shape()).collect();
         for k in shown {
             for (frame, point, beyond) in &reaches {
                 let at = place_in_world(*k, *frame, *point);
@@ -63,10 +64,10 @@ impl CameraView {
             |s: &&DrawnShape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
         let hills = pieces.iter().any(is_fixed_terrain);
         let floor = gravity.norm() > 0.0 && !hills;
-        let plane = figure.ground_along(&up);
+        let plane = figure.ground_height_along(&up);
         CameraView {
             size,
-            centre: whole.middle_of_bounds(),
+            centre: whole.center_of_bounding_box(),
             radius: (whole.size_of_bounds() / 2.0).max(size / 2.0),
             up,
             eye: normal.map_or_else(|| direction_to_side_view(&up), |n| direction_to_viewer(&up, n)),
@@ -99,11 +100,11 @@ impl CameraView {
 
 impl Figure {
     /// Returns the height of the lowest horizontal contact plane of the ground that faces upward.
-    fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
+    fn ground_height_along(&self, up: &Vector3<f64>) -> Option<f64> {
         let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
-        let vector_from_numbers = |s: &DrawnShape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
-        let level = planes.filter(|s| vector_from_numbers(s, 3).dot(up) > 1.0 - 1e-9);
-        level.map(|s| vector_from_numbers(s, 0).dot(up)).reduce(f64::min)
+        let vector_at_index = |s: &DrawnShape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
+        let level = planes.filter(|s| vector_at_index(s, 3).dot(up) > 1.0 - 1e-9);
+        level.map(|s| vector_at_index(s, 0).dot(up)).reduce(f64::min)
     }
 }
 
@@ -115,7 +116,7 @@ impl DrawnShape {
     }
 
     /// Whether the shape is part of the mechanism itself, whose size is measured.
-    fn is_body(&self) -> bool {
+    fn is_part_of_mechanism(&self) -> bool {
         matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
     }
 }
@@ -146,7 +147,7 @@ impl BoundingBox {
         if self.is_empty() { 0.0 } else { (self.high - self.low).norm() }
     }
 
-    fn middle_of_bounds(&self) -> Vector3<f64> {
+    fn center_of_bounding_box(&self) -> Vector3<f64> {
         if self.is_empty() { Vector3::zeros() } else { (self.low + self.high) / 2.0 }
     }
 }

@@ -8,7 +8,7 @@ use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 impl Figure {
     /// Replaces every terrain of the drawing by a surface over the region of the frames' positions, extended
     /// by `beyond`, m.
-    pub(crate) fn raise_terrains(
+    pub(crate) fn draw_terrains_as_surfaces(
         &mut self,
         placements: &[Vec<IsometryMatrix3<f64>>],
         beyond: f64,

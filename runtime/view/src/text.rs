@@ -23,10 +23,10 @@ pub fn html(text: &str) -> String {
 pub fn blocks(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let blocks = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty());
-    blocks.map(block_html).collect()
+    blocks.map(paragraph_and_list_html).collect()
 }
 
-fn block_html(lines: &[&str]) -> String {
+fn paragraph_and_list_html(lines: &[&str]) -> String {
     let first = lines.iter().position(|line| line.starts_with("- ")).unwrap_or(lines.len());
     let (before, list) = lines.split_at(first);
     let mut items: Vec<String> = Vec::new();

@@ -165,7 +165,7 @@ fn foreign_requests_are_rejected() {
 }
 
 #[test]
-fn invalid_live_views_are_errors() {
+fn used_ports_and_nan_placements_are_rejected() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
     let port = live.url().trim_end_matches('/').rsplit(':').next().unwrap().parse().unwrap();
     let second = Live::open(&Arm {}, port);

@@ -167,7 +167,7 @@ fn unloggable_motions_are_errors() {
 
 /// Compares the log with the content read by the Python package of the format's authors, if it is installed.
 #[test]
-fn reference_reader_agrees() {
+fn mcap_log_is_read_by_reference_reader() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("boat.mcap");
     let samples: Vec<_> = (0..5).map(|k| sample_at_time(0.1 * f64::from(k))).collect();
     std::fs::write(&path, mcap(&FloatingBoat {}, &samples).unwrap()).unwrap();

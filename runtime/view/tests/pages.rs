@@ -258,7 +258,7 @@ struct SdfShapes;
 
 /// Returns the kinds of visual geometry with their positions and first axes in the ground frame, in the zero
 /// configuration.
-fn visual_geometry<M, const NV: usize>(mechanism: &M) -> Vec<(Kind, Vector3<f64>, Vector3<f64>)>
+fn visuals_in_ground<M, const NV: usize>(mechanism: &M) -> Vec<(Kind, Vector3<f64>, Vector3<f64>)>
 where
     M: Drawn<NV, NV, Scalar = f64>,
 {
@@ -279,8 +279,8 @@ where
 /// irrelevant.
 #[test]
 fn file_formats_give_the_same_drawing() {
-    let urdf = visual_geometry::<_, 2>(&Shapes);
-    let [mujoco, sdf] = [visual_geometry::<_, 2>(&MujocoShapes), visual_geometry::<_, 2>(&SdfShapes)];
+    let urdf = visuals_in_ground::<_, 2>(&Shapes);
+    let [mujoco, sdf] = [visuals_in_ground::<_, 2>(&MujocoShapes), visuals_in_ground::<_, 2>(&SdfShapes)];
     // In the MJCF file, a collision shape is drawn if a body has no visual geometry.
     assert_eq!(mujoco.len(), 5);
     assert_eq!(mujoco[4].0, Kind::Ellipsoid);
@@ -386,7 +386,7 @@ fn samples_are_thinned_and_gaps_preserved() {
     };
     let samples: Vec<_> = (0..=1000).map(sample_at_step).collect();
     let value_with_gap = |k: usize| if k == 0 { f64::NAN } else { k as f64 };
-    let motion = Motion::of("", &TurningBody {}, &samples).unwrap().without_plots();
+    let motion = Motion::of("", &WheelOnAxle {}, &samples).unwrap().without_plots();
     let motion = motion.plot("", "", [("gap", (0..samples.len()).map(value_with_gap).collect())]).unwrap();
     let html = Page::new("").motion(motion).html();
     let motion = &motions(&html)[0];
@@ -395,14 +395,15 @@ fn samples_are_thinned_and_gaps_preserved() {
     assert_eq!(channels[channels.len() - 1][0], -1);
     // The last sample is always shown.
     assert_eq!(channels[0].last(), Some(&100_000));
-    let slow_sample = |k: i32| linkwork::simulate::Sample { t: 6e-3 * f64::from(k), ..sample_at_step(k) };
-    let minute: Vec<_> = (0..=10_000).map(slow_sample).collect();
-    let html = page("", &TurningBody {}, &minute).unwrap();
+    let sample_every_six_milliseconds =
+        |k: i32| linkwork::simulate::Sample { t: 6e-3 * f64::from(k), ..sample_at_step(k) };
+    let minute: Vec<_> = (0..=10_000).map(sample_every_six_milliseconds).collect();
+    let html = page("", &WheelOnAxle {}, &minute).unwrap();
     assert_eq!(motions(&html)[0]["count"], 3335, "of samples 6 ms apart every third, and the last");
 }
 
 #[mechanism(drawing)]
-struct TurningBody {
+struct WheelOnAxle {
     #[body(mass = 1, inertia = sphere(1, 1))]
     wheel: Body,
     #[joint(ground -> wheel, about = z)]
@@ -441,8 +442,8 @@ fn coordinates_of_one_unit_share_a_plot() {
 
 #[test]
 fn generic_code_reads_drawings() {
-    fn count_pieces<M: Drawn<NQ, NV>, const NQ: usize, const NV: usize>(_: &M) -> usize {
+    fn count_drawn_pieces<M: Drawn<NQ, NV>, const NQ: usize, const NV: usize>(_: &M) -> usize {
         M::DRAWING.len()
     }
-    assert_eq!(count_pieces(&TurningBody {}), 2);
+    assert_eq!(count_drawn_pieces(&WheelOnAxle {}), 2);
 }

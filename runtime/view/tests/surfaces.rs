@@ -51,7 +51,7 @@ fn bounds_of_mesh(surface: &Value) -> [[f64; 2]; 3] {
     })
 }
 
-fn assert_bounds(surface: &Value, known: [[f64; 2]; 3]) {
+fn assert_mesh_bounds(surface: &Value, known: [[f64; 2]; 3]) {
     let found = bounds_of_mesh(surface);
     for (found, known) in found.as_flattened().iter().zip(known.as_flattened()) {
         assert!((found - known).abs() < 2e-3, "{surface} {known}");
@@ -68,7 +68,7 @@ fn surface_is_drawn_over_its_region() {
     let motion = data_of_motion(motion_of_ball().figure(figure).unwrap());
     let [_, surface] = meshes_of_motion(&motion)[..] else { panic!("the terrain and one surface") };
     assert_eq!((&surface[1], &surface[2]), (&"Surface".into(), &"more".into()));
-    assert_bounds(surface, [[-1.0, 2.0], [-0.5, 0.5], [-0.2, 0.2]]);
+    assert_mesh_bounds(surface, [[-1.0, 2.0], [-0.5, 0.5], [-0.2, 0.2]]);
     assert!(motion["scene"][6].is_null());
     assert_eq!(plain["scene"][2], motion["scene"][2]);
 }
@@ -84,14 +84,14 @@ fn terrain_is_drawn_from_its_declaration() {
     assert!((size - 0.2 * 3.0_f64.sqrt()).abs() < 1e-3, "{size}");
     let (low, high) = (-size, 0.2 + size);
     let terrain_height = |u: f64| 0.2 * (3.0 * u).sin();
-    assert_bounds(surface, [[low, high], [-size, size], [terrain_height(low), terrain_height(0.5)]]);
+    assert_mesh_bounds(surface, [[low, high], [-size, size], [terrain_height(low), terrain_height(0.5)]]);
     assert!(motion["scene"][6].is_null(), "no floor under it");
 }
 
 /// Checks the drawing of a terrain from a table with parameters on a tilted, moving tray. Its positions are
 /// along the axes of the tray.
 #[test]
-fn terrain_table_on_a_moving_body() {
+fn terrain_table_is_drawn_in_axes_of_moving_body() {
     #[mechanism(gravity = -9.81 * z, drawing)]
     struct TiltedTray {
         share: f64,

@@ -138,7 +138,7 @@ fn relative_difference<const R: usize, const C: usize>(
 const REPRODUCIBLE: bool = cfg!(feature = "reproducible");
 
 /// Whether this program selects instructions at run time that give other bits.
-fn selects_at_run_time() -> bool {
+fn selects_instructions_at_run_time() -> bool {
     #[cfg(all(target_arch = "x86_64", not(target_feature = "fma")))]
     return !REPRODUCIBLE && std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
     #[cfg(not(all(target_arch = "x86_64", not(target_feature = "fma"))))]
@@ -188,7 +188,7 @@ where
         }
     }
     // Rounding errors show which instructions were executed.
-    assert_eq!(differ, selects_at_run_time(), "the choice");
+    assert_eq!(differ, selects_instructions_at_run_time(), "the choice");
 }
 
 /// Compares the derivatives of the same mechanism with and without the compile option, at random states.

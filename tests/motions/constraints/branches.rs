@@ -5,10 +5,10 @@
 mod branch;
 mod machines;
 
-use branch::{Branch, flat_branch};
+use branch::{Branch, flat_branch_angles};
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
-use machines::{FourBar, Row, Stacked, Style, Tilted};
+use machines::{FourBar, Row, StackedWindows, Style, Tilted};
 use std::f64::consts::PI;
 use support::random::Random;
 
@@ -42,7 +42,7 @@ const STYLES: [Style; 4] = [
 
 /// Returns an angle and its rate. The angle is far from the singular configuration, near it, in it up to
 /// rounding, or exactly in it. One state in eight is at rest.
-fn random_approach(random: &mut Random, flat: f64) -> (f64, f64) {
+fn random_angle_near_singularity(random: &mut Random, flat: f64) -> (f64, f64) {
     let distance = 10_f64.powf(-8.0 - random.uniform_number(8.0)) * random.uniform_number(1.0).signum();
     let distance = if random.uniform_number(1.0) > 0.9 { 0.0 } else { distance };
     let rate = 10_f64.powf(random.uniform_number(1.5)) * random.uniform_number(1.0).signum();
@@ -53,7 +53,7 @@ fn random_approach(random: &mut Random, flat: f64) -> (f64, f64) {
 
 /// Returns the lengths of a linkage that is singular at a crank angle of `π` or zero, whether it is `π`, and
 /// the angle.
-fn flat_lengths(random: &mut Random) -> ([f64; 4], bool, f64) {
+fn lengths_of_singular_linkage(random: &mut Random) -> ([f64; 4], bool, f64) {
     let mut length = || 1.0 + random.uniform_number(0.7);
     let (base, l1, l2) = (length(), length(), length());
     let (outer, inner) = (base + l1 - l2, l2 - (l1 - base).abs());
@@ -75,8 +75,8 @@ fn parallelogram_branch(angle: f64, rate: f64) -> Branch<3, 1> {
     Branch { q: by * angle, by, bend: SVector::zeros(), rate: [rate].into() }
 }
 
-fn flat_linkage_branch(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Branch<3, 1> {
-    let jets = flat_branch(lengths, at_pi, angle, side);
+fn singular_linkage_branch(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Branch<3, 1> {
+    let jets = flat_branch_angles(lengths, at_pi, angle, side);
     let coefficients_of_jets = |k: usize| SVector::<f64, 3>::from_fn(|i, _| jets[i].0[k]);
     Branch {
         q: coefficients_of_jets(0),
@@ -107,7 +107,7 @@ fn parallelograms_accelerate_like_pendulums() {
     check_random_branches("parallelogram", 4000, |random, style| {
         let (base, l1) = (1.0 + random.uniform_number(0.7), 1.0 + random.uniform_number(0.7));
         let flat = if random.uniform_number(1.0) > 0.0 { PI } else { 0.0 };
-        let (angle, rate) = random_approach(random, flat);
+        let (angle, rate) = random_angle_near_singularity(random, flat);
         let branch = parallelogram_branch(angle, rate);
         let tilted = Tilted::random_instance(random, style, [base, l1, base, l1]);
         let plain = FourBar::random_instance(random, style, [base, l1, base, l1]);
@@ -119,11 +119,11 @@ fn parallelograms_accelerate_like_pendulums() {
 #[test]
 fn singular_linkages_accelerate_along_their_assembly_mode() {
     check_random_branches("four-bar", 4000, |random, style| {
-        let (lengths, at_pi, angle) = flat_lengths(random);
+        let (lengths, at_pi, angle) = lengths_of_singular_linkage(random);
         let side = random.uniform_number(1.0).signum();
         let mut approach = || {
-            let (theta, rate) = random_approach(random, angle);
-            (theta, rate, flat_linkage_branch(lengths, at_pi, side, theta, rate))
+            let (theta, rate) = random_angle_near_singularity(random, angle);
+            (theta, rate, singular_linkage_branch(lengths, at_pi, side, theta, rate))
         };
         // A crank that is too long for the other lengths does not reach every angle.
         let (theta, rate, branch) = std::iter::repeat_with(&mut approach)
@@ -137,10 +137,10 @@ fn singular_linkages_accelerate_along_their_assembly_mode() {
 }
 
 #[test]
-fn windows_accelerate_like_pendulums() {
+fn row_of_parallelograms_accelerates_like_a_pendulum() {
     check_random_branches("row", 2000, |random, style| {
         let flat = if random.uniform_number(1.0) > 0.0 { PI } else { 0.0 };
-        let (angle, rate) = random_approach(random, flat);
+        let (angle, rate) = random_angle_near_singularity(random, flat);
         let by = SVector::from([1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0]);
         let branch = Branch { q: by * angle, by, bend: SVector::zeros(), rate: [rate].into() };
         let mut length = || 1.0 + random.uniform_number(0.7);
@@ -157,14 +157,14 @@ fn windows_accelerate_like_pendulums() {
     });
 }
 
-fn random_stacked_windows(random: &mut Random, style: &Style) -> Stacked {
+fn random_stacked_windows(random: &mut Random, style: &Style) -> StackedWindows {
     let mut length = || 1.0 + random.uniform_number(0.7);
     let (low, high, width, shelf) = (length(), length(), length(), length());
     let turn = random.uniform_number(PI);
     let [m1, m2, m3, m4, m5, m6] = core::array::from_fn(|_| style.random_mass(random));
     let [k1, k2, k3, k4] = core::array::from_fn(|_| style.random_stiffness(random));
     let (aside, down) = (9.81 * turn.sin(), 9.81 * turn.cos());
-    Stacked { down, aside, low, high, width, shelf, m1, m2, m3, m4, m5, m6, k1, k2, k3, k4 }
+    StackedWindows { down, aside, low, high, width, shelf, m1, m2, m3, m4, m5, m6, k1, k2, k3, k4 }
 }
 
 fn stacked_windows_branch(angles: [f64; 2], rates: [f64; 2]) -> Branch<6, 2> {
@@ -179,11 +179,11 @@ fn stacked_windows_accelerate_like_two_pendulums() {
         // If the posts are in line, the heavy bodies move almost equally: two coordinates are then nearly
         // dependent.
         let style = &Style { masses: style.masses.min(1.0), springs: style.springs };
-        let (low, first) = random_approach(random, 0.0);
-        let (near, second) = random_approach(random, PI);
+        let (low, first) = random_angle_near_singularity(random, 0.0);
+        let (near, second) = random_angle_near_singularity(random, PI);
         let high = if random.uniform_number(1.0) > 0.0 { near } else { random.uniform_number(1.0) };
-        let rate_unless_zero = |rate: f64, other: f64| if rate == 0.0 { other } else { rate };
-        let (first, second) = (rate_unless_zero(first, 0.4), rate_unless_zero(second, -0.7));
+        let first_nonzero_rate = |rate: f64, other: f64| if rate == 0.0 { other } else { rate };
+        let (first, second) = (first_nonzero_rate(first, 0.4), first_nonzero_rate(second, -0.7));
         let stacked = random_stacked_windows(random, style);
         let off = acceleration_error(&stacked, &stacked_windows_branch([low, high], [first, second]));
         (
@@ -221,12 +221,12 @@ fn random_linkages_conserve_energy_through_singularities() {
     for seed in test_case_seeds(60).chain(HARD_MOTIONS) {
         let mut random = Random::new(1000 + seed);
         let style = Style { masses: 0.3 + (seed % 3) as f64, springs: 2.0 + 2.0 * (seed % 3) as f64 };
-        let (lengths, at_pi, angle) = flat_lengths(&mut random);
+        let (lengths, at_pi, angle) = lengths_of_singular_linkage(&mut random);
         let side = random.uniform_number(1.0).signum();
         let m = FourBar::random_instance(&mut random, &style, lengths);
         let rate = 6.0 + random.uniform_number(3.0);
         let branch =
-            flat_linkage_branch(lengths, at_pi, side, angle - 0.3 - random.uniform_number(0.1), rate);
+            singular_linkage_branch(lengths, at_pi, side, angle - 0.3 - random.uniform_number(0.1), rate);
         let state = (branch.q, branch.branch_velocity());
         let end = 0.1_f64;
         // The steps resolve the fastest rotation of the motion, and the rate of change of each velocity
@@ -265,11 +265,11 @@ fn slightly_inconsistent_states_keep_the_mode_velocity() {
     for seed in test_case_seeds(300) {
         let mut random = Random::new(2000 + seed);
         let style = &STYLES[seed as usize % 4];
-        let (lengths, at_pi, angle) = flat_lengths(&mut random);
+        let (lengths, at_pi, angle) = lengths_of_singular_linkage(&mut random);
         let side = random.uniform_number(1.0).signum();
         let m = FourBar::random_instance(&mut random, style, lengths);
         let distance = 10_f64.powf(-7.0 + random.uniform_number(1.0));
-        let branch = flat_linkage_branch(lengths, at_pi, side, angle + distance, 3.0);
+        let branch = singular_linkage_branch(lengths, at_pi, side, angle + distance, 3.0);
         let v = branch.branch_velocity();
         let size = v.amax();
         // The deviation has a random direction and nearly the magnitude of the distance.

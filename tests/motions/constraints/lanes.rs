@@ -27,21 +27,22 @@ struct Parallelogram {
 /// Returns the largest error of a crank's angle after two and a half revolutions, over eight states.
 fn largest_angle_error<S: Lockstep<f64>>(method: S, steps: usize, time: f64) -> f64 {
     const COUNT: usize = 8;
-    let initial_rate = |k: usize| 5.0 * core::f64::consts::PI / time + 0.01 * k as f64;
+    let initial_crank_rate = |k: usize| 5.0 * core::f64::consts::PI / time + 0.01 * k as f64;
     let initial_angle = |k: usize| 0.3 + 0.05 * k as f64;
-    let column_of_states = |f: &dyn Fn(usize) -> f64| {
+    let entries_grouped_by_coordinate = |f: &dyn Fn(usize) -> f64| {
         // The array is grouped by coordinate. Both cranks rotate by the same angle, and the coupler's
         // relative angle is its negative.
         [1.0, 1.0, -1.0].iter().flat_map(|sign| (0..COUNT).map(move |k| sign * f(k))).collect::<Vec<f64>>()
     };
-    let (mut q, mut v) = (column_of_states(&initial_angle), column_of_states(&initial_rate));
+    let (mut q, mut v) =
+        (entries_grouped_by_coordinate(&initial_angle), entries_grouped_by_coordinate(&initial_crank_rate));
     let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
     let rollout = Rollout::new(method, steps);
     Parallelogram {}
         .lanes::<4>()
         .roll_out(&rollout, &mut q, &mut v, zero_inputs, unwatched)
         .expect("no step fails");
-    (0..COUNT).map(|k| (q[k] - initial_angle(k) - initial_rate(k) * time).abs()).fold(0.0, f64::max)
+    (0..COUNT).map(|k| (q[k] - initial_angle(k) - initial_crank_rate(k) * time).abs()).fold(0.0, f64::max)
 }
 
 #[test]

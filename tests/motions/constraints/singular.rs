@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Two heavy slides that a light body couples, so that a force on one accelerates both equally.
 #[mechanism]
-struct Slides<T> {
+struct CoupledSlides<T> {
     heavy: T,
     light: T,
     #[body(mass = heavy)]
@@ -31,35 +31,35 @@ struct Slides<T> {
 
 #[test]
 fn light_bodies_between_heavy_ones_stay_constrained() {
-    fn check_light_masses<T: Real>(lightest: i32, tolerance: T) {
+    fn check_light_mass_accelerations<T: Real>(lightest: i32, tolerance: T) {
         let ten = T::one() * linkwork::nalgebra::convert(10.0);
         for k in 0..=lightest {
-            let slides = Slides { heavy: T::one(), light: T::one() / ten.powi(k) };
+            let slides = CoupledSlides { heavy: T::one(), light: T::one() / ten.powi(k) };
             let tau = SVector::from([T::one() + T::one(), T::zero(), T::zero()]);
             let a = slides.forward_dynamics(&slides.neutral(), &SVector::zeros(), &tau);
             let want = (T::one() + T::one()) / (T::one() + T::one() + slides.light);
             assert!((a[0] - want).abs() < tolerance && (a[1] - want).abs() < tolerance, "{a} for 10^-{k}");
         }
     }
-    check_light_masses::<f64>(12, 1e-14);
-    check_light_masses::<f32>(12, 1e-5);
+    check_light_mass_accelerations::<f64>(12, 1e-14);
+    check_light_mass_accelerations::<f32>(12, 1e-5);
 }
 
 const WINDOWS: TwoWindows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
 
 /// Returns the configuration and velocity with all posts at this clockwise angle from the upward vertical,
 /// and at this rate.
-fn state_of_posts(angle: f64, rate: f64) -> (SVector<f64, 5>, SVector<f64, 5>) {
-    let alternating_signs = |x: f64| SVector::from([-x, x, -x, x, -x]);
-    (alternating_signs(angle), alternating_signs(rate))
+fn state_with_posts_at_angle(angle: f64, rate: f64) -> (SVector<f64, 5>, SVector<f64, 5>) {
+    let vector_with_alternating_signs = |x: f64| SVector::from([-x, x, -x, x, -x]);
+    (vector_with_alternating_signs(angle), vector_with_alternating_signs(rate))
 }
 
 /// Returns the error of the accelerations of the linkage against those of an equivalent pendulum:
 /// `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
 fn acceleration_error(angle: f64, rate: f64) -> f64 {
-    let (q, v) = state_of_posts(angle, rate);
+    let (q, v) = state_with_posts_at_angle(angle, rate);
     let a = WINDOWS.forward_dynamics(&q, &v, &SVector::zeros());
-    (a - state_of_posts(0.0, 3.5 / 3.0 * 9.81 * angle.sin()).1).amax()
+    (a - state_with_posts_at_angle(0.0, 3.5 / 3.0 * 9.81 * angle.sin()).1).amax()
 }
 
 /// Checks that accelerations are continuous through a singular configuration. At 90° all links are on one
@@ -79,7 +79,7 @@ fn accelerations_are_continuous_through_singularities() {
     }
     assert!(acceleration_error(FRAC_PI_2, 6.0) < 1e-7 && acceleration_error(-FRAC_PI_2, 6.0) < 1e-7);
     // The state deviates from the assembly mode by rounding, as after a step of an integrator.
-    let (q, v) = state_of_posts(FRAC_PI_2 + 1e-6, 6.0);
+    let (q, v) = state_with_posts_at_angle(FRAC_PI_2 + 1e-6, 6.0);
     let aside = SVector::from([1e-13, -2e-13, 5e-14, -1e-13, 7e-14]);
     let a = WINDOWS.forward_dynamics(&(q + aside), &(v + aside * 100.0), &SVector::zeros());
     assert!((a - WINDOWS.forward_dynamics(&q, &v, &SVector::zeros())).amax() < 1e-6);
@@ -93,8 +93,8 @@ fn distance_from_post_top(angle: f64) -> f64 {
 }
 
 /// Returns the error of the first post's top after ten seconds, and the change of the energy.
-fn window_errors<M: Method<f64>>(method: M) -> (f64, f64) {
-    let (q, v) = state_of_posts(0.0, 1.0);
+fn errors_of_window_motion<M: Method<f64>>(method: M) -> (f64, f64) {
+    let (q, v) = state_with_posts_at_angle(0.0, 1.0);
     let total_energy =
         |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
     let end = simulate(&WINDOWS).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
@@ -104,7 +104,7 @@ fn window_errors<M: Method<f64>>(method: M) -> (f64, f64) {
 #[test]
 fn runge_kutta_keeps_its_order_through_singularities() {
     for (step, most) in [(1e-2, 1e-6), (5e-3, 7e-8), (2e-3, 2e-9), (1e-3, 3e-10)] {
-        let (top, energy) = window_errors(Rk4::step(step));
+        let (top, energy) = errors_of_window_motion(Rk4::step(step));
         assert!(top < most && energy < 2.0 * most, "{top} m and {energy} J with {step} s");
     }
 }
@@ -119,7 +119,7 @@ struct Swing {
     pin: Pin,
 }
 
-/// Returns the same errors as [`window_errors`], for the equivalent pendulum.
+/// Returns the same errors as [`errors_of_window_motion`], for the equivalent pendulum.
 fn pendulum_errors<M: Method<f64>>(method: M) -> (f64, f64) {
     let swing = Swing {};
     let total_energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
@@ -132,22 +132,23 @@ fn pendulum_errors<M: Method<f64>>(method: M) -> (f64, f64) {
 /// configuration eight times in ten seconds.
 #[test]
 fn implicit_steps_keep_accuracy_through_singularities() {
-    fn check_window_errors<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
+    fn check_window_linkage_errors<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
         for step in [2e-3, 1e-3] {
-            let ((top, energy), (own, least)) = (window_errors(method(step)), pendulum_errors(method(step)));
+            let ((top, energy), (own, least)) =
+                (errors_of_window_motion(method(step)), pendulum_errors(method(step)));
             let alike = top < 1.2 * own + 1e-5 && energy < 1.2 * least + 1e-6;
             assert!(alike, "{name}: {top} m, {energy} J with {step} s; a pendulum {own} m, {least} J");
         }
     }
-    check_window_errors("midpoint", ImplicitMidpoint::step);
-    check_window_errors("Rosenbrock", Rosenbrock::step);
-    check_window_errors("Euler", SemiImplicitEuler::step);
+    check_window_linkage_errors("midpoint", ImplicitMidpoint::step);
+    check_window_linkage_errors("Rosenbrock", Rosenbrock::step);
+    check_window_linkage_errors("Euler", SemiImplicitEuler::step);
 }
 
 #[test]
 fn adaptive_steps_pass_singular_configurations() {
     for tolerance in [1e-7, 1e-9, 1e-12] {
-        let (top, energy) = window_errors(DormandPrince::new().tolerance(tolerance, tolerance));
+        let (top, energy) = errors_of_window_motion(DormandPrince::new().tolerance(tolerance, tolerance));
         assert!(top < 1e4 * tolerance && energy < 1e4 * tolerance, "{top} m, {energy} J with {tolerance}");
     }
 }
@@ -157,12 +158,12 @@ fn adaptive_steps_pass_singular_configurations() {
 #[test]
 fn linkages_swing_back_from_near_singular_release() {
     for (exponent, side) in [(2, 1.0), (4, -1.0), (6, 1.0), (8, -1.0)] {
-        let (q, v) = state_of_posts(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
+        let (q, v) = state_with_posts_at_angle(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
         let start = WINDOWS.potential_energy(&q);
         let assert_energy_and_branch = |end: Sample<f64, 5, 5, 0>, most: f64| {
             let energy = WINDOWS.kinetic_energy(&end.q, &end.v) + WINDOWS.potential_energy(&end.q);
             assert!((energy - start).abs() < most, "{} J from 1e-{exponent}", energy - start);
-            let aside = (end.q - state_of_posts(-end.q[0], 0.0).0).amax();
+            let aside = (end.q - state_with_posts_at_angle(-end.q[0], 0.0).0).amax();
             assert!(aside < 1e-6, "{aside} rad off the branch from 1e-{exponent}");
         };
         let simulate_windows = || simulate(&WINDOWS).from(q, v).duration(2.0);
@@ -318,7 +319,7 @@ fn singular_elimination_falls_back_to_multipliers() {
 
 /// Parallelogram of bars of 0.1 kg, with a spring between coupler and crank.
 #[mechanism(gravity = -9.81 * y)]
-struct Sprung<T> {
+struct SprungParallelogram<T> {
     stiffness: T,
     #[body(mass = 0.1, com = 0.5 * x, inertia = rod(0.1, 1, x))]
     crank: Body,
@@ -343,7 +344,7 @@ struct Sprung<T> {
 #[test]
 fn stiff_springs_act_in_singular_configurations() {
     for stiffness in [0.0, 1e3, 1e6] {
-        let m = Sprung { stiffness };
+        let m = SprungParallelogram { stiffness };
         for exponent in 1..=16 {
             let angle = 10_f64.powi(-exponent);
             let want = (-0.2 * 9.81 * angle.cos() - stiffness * angle) * 6.0;
@@ -369,7 +370,7 @@ fn largest_energy_change<T: Real, M: Method<T>>(
     method: M,
 ) -> f64 {
     let convert_number = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
-    let m = Sprung { stiffness: convert_number(stiffness) };
+    let m = SprungParallelogram { stiffness: convert_number(stiffness) };
     let configuration_with_angle =
         |x: f64| SVector::from([convert_number(x), convert_number(-x), convert_number(x)]);
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);

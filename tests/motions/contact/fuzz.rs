@@ -31,7 +31,7 @@ struct Twice {
 
 /// Pendulum between stops at the same angle, so that it cannot move, or nearly at the same angle.
 #[mechanism(gravity = -9.81 * y)]
-struct Jammed {
+struct PendulumBetweenStops {
     gap: f64,
     restitution: f64,
     #[body(mass = 1, com = 0.25 * x, inertia = rod(1, 0.5, x))]
@@ -44,7 +44,7 @@ struct Jammed {
 
 /// Ball on a floor that is declared twice, and at a wall, all with torsional or rolling friction.
 #[mechanism(gravity = -9.81 * z)]
-struct Rubbed {
+struct TorsionalFrictionBall {
     friction: f64,
     moment: f64,
     restitution: f64,
@@ -141,7 +141,11 @@ pub fn check_random_states(seed: u64, count: usize) -> usize {
         let speed = random.random_choice([0.0, 1e-9, 2.0]);
         errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
-        let m = Rubbed { friction, moment: random.random_choice([0.0, 1e-3, 0.05, 1e6]), restitution };
+        let m = TorsionalFrictionBall {
+            friction,
+            moment: random.random_choice([0.0, 1e-3, 0.05, 1e6]),
+            restitution,
+        };
         let turn = SVector::from([0.0, 0.0, 0.0, random.next(), 3.0 * random.next(), random.next()]);
         let mut q = m.integrate(&m.neutral(), &turn);
         (q[0], q[2]) = (
@@ -155,7 +159,7 @@ pub fn check_random_states(seed: u64, count: usize) -> usize {
         let m = Chain { friction, restitution, height: -(0.5 * a.sin() + 0.5 * (a + b).sin()) };
         errors += check_impact_and_steps(&m, [a, b].into(), random.random_vector(3.0));
 
-        let m = Jammed { gap: random.random_choice([1e-300, 1e-12, 1e-6, 0.3]), restitution };
+        let m = PendulumBetweenStops { gap: random.random_choice([1e-300, 1e-12, 1e-6, 0.3]), restitution };
         errors += check_impact_and_steps(&m, [random.next() * m.gap].into(), random.random_vector(5.0));
     }
     errors

@@ -97,7 +97,7 @@ fn fallen_block_slides_and_rests() {
 
 /// Ball above a floor that it does not reach.
 #[mechanism(gravity = -9.81 * z)]
-struct Thrown {
+struct ThrownBall {
     #[body(mass = 0.1, inertia = sphere(0.1, 0.03))]
     ball: Body,
     #[joint(ground -> ball)]
@@ -112,11 +112,11 @@ struct Thrown {
 fn a_ball_that_spins_fast_flies_along_a_parabola() {
     let (h, duration) = (4.6e-3, 0.46);
     let (velocity, spin) = ([1.0, -2.0, 3.0], [120.0, -90.0, 130.0]);
-    let mut q = Thrown {}.neutral();
+    let mut q = ThrownBall {}.neutral();
     q[2] = 5.0;
     let v = SVector::from([velocity[0], velocity[1], velocity[2], spin[0], spin[1], spin[2]]);
     for method in [TimeStepping::step(h).midpoint(), TimeStepping::step(h).leapfrog()] {
-        let end = simulate(&Thrown {}).from(q, v).method(method).duration(duration).finish().unwrap();
+        let end = simulate(&ThrownBall {}).from(q, v).method(method).duration(duration).finish().unwrap();
         let fall = 0.5 * 9.81 * duration * duration;
         let place = [velocity[0] * duration, velocity[1] * duration, 5.0 + velocity[2] * duration - fall];
         for k in 0..3 {
@@ -124,7 +124,7 @@ fn a_ball_that_spins_fast_flies_along_a_parabola() {
             assert!((end.v[3 + k] - spin[k]).abs() < 1e-11);
         }
         let energy = |q: &SVector<f64, 7>, v: &SVector<f64, 6>| {
-            Thrown {}.kinetic_energy(q, v) + Thrown {}.potential_energy(q)
+            ThrownBall {}.kinetic_energy(q, v) + ThrownBall {}.potential_energy(q)
         };
         assert!((energy(&end.q, &end.v) / energy(&q, &v) - 1.0).abs() < 1e-12);
         let speed = spin.iter().map(|x| x * x).sum::<f64>().sqrt();

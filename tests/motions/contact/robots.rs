@@ -144,7 +144,14 @@ struct Crab {
 
 /// Returns the errors of `M⁻¹ Gᵀ` and `G M⁻¹ Gᵀ` against a general factorisation, relative to their largest
 /// entries.
-fn response_errors<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn contact_response_errors<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     m: &M,
     q: &SVector<f64, NQ>,
 ) -> [f64; 2]
@@ -172,10 +179,10 @@ fn limb_contact_responses_agree_with_the_mass_matrix() {
     for _ in 0..20 {
         let m = Solo { slope: 0.1 };
         let q = m.integrate(&m.neutral(), &random.random_vector(1.0));
-        let errors = response_errors(&m, &q);
+        let errors = contact_response_errors(&m, &q);
         assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
         let q = Crab {}.integrate(&Crab {}.neutral(), &random.random_vector(1.0));
-        let errors = response_errors(&Crab {}, &q);
+        let errors = contact_response_errors(&Crab {}, &q);
         assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
     }
 }

@@ -48,7 +48,7 @@ struct Wall {
 /// Simulates a scene for `duration` seconds in steps of 2 ms. Checks that each step exists, that no step adds
 /// energy beyond `gain`, J, and that penetration remains below `depth`, m. Returns the end and the largest
 /// violation of the contact conditions.
-fn check_scene<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
+fn check_scene_energy_and_penetration<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
     method: TimeStepping<f64>,
@@ -77,7 +77,7 @@ fn check_falling_dominoes() {
     (0..5).for_each(|k| (q[7 * k], q[7 * k + 2]) = (0.025 * k as f64, 0.025));
     (v[0], v[4]) = (0.075, 3.0);
     for method in [TimeStepping::step(2e-3), TimeStepping::step(2e-3).leapfrog()] {
-        let (end, violation) = check_scene(&m, (q, v), method, (0.7, 1e-5, 1e-3));
+        let (end, violation) = check_scene_energy_and_penetration(&m, (q, v), method, (0.7, 1e-5, 1e-3));
         assert!((0..4).all(|k| end[7 * k + 2] < 0.022) && end[30] < 0.0041, "{end}");
         assert!(violation < 0.2, "{violation}");
     }
@@ -91,9 +91,9 @@ fn check_brick_wall() {
     (q[21], q[23]) = (-0.3, 0.15);
     v[18] = 4.0;
     let method = TimeStepping::step(2e-3).midpoint();
-    let (before, _) = check_scene(&m, (q, v), method, (0.04, 1e-9, 1e-9));
+    let (before, _) = check_scene_energy_and_penetration(&m, (q, v), method, (0.04, 1e-9, 1e-9));
     assert!((before - q).rows(0, 21).amax() < 1e-12, "bricks rest before the ball arrives");
-    let (end, violation) = check_scene(&m, (q, v), method, (0.6, 1e-4, 1e-2));
+    let (end, violation) = check_scene_energy_and_penetration(&m, (q, v), method, (0.6, 1e-4, 1e-2));
     assert!(end[14] > q[14] + 0.01 && end[16] < 0.121, "the upper brick is pushed: {end}");
     assert!(violation < 1e-3, "{violation}");
 }

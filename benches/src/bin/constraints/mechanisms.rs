@@ -39,8 +39,8 @@ pub struct Mechanism {
 struct Solution<const NV: usize, const NC: usize>(SVector<f64, NV>, SVector<f64, NC>);
 
 impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
-    fn flat(&self) -> Vec<f64> {
-        self.0.flat()
+    fn to_number_list(&self) -> Vec<f64> {
+        self.0.to_number_list()
     }
 }
 
@@ -78,7 +78,7 @@ where
         states.extend(consistent_state(&m.integrate(&middle, &vector(spread)), &vector(speed)));
     }
     let states = Rc::new(states);
-    let numbers = states.iter().flat_map(State::all_numbers).collect();
+    let numbers = states.iter().flat_map(State::concatenated_state_numbers).collect();
     let accelerations = GeneratedContender {
         owner: Owner::Linkwork,
         mechanism: m.clone(),

@@ -2,9 +2,10 @@
 
 use crate::mechanisms::{Mechanism, mechanism_constructors};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::library::{self, Rows};
+use linkwork_benches::peers::library::{self, StateRows};
 use linkwork_benches::peers::turns::{
-    Measured, TOLERANCE, difference, largest_or_nan, measure_in_turns, remove_disagreeing,
+    ContenderMeasurement, TOLERANCE, difference, largest_or_nan, measure_in_turns,
+    remove_disagreeing_contenders,
 };
 use linkwork_benches::states::STATES;
 use std::fs;
@@ -45,10 +46,10 @@ pub fn write_mechanism_files(folder: &Path) -> io::Result<()> {
 }
 
 /// Measured times of one mechanism, a line of the table.
-struct Line {
+struct MechanismTimes {
     mechanism: Mechanism,
-    accelerations: Vec<Measured>,
-    steps: Vec<Measured>,
+    accelerations: Vec<ContenderMeasurement>,
+    steps: Vec<ContenderMeasurement>,
     /// Nanoseconds of accelerations with lambdify and with PyDy, and milliseconds of a thousand steps.
     python: Option<[f64; 3]>,
     /// Largest difference between MuJoCo's accelerations and Linkwork's.
@@ -66,7 +67,7 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
         for function in [Function::Constrained, Function::Motion] {
             let (states, tolerance) =
                 if function == Function::Motion { (1, MOTIONS) } else { (STATES, TOLERANCE) };
-            let rows = Rows {
+            let rows = StateRows {
                 nq: mechanism.nq,
                 nv: mechanism.nv,
                 numbers: &numbers[..states * (mechanism.nq + 3 * mechanism.nv)],
@@ -84,8 +85,8 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
             {
                 if peer.owner() == Owner::Mujoco { others.push(peer) } else { exact.push(peer) }
             }
-            let what = format!("{} {}", mechanism.title, function.table_title());
-            wrong.extend(remove_disagreeing(&mut exact, &what, (rows.nv, states), tolerance));
+            let what = format!("{} {}", mechanism.title, function.title_in_table());
+            wrong.extend(remove_disagreeing_contenders(&mut exact, &what, (rows.nv, states), tolerance));
             if let (Some(other), Function::Constrained) = (others.first_mut(), function) {
                 let errors = (0..states).map(|k| difference(&other.result(k), &exact[0].result(k), rows.nv));
                 soft = Some(largest_or_nan(errors));
@@ -96,7 +97,7 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
         let steps = found.pop().unwrap_or_default();
         let accelerations = found.pop().unwrap_or_default();
         let python = folder.and_then(|folder| python_times(&folder.join(mechanism.name)));
-        lines.push(Line { mechanism, accelerations, steps, python, soft });
+        lines.push(MechanismTimes { mechanism, accelerations, steps, python, soft });
     }
     print_table(&lines);
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
@@ -107,7 +108,7 @@ fn peers_with_mechanism(
     folder: &Path,
     name: &str,
     function: Function,
-    rows: Rows<'_>,
+    rows: StateRows<'_>,
 ) -> Vec<Box<dyn Contender>> {
     let own = folder.join(name);
     let libraries = LIBRARIES.iter().flat_map(|(path, owner)| {
@@ -124,7 +125,7 @@ fn python_times(folder: &Path) -> Option<[f64; 3]> {
     numbers.try_into().ok()
 }
 
-fn print_table(lines: &[Line]) {
+fn print_table(lines: &[MechanismTimes]) {
     let header =
         "| mechanism | v | λ | Linkwork, ns | SymPy, C | Pinocchio | MuJoCo | PyDy | SymPy, lambdify";
     let ratios =
@@ -133,7 +134,7 @@ fn print_table(lines: &[Line]) {
     println!("| --- | {}", "---: | ".repeat(14).trim_end());
     for line in lines {
         let [lambdify, pydy, _] = line.python.map_or([None; 3], |times| times.map(Some));
-        let others = minimum_times(&line.accelerations).into_iter().chain([pydy, lambdify]);
+        let others = minimum_times_by_owner(&line.accelerations).into_iter().chain([pydy, lambdify]);
         let times: Vec<Option<f64>> = others.collect();
         let mut cells = vec![line.mechanism.title.to_string()];
         cells.extend([line.mechanism.nv, line.mechanism.nc].map(|n| n.to_string()));
@@ -147,7 +148,7 @@ fn print_table(lines: &[Line]) {
     println!("\n| mechanism: a thousand steps, ms | Linkwork | SymPy, C | Pinocchio | MuJoCo | PyDy |");
     println!("| --- | {}", "---: | ".repeat(5).trim_end());
     for line in lines {
-        let times = minimum_times(&line.steps).map(|t| t.map(|t| t * 10.0 / 1e6));
+        let times = minimum_times_by_owner(&line.steps).map(|t| t.map(|t| t * 10.0 / 1e6));
         let mut cells = vec![line.mechanism.title.to_string()];
         cells.extend(
             times.into_iter().chain([line.python.map(|t| t[2])]).map(|t| format_significant_digits(t, 3)),
@@ -157,7 +158,7 @@ fn print_table(lines: &[Line]) {
 }
 
 /// Returns the minimum times of Linkwork and of the peers.
-fn minimum_times(measured: &[Measured]) -> [Option<f64>; 4] {
+fn minimum_times_by_owner(measured: &[ContenderMeasurement]) -> [Option<f64>; 4] {
     COLUMNS.map(|owner| {
         let all = measured.iter().filter(|m| m.owner == owner);
         all.map(|m| m.time).min_by(f64::total_cmp)

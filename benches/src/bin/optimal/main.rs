@@ -48,7 +48,7 @@ fn minimum_time_per_node(nodes: usize, mut f: impl FnMut()) -> f64 {
 }
 
 type State<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>);
-type Node<const NQ: usize, const NV: usize, const NU: usize> =
+type TransitionWithCosts<const NQ: usize, const NV: usize, const NU: usize> =
     (discrete::Transition<f64, NQ, NV, NU>, Quadratic<f64, NV, NU>);
 
 /// Optimal-control problem: a mechanism with its integrator and its target state.
@@ -117,11 +117,11 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
 
     /// Writes the transition of a step with its Jacobians, and the cost of its initial state. The constant
     /// Hessians of the node are already set.
-    fn evaluate_node<const NV: usize, const NU: usize>(
+    fn linearise_node<const NV: usize, const NU: usize>(
         &self,
         state: &State<NQ, NV>,
         u: &SVector<f64, NU>,
-        (step, cost): &mut Node<NQ, NV, NU>,
+        (step, cost): &mut TransitionWithCosts<NQ, NV, NU>,
     ) where
         M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
@@ -137,7 +137,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         &self,
         states: &[State<NQ, NV>],
         inputs: &[SVector<f64, NU>],
-        mut then: impl FnMut(usize, &Node<NQ, NV, NU>),
+        mut then: impl FnMut(usize, &TransitionWithCosts<NQ, NV, NU>),
     ) where
         M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
@@ -145,7 +145,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         let costs = Quadratic { qq, vv, uu: SMatrix::identity() * EFFORT, ..Quadratic::zeros() };
         let mut node = (discrete::Transition::zeros(), costs);
         for (k, (state, u)) in states.iter().zip(inputs).enumerate().rev() {
-            self.evaluate_node(state, u, &mut node);
+            self.linearise_node(state, u, &mut node);
             then(k, &node);
         }
     }
@@ -163,7 +163,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     }
 
     /// Simulates the motion under the policies, and returns its cost.
-    fn simulate_policies<const NV: usize, const NU: usize>(
+    fn cost_of_simulated_policies<const NV: usize, const NU: usize>(
         &self,
         all: &Trajectory<NQ, NV, NU>,
         next: &mut (Vec<State<NQ, NV>>, Vec<SVector<f64, NU>>),
@@ -203,12 +203,12 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         };
         let mut next = (Vec::with_capacity(NODES + 1), Vec::with_capacity(NODES));
         let inputs: Vec<_> = all.inputs.iter().map(|u| u.as_slice().to_vec()).collect();
-        self.simulate_policies(&all, &mut next);
+        self.cost_of_simulated_policies(&all, &mut next);
         (all.states, all.inputs) = next.clone();
         let mut costs = Vec::new();
         for _ in 0..ITERATIONS {
             self.backward_sweep(&mut all);
-            costs.push(self.simulate_policies(&all, &mut next));
+            costs.push(self.cost_of_simulated_policies(&all, &mut next));
             (all.states, all.inputs) = next.clone();
         }
         let linearise = minimum_time_per_node(NODES, || {
@@ -227,7 +227,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         });
         let sweep = minimum_time_per_node(NODES, || self.backward_sweep(&mut all));
         let rollout = minimum_time_per_node(NODES, || {
-            black_box(self.simulate_policies(&all, &mut next));
+            black_box(self.cost_of_simulated_policies(&all, &mut next));
         });
         format!(
             "\"{name}\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \

@@ -37,12 +37,12 @@ struct Walker {
     hind_right_foot: Vector,
 }
 
-type Place = SVector<f64, 3>;
+type SpacePosition = SVector<f64, 3>;
 type Configuration = SVector<f64, 19>;
-type Motion = SVector<f64, 18>;
+type VelocityVector = SVector<f64, 18>;
 type Inputs = SVector<f64, 12>;
 type Transition = discrete::Transition<f64, 19, 18, 12>;
-type Cost = Quadratic<f64, 18, 12>;
+type TrotStepCost = Quadratic<f64, 18, 12>;
 
 const PERIOD: f64 = 0.01;
 /// Number of nodes of a swing phase, and of the preceding stance on four feet.
@@ -64,18 +64,18 @@ const OF_STATES: f64 = 1e1;
 const OF_INPUTS: f64 = 1e-1;
 
 /// Node of the gait: contact states and targets at one instant.
-struct Phase {
+struct GaitNode {
     touches: [Touch; 4],
     /// Target position of the centre of mass at this node, if any.
-    centre: Option<Place>,
+    centre: Option<SpacePosition>,
     /// Target positions of the feet at this node.
-    feet: [Option<Place>; 4],
+    feet: [Option<SpacePosition>; 4],
     /// Whether swinging feet touch down at this node.
     lands: bool,
 }
 
 /// Returns the position of foot `k` in ground axes.
-fn position_of_foot(k: usize, q: &Configuration) -> Place {
+fn position_of_foot(k: usize, q: &Configuration) -> SpacePosition {
     let m = Walker {};
     match k {
         0 => m.front_left_foot(q),
@@ -96,12 +96,12 @@ fn foot_jacobian(k: usize, q: &Configuration) -> SMatrix<f64, 3, 18> {
 }
 
 /// Returns two steps of diagonal pairs of feet; the first step has half the length.
-fn trot_gait(start: &Configuration) -> Vec<Phase> {
-    let mut feet: [Place; 4] = std::array::from_fn(|k| position_of_foot(k, start));
-    let mut centre: Place = feet.iter().sum::<Place>() / 4.0;
+fn trot_gait(start: &Configuration) -> Vec<GaitNode> {
+    let mut feet: [SpacePosition; 4] = std::array::from_fn(|k| position_of_foot(k, start));
+    let mut centre: SpacePosition = feet.iter().sum::<SpacePosition>() / 4.0;
     centre.z = Walker {}.center_of_mass(start).z;
     let standing_phase =
-        || Phase { touches: [Touch::Sticks; 4], centre: None, feet: [None; 4], lands: false };
+        || GaitNode { touches: [Touch::Sticks; 4], centre: None, feet: [None; 4], lands: false };
     let mut all = Vec::new();
     for (pair, reach) in [([1, 2], REACH / 2.0), ([0, 3], REACH)] {
         all.extend((0..STAND).map(|_| standing_phase()));
@@ -112,12 +112,12 @@ fn trot_gait(start: &Configuration) -> Vec<Phase> {
         for k in 0..SWING {
             let (half, part) = (SWING as f64 / 2.0, (k + 1) as f64 / SWING as f64);
             let height = LIFT * if k as f64 <= half { k as f64 / half } else { 2.0 - k as f64 / half };
-            let forward = Place::new(reach * part, 0.0, height);
+            let forward = SpacePosition::new(reach * part, 0.0, height);
             pair.iter().for_each(|foot| aimed[*foot] = Some(feet[*foot] + forward));
-            let centre = Some(centre + Place::new(reach * part / 2.0, 0.0, 0.0));
-            all.push(Phase { touches: contact_modes_of_legs(held), centre, feet: aimed, lands: false });
+            let centre = Some(centre + SpacePosition::new(reach * part / 2.0, 0.0, 0.0));
+            all.push(GaitNode { touches: contact_modes_of_legs(held), centre, feet: aimed, lands: false });
         }
-        all.push(Phase {
+        all.push(GaitNode {
             touches: contact_modes_of_legs(held.map(|held| !held)),
             centre: None,
             feet: aimed,
@@ -132,9 +132,9 @@ fn trot_gait(start: &Configuration) -> Vec<Phase> {
 
 /// Returns the inputs that hold the robot at rest on its feet, up to the wrench that two feet cannot
 /// transmit.
-fn quasi_static_inputs(q: &Configuration, phase: &Phase) -> Inputs {
+fn quasi_static_inputs(q: &Configuration, phase: &GaitNode) -> Inputs {
     let m = Walker {};
-    let bias = m.bias_forces(q, &Motion::zeros());
+    let bias = m.bias_forces(q, &VelocityVector::zeros());
     let jacobian = m.contact_jacobian(q);
     let rows: Vec<usize> = (0..12).filter(|row| phase.touches[row / 3] != Touch::Open).collect();
     let base = DMatrix::from_fn(6, rows.len(), |i, j| jacobian[(rows[j], i)]);
@@ -148,7 +148,7 @@ fn quasi_static_inputs(q: &Configuration, phase: &Phase) -> Inputs {
 }
 
 /// Returns the columns of the joints, on which the inputs act.
-fn joint_columns<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12> {
+fn actuated_joint_columns<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12> {
     let mut by_u = SMatrix::zeros();
     by_u.data.0.copy_from_slice(&by_tau.data.0[6..]);
     by_u
@@ -165,9 +165,9 @@ fn violated_cone_rows(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> 
 }
 
 /// Returns the weights of squares of configuration and velocity in a phase.
-fn state_cost_weights(phase: &Phase) -> [Motion; 2] {
+fn state_cost_weights(phase: &GaitNode) -> [VelocityVector; 2] {
     let weights_of_motion = |base: [f64; 2], joints: f64| {
-        Motion::from_fn(|k, _| OF_STATES * if k < 6 { base[k / 3] } else { joints }.powi(2))
+        VelocityVector::from_fn(|k, _| OF_STATES * if k < 6 { base[k / 3] } else { joints }.powi(2))
     };
     match phase.lands {
         true => [weights_of_motion([1.0, 1.0], 10.0), weights_of_motion([10.0, 10.0], 10.0)],
@@ -178,7 +178,7 @@ fn state_cost_weights(phase: &Phase) -> [Motion; 2] {
 /// Node of a trajectory to second order, with its working storage.
 struct Node {
     step: Transition,
-    cost: Cost,
+    cost: TrotStepCost,
     held: HeldDerivatives<f64, 18, 12>,
     /// Whether the cost has second derivatives that couple configuration, velocity and inputs.
     is_mixed: bool,
@@ -192,20 +192,20 @@ impl Node {
 }
 
 /// Gait from an initial configuration, which is also the reference of the state costs.
-struct Trot {
+struct TrotGait {
     start: Configuration,
-    phases: Vec<Phase>,
-    weights: Vec<[Motion; 2]>,
+    phases: Vec<GaitNode>,
+    weights: Vec<[VelocityVector; 2]>,
 }
 
 /// Trajectory with its feedback policies.
-struct TrajectoryPlan {
+struct TrajectoryWithPolicies {
     states: Vec<State<19, 18>>,
     inputs: Vec<Inputs>,
     policies: Vec<Policy<f64, 18, 12>>,
 }
 
-impl Trot {
+impl TrotGait {
     /// Returns the cost of a state and of its contact forces in a node.
     fn cost_of_node(&self, k: usize, (q, v): &State<19, 18>, forces: Option<&SVector<f64, 12>>) -> f64 {
         let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
@@ -225,7 +225,7 @@ impl Trot {
     }
 
     /// Writes the gradients and Hessians of the state's cost, times a factor.
-    fn write_cost_derivatives(&self, k: usize, (q, v): &State<19, 18>, factor: f64, cost: &mut Cost) {
+    fn write_cost_derivatives(&self, k: usize, (q, v): &State<19, 18>, factor: f64, cost: &mut TrotStepCost) {
         let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
         let off = Walker {}.difference(&self.start, q);
         let (of_q, of_v) = (of_q * factor, of_v * factor);
@@ -258,7 +258,7 @@ impl Trot {
     }
 
     /// Evaluates a node to first order, with its cost to second order.
-    fn evaluate_node(
+    fn linearise_node(
         &self,
         k: usize,
         state: &State<19, 18>,
@@ -281,7 +281,7 @@ impl Trot {
         self.write_cost_derivatives(k, state, PERIOD, cost);
         let held = contact::hold(&Walker {}, phase.touches).with_gains(0.0, DAMPING);
         held.held_derivatives_into(0.0, q, v, &Walker {}.generalized_forces(q, u), found)?;
-        let by_u = joint_columns(&found.by_tau);
+        let by_u = actuated_joint_columns(&found.by_tau);
         let by = (&found.by_q, &found.by_v, &by_u);
         discrete::semi_implicit_into(&held, PERIOD, (q, v), &found.a, by, step);
         cost.u = u * (OF_INPUTS * PERIOD);
@@ -299,7 +299,7 @@ impl Trot {
             }
         }
         if *is_mixed {
-            let by = (&found.forces_by_q, &found.forces_by_v, &joint_columns(&found.forces_by_tau));
+            let by = (&found.forces_by_q, &found.forces_by_v, &actuated_joint_columns(&found.forces_by_tau));
             cost.add_costs_of(&gradient, &hessian, by);
         }
         Ok(())
@@ -315,12 +315,12 @@ impl Trot {
 
     /// Linearises the trajectory and runs the backward recursion. Returns the coefficients of the step
     /// length, and of its square, in the expected change of the cost.
-    fn backward_sweep(&self, plan: &mut TrajectoryPlan) -> [f64; 2] {
+    fn backward_sweep(&self, plan: &mut TrajectoryWithPolicies) -> [f64; 2] {
         let mut node = Node::zero_node();
         let mut to_go = self.final_state_cost(&plan.states[plan.inputs.len()]);
         let mut expected = [0.0; 2];
         for (k, policy) in plan.policies.iter_mut().enumerate().rev() {
-            self.evaluate_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+            self.linearise_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
             backward_into(&node.step, &node.cost, 0.0, policy, &mut to_go).expect("it is convex");
             expected.iter_mut().zip(policy.expected).for_each(|(sum, more)| *sum += more);
         }
@@ -328,9 +328,9 @@ impl Trot {
     }
 
     /// Simulates the motion under the policies, and returns its cost.
-    fn simulate_policies(
+    fn cost_of_simulated_policies(
         &self,
-        plan: &TrajectoryPlan,
+        plan: &TrajectoryWithPolicies,
         length: f64,
         next: &mut (Vec<State<19, 18>>, Vec<Inputs>),
     ) -> f64 {
@@ -363,15 +363,15 @@ impl Trot {
 
     /// Returns the gait as JSON, for an external program that solves the problem with the same costs.
     fn gait_as_json(&self) -> String {
-        let format_optional_point = |place: &Option<Place>| {
+        let point_or_null_text = |place: &Option<SpacePosition>| {
             place.map_or("null".to_owned(), |place| format!("{:?}", place.as_slice()))
         };
         let phases = self.phases.iter().map(|phase| {
-            let feet = phase.feet.each_ref().map(format_optional_point).join(", ");
+            let feet = phase.feet.each_ref().map(point_or_null_text).join(", ");
             let holds = phase.touches.map(|touch| touch != Touch::Open);
             format!(
                 "{{\"holds\": {holds:?}, \"centre\": {}, \"feet\": [{feet}], \"lands\": {}}}",
-                format_optional_point(&phase.centre),
+                point_or_null_text(&phase.centre),
                 phase.lands
             )
         });
@@ -390,10 +390,10 @@ pub fn measure_trot() -> String {
         start.fixed_rows_mut::<3>(7 + 3 * k).copy_from_slice(&angles);
     }
     let phases = trot_gait(&start);
-    let trot = Trot { start, weights: phases.iter().map(state_cost_weights).collect(), phases };
+    let trot = TrotGait { start, weights: phases.iter().map(state_cost_weights).collect(), phases };
     let nodes = trot.phases.len() - 1;
-    let mut plan = TrajectoryPlan {
-        states: vec![(start, Motion::zeros()); nodes + 1],
+    let mut plan = TrajectoryWithPolicies {
+        states: vec![(start, VelocityVector::zeros()); nodes + 1],
         inputs: trot.phases[..nodes]
             .iter()
             .map(|phase| match phase.lands {
@@ -405,18 +405,19 @@ pub fn measure_trot() -> String {
     };
     let inputs: Vec<_> = plan.inputs.iter().map(|u| u.as_slice().to_vec()).collect();
     let mut next = (Vec::with_capacity(nodes + 1), Vec::with_capacity(nodes));
-    let mut cost = trot.simulate_policies(&plan, 1.0, &mut next);
+    let mut cost = trot.cost_of_simulated_policies(&plan, 1.0, &mut next);
     (plan.states, plan.inputs) = next.clone();
     let mut costs = Vec::new();
     for _ in 0..ITERATIONS {
         let [linear, quadratic] = trot.backward_sweep(&mut plan);
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
-        let shorter = lengths.map(|length| (length, trot.simulate_policies(&plan, length, &mut next)));
+        let shorter =
+            lengths.map(|length| (length, trot.cost_of_simulated_policies(&plan, length, &mut next)));
         let mut shorter = shorter.collect::<Vec<_>>().into_iter();
         let found = shorter
             .find(|(length, found)| cost - found > -0.1 * (length * linear + length * length * quadratic));
         let Some((length, found)) = found else { break };
-        cost = trot.simulate_policies(&plan, length, &mut next);
+        cost = trot.cost_of_simulated_policies(&plan, length, &mut next);
         assert_eq!(cost, found);
         costs.push(cost);
         (plan.states, plan.inputs) = next.clone();
@@ -424,13 +425,13 @@ pub fn measure_trot() -> String {
     let mut node = Node::zero_node();
     let linearise = minimum_time_per_node(nodes, || {
         for k in 0..nodes {
-            trot.evaluate_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+            trot.linearise_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
             black_box(&node);
         }
     });
     let mut kept = Vec::new();
     for k in 0..nodes {
-        trot.evaluate_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+        trot.linearise_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
         kept.push((node.step, node.cost));
     }
     let last = trot.final_state_cost(&plan.states[nodes]);
@@ -444,7 +445,7 @@ pub fn measure_trot() -> String {
         black_box(trot.backward_sweep(&mut plan));
     });
     let rollout = minimum_time_per_node(nodes, || {
-        black_box(trot.simulate_policies(&plan, 1.0, &mut next));
+        black_box(trot.cost_of_simulated_policies(&plan, 1.0, &mut next));
     });
     format!(
         "\"trot\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": \

@@ -16,8 +16,8 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
         ["write", folder] => write::write_robot_folders(Path::new(folder)).map_err(|error| error.to_string()),
-        ["measure", folder] => table::measure_robots(Path::new(folder), false),
-        ["measure", folder, "--quick"] => table::measure_robots(Path::new(folder), true),
+        ["measure", folder] => table::measure_robots_and_print_table(Path::new(folder), false),
+        ["measure", folder, "--quick"] => table::measure_robots_and_print_table(Path::new(folder), true),
         _ => Err("expected `write FOLDER` or `measure FOLDER [--quick]`".to_string()),
     };
     match done {

@@ -3,14 +3,14 @@
 use linkwork::nalgebra::{ArrayStorage, SMatrix};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::own::{Call, Flat, GeneratedContender, MatrixContender};
+use linkwork_benches::peers::own::{Flat, GeneratedContender, MatrixContender, MechanismCall};
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
 use linkwork_benches::states::{State, random_states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::rc::Rc;
 
 /// A measured function, and the contender that evaluates it with generated code.
-pub type Generated = (Function, Box<dyn Contender>);
+pub type GeneratedFunctionContender = (Function, Box<dyn Contender>);
 
 /// Robot with the generated functions that are compared.
 pub struct Robot {
@@ -31,7 +31,7 @@ pub struct Robot {
     /// `q`, `v`, `a` and `τ` of every sample state, concatenated.
     pub numbers: Vec<f64>,
     /// Generated functions of the robot that are measured.
-    pub functions: Vec<Generated>,
+    pub functions: Vec<GeneratedFunctionContender>,
 }
 
 /// Returns a generated function of Linkwork as a contender of the comparison.
@@ -39,8 +39,8 @@ fn linkwork_contender<M: 'static, R: Flat + 'static, const NQ: usize, const NV: 
     (owner, mechanism): (Owner, M),
     states: &Rc<Vec<State<NQ, NV>>>,
     function: Function,
-    call: Call<M, R, NQ, NV>,
-) -> Generated {
+    call: MechanismCall<M, R, NQ, NV>,
+) -> GeneratedFunctionContender {
     let states = states.clone();
     (
         function,
@@ -100,10 +100,10 @@ macro_rules! kept {
             };
         }
         let is_sparse = <$type>::MASS_MATRIX_ENTRIES.len() * 8 < 3 * N * (N + 1);
-        let mass = is_sparse.then(|| -> Generated {
+        let mass = is_sparse.then(|| -> GeneratedFunctionContender {
             keeping!(Mass, mass_matrix_into, 1, |m: &$type, s, [into]| m.mass_matrix_into(&s.q, into))
         });
-        let derivatives: [Generated; 2] = [
+        let derivatives: [GeneratedFunctionContender; 2] = [
             keeping!(
                 InverseDerivatives,
                 inverse_dynamics_derivatives_into,
@@ -135,7 +135,7 @@ macro_rules! robot {
         let model = model.unwrap_or_else(|message| panic!("{}: {message}", $name));
         let states: Rc<Vec<State<{ $type::NQ }, { $type::NV }>>> = Rc::new(random_states(&model));
         let joints = if options.free { 6 } else { 0 };
-        let mut functions: Vec<Generated> = Vec::new();
+        let mut functions: Vec<GeneratedFunctionContender> = Vec::new();
         $(functions.extend($macro!($of, $value, $owner, &states));)+
         Robot {
             name: $name,
@@ -145,7 +145,7 @@ macro_rules! robot {
             joints: &const { $type::VELOCITIES }[joints..],
             nq: $type::NQ,
             nv: $type::NV,
-            numbers: states.iter().flat_map(State::all_numbers).collect(),
+            numbers: states.iter().flat_map(State::concatenated_state_numbers).collect(),
             functions,
         }
     }};

@@ -2,8 +2,10 @@
 
 use crate::robots::{Robot, robot_constructors};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::library::{self, Rows};
-use linkwork_benches::peers::turns::{Measured, TOLERANCE, measure_in_turns, remove_disagreeing};
+use linkwork_benches::peers::library::{self, StateRows};
+use linkwork_benches::peers::turns::{
+    ContenderMeasurement, TOLERANCE, measure_in_turns, remove_disagreeing_contenders,
+};
 use linkwork_benches::states::STATES;
 use std::path::Path;
 
@@ -13,7 +15,7 @@ const FLAGS: [&str; 2] = ["exact", "fast"];
 
 /// Measures every function of every robot and prints a table. Implementations that disagree are omitted; a
 /// disagreement of Linkwork's own code is an error.
-pub fn measure_robots(folder: &Path, quick: bool) -> Result<(), String> {
+pub fn measure_robots_and_print_table(folder: &Path, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.2 };
     println!(
         "| robot | function | Linkwork, ns | with parameters | prepared | Pinocchio | CasADi C | dynibo | \
@@ -26,8 +28,13 @@ pub fn measure_robots(folder: &Path, quick: bool) -> Result<(), String> {
         let numbers: &'static [f64] = std::mem::take(&mut robot.numbers).leak();
         for function in Function::ALL {
             let mut contenders = contenders_for_function(folder, &mut robot, numbers, function);
-            let what = format!("{} {}", robot.name, function.table_title());
-            wrong.extend(remove_disagreeing(&mut contenders, &what, (robot.nv, STATES), TOLERANCE));
+            let what = format!("{} {}", robot.name, function.title_in_table());
+            wrong.extend(remove_disagreeing_contenders(
+                &mut contenders,
+                &what,
+                (robot.nv, STATES),
+                TOLERANCE,
+            ));
             if contenders.iter().any(|contender| contender.owner() == Owner::Linkwork) {
                 let measured = measure_in_turns(&mut contenders, STATES, budget);
                 println!("{}", format_table_line(&robot, function, Owner::Linkwork, &measured));
@@ -47,7 +54,7 @@ fn contenders_for_function(
     numbers: &'static [f64],
     function: Function,
 ) -> Vec<Box<dyn Contender>> {
-    let rows = Rows { nq: robot.nq, nv: robot.nv, numbers };
+    let rows = StateRows { nq: robot.nq, nv: robot.nv, numbers };
     let files = folder.join("robots").join(robot.name);
     let mut all = Vec::new();
     for (library, owner) in [("libpinocchio_peer.so", Owner::Pinocchio), ("libdynibo_peer.so", Owner::Dynibo)]
@@ -57,7 +64,7 @@ fn contenders_for_function(
     for form in CASADI {
         for flags in FLAGS {
             let path = files.join(format!("{}_{form}.{flags}.so", function.file_name()));
-            all.extend(library::casadi_function(&path, function, rows));
+            all.extend(library::load_casadi_function(&path, function, rows));
         }
     }
     let generated = std::mem::take(&mut robot.functions);
@@ -68,21 +75,27 @@ fn contenders_for_function(
 }
 
 /// Returns a line of the table with the times of one of Linkwork's functions.
-fn format_table_line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) -> String {
+fn format_table_line(
+    robot: &Robot,
+    function: Function,
+    owner: Owner,
+    measured: &[ContenderMeasurement],
+) -> String {
     let fastest_of_owner =
         |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
     let own = fastest_of_owner(owner);
     let others = [Owner::Pinocchio, Owner::Casadi, Owner::Dynibo].map(fastest_of_owner);
     let format_optional_number =
         |value: Option<f64>, digits| value.map_or("–".to_string(), |x| format!("{x:.digits$}"));
-    let format_time = |m: Option<&Measured>| {
+    let format_time = |m: Option<&ContenderMeasurement>| {
         format_optional_number(m.map(|m| m.time), usize::from(m.is_some_and(|m| m.time < 100.0)))
     };
-    let format_time_ratio =
-        |m: Option<&Measured>| format_optional_number(m.zip(own).map(|(m, own)| m.time / own.time), 1);
+    let format_time_ratio = |m: Option<&ContenderMeasurement>| {
+        format_optional_number(m.zip(own).map(|(m, own)| m.time / own.time), 1)
+    };
     let kept = if owner == Owner::Kept { ", zeros kept" } else { "" };
     let mut cells =
-        vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.table_title())];
+        vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.title_in_table())];
     cells.extend(
         [own, fastest_of_owner(Owner::Parameters), fastest_of_owner(Owner::Prepared)].map(format_time),
     );
@@ -90,7 +103,7 @@ fn format_table_line(robot: &Robot, function: Function, owner: Owner, measured: 
     cells.extend(others.map(format_time_ratio));
     cells.push(format_optional_number(own.and_then(|m| m.bytes).map(|bytes| bytes as f64), 0));
     if let Some(casadi) = fastest_of_owner(Owner::Casadi) {
-        eprintln!("{} {}: CasADi's best is {}", robot.name, function.table_title(), casadi.variant);
+        eprintln!("{} {}: CasADi's best is {}", robot.name, function.title_in_table(), casadi.variant);
     }
     format!("| {} |", cells.join(" | "))
 }

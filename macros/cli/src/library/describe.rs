@@ -1,14 +1,14 @@
 //! Self-description of the library: names, shapes, units and documentation as JSON.
 
 use super::{Function, Kind, LibraryData};
-use linkwork_compiler::export::without_links;
+use linkwork_compiler::export::without_doc_links;
 use linkwork_compiler::mechanism::Limit;
 use serde_json::{Value, json};
 
 /// Returns the description of an exported library as JSON.
 pub fn description_as_json(known: &LibraryData<'_, '_>) -> String {
     let m = known.model;
-    let names_with_units = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
+    let json_names_with_units = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
         let units = units.iter().map(String::as_str).chain(std::iter::repeat(""));
         names.into_iter().zip(units).map(|(name, unit)| json!({ "name": name, "unit": unit })).collect()
     };
@@ -27,15 +27,18 @@ pub fn description_as_json(known: &LibraryData<'_, '_>) -> String {
         "prefix": known.prefix,
         "version": env!("CARGO_PKG_VERSION"),
         "number": known.scalar_type_name(),
-        "documentation": without_links(&docs.join("\n\n")),
-        "configuration": names_with_units(names_as_str(&m.configuration), &m.units.configuration),
-        "velocities": names_with_units(
+        "documentation": without_doc_links(&docs.join("\n\n")),
+        "configuration": json_names_with_units(names_as_str(&m.configuration), &m.units.configuration),
+        "velocities": json_names_with_units(
             m.velocities.iter().map(|(name, _)| name.as_str()).collect(),
             &m.units.velocities,
         ),
-        "inputs": names_with_units(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
-        "parameters": names_with_units(names_as_str(&m.parameters), &m.units.parameters),
-        "outputs": names_with_units(
+        "inputs": json_names_with_units(
+            m.inputs.iter().map(|(name, _)| name.as_str()).collect(),
+            &m.units.inputs,
+        ),
+        "parameters": json_names_with_units(names_as_str(&m.parameters), &m.units.parameters),
+        "outputs": json_names_with_units(
             m.outputs.iter().map(|output| output.name.as_str()).collect(),
             &m.units.outputs,
         ),

@@ -1,6 +1,6 @@
 //! Functions of a mechanism, read from its generated Rust code.
 
-use linkwork_compiler::export::without_links;
+use linkwork_compiler::export::without_doc_links;
 use quote::ToTokens;
 use std::fmt::Write;
 use syn::{FnArg, GenericArgument, ImplItem, Item, PathArguments, ReturnType, Type};
@@ -53,7 +53,10 @@ pub fn read_struct_functions(items: &[Item], mechanism: &str) -> (Vec<Function>,
     for item in items {
         let Item::Impl(block) = item else { continue };
         let is_own = matches!(&*block.self_ty, Type::Path(path) if path.path.segments.last().is_some_and(|s| s.ident == mechanism));
-        if block.trait_.is_some() || !is_own || is_placeholder_block(block.generics.where_clause.as_ref()) {
+        if block.trait_.is_some()
+            || !is_own
+            || is_block_of_absent_functions(block.generics.where_clause.as_ref())
+        {
             continue;
         }
         for inner in &block.items {
@@ -65,12 +68,12 @@ pub fn read_struct_functions(items: &[Item], mechanism: &str) -> (Vec<Function>,
             if !is_public || !of_state || name.starts_with("__") || name == "validate" {
                 continue;
             }
-            let in_lanes = name.strip_suffix("_lanes").filter(|_| has_lanes(function));
+            let in_lanes = name.strip_suffix("_lanes").filter(|_| is_batched_over_states(function));
             if let Some(one) = in_lanes {
                 names.push(one.to_string());
             } else if let Some(function) = one(&name, function) {
                 found.push(function);
-            } else if !is_available_elsewhere(&name) {
+            } else if !is_exported_under_other_name(&name) {
                 left_out.push(name);
             }
         }
@@ -83,17 +86,17 @@ pub fn read_struct_functions(items: &[Item], mechanism: &str) -> (Vec<Function>,
 }
 
 /// Returns whether a block contains placeholder functions that only explain why a function does not exist.
-fn is_placeholder_block(bounds: Option<&syn::WhereClause>) -> bool {
+fn is_block_of_absent_functions(bounds: Option<&syn::WhereClause>) -> bool {
     bounds.is_some_and(|bounds| bounds.to_token_stream().to_string().contains("absent"))
 }
 
 /// Returns whether a function evaluates several states at once: its number of states is a const parameter.
-fn has_lanes(function: &syn::ImplItemFn) -> bool {
+fn is_batched_over_states(function: &syn::ImplItemFn) -> bool {
     function.sig.generics.const_params().next().is_some()
 }
 
 /// Returns whether a generated function is exported under another name.
-fn is_available_elsewhere(name: &str) -> bool {
+fn is_exported_under_other_name(name: &str) -> bool {
     name.ends_with("_into") || name.starts_with("frame_")
 }
 
@@ -105,13 +108,15 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
     for input in function.sig.inputs.iter().skip(1) {
         let FnArg::Typed(typed) = input else { return None };
         let kind = match &*typed.ty {
-            Type::Reference(reference) if reference.mutability.is_none() => referenced_kind(&reference.elem)?,
+            Type::Reference(reference) if reference.mutability.is_none() => {
+                kind_of_referenced_argument(&reference.elem)?
+            }
             plain => (is_number_type(plain)).then_some(Kind::Number)?,
         };
         arguments.push((typed.pat.to_token_stream().to_string(), kind));
     }
     let ReturnType::Type(_, kind) = &function.sig.output else { return None };
-    let is_mode = is_optional_sign(kind);
+    let is_mode = is_optional_sign_type(kind);
     let shapes = if is_mode { vec![Vec::new()] } else { shapes_of_results(kind)? };
     let results = result_names(name, shapes.len()).into_iter().zip(shapes).collect();
     let list: Vec<String> = arguments
@@ -155,10 +160,10 @@ pub fn doc_paragraphs(attributes: &[syn::Attribute]) -> Vec<String> {
 /// Converts documentation for readers without Rust: returns the paragraphs, and the description of errors.
 pub fn plain_docs(docs: &[String]) -> (Vec<String>, String) {
     let plain: Vec<String> =
-        docs.iter().map(|paragraph| without_links(&remove_trait_reference(paragraph))).collect();
+        docs.iter().map(|paragraph| without_doc_links(&remove_trait_reference(paragraph))).collect();
     let begin = plain.iter().position(|paragraph| paragraph.starts_with(ERRORS)).unwrap_or(plain.len());
     let (about, errors) = plain.split_at(begin);
-    (about.to_vec(), remove_variant_names(errors.join(" ").trim_start_matches(ERRORS).trim()))
+    (about.to_vec(), error_condition_without_variants(errors.join(" ").trim_start_matches(ERRORS).trim()))
 }
 
 const ERRORS: &str = "# Errors";
@@ -176,16 +181,16 @@ fn remove_trait_reference(paragraph: &str) -> String {
 
 /// Returns the condition of an error without the names of its variants in Rust: `` `Held` for an index ``
 /// becomes "for an index".
-fn remove_variant_names(text: &str) -> String {
+fn error_condition_without_variants(text: &str) -> String {
     let parts: Vec<&str> = text.split('`').collect();
-    let has_condition = |k: usize| {
+    let is_followed_by_condition = |k: usize| {
         parts.get(k + 1).is_some_and(|next| [" if ", " for "].iter().any(|word| next.starts_with(word)))
     };
     let mut out = String::new();
     for (k, part) in parts.iter().enumerate() {
         match k % 2 {
-            0 if k > 0 && has_condition(k - 1) => out.push_str(part.trim_start()),
-            1 if !has_condition(k) => {
+            0 if k > 0 && is_followed_by_condition(k - 1) => out.push_str(part.trim_start()),
+            1 if !is_followed_by_condition(k) => {
                 let _ = write!(out, "`{part}`");
             }
             0 => out.push_str(part),
@@ -204,13 +209,13 @@ fn is_number_type(kind: &Type) -> bool {
 
 /// Returns whether a type is `Option<i8>`, a sign that may be undetermined. Plain arrays contain zero for
 /// `None`.
-fn is_optional_sign(kind: &Type) -> bool {
+fn is_optional_sign_type(kind: &Type) -> bool {
     type_name_with_arguments(kind).is_some_and(|(name, types, _)| {
         name == "Option" && types.iter().all(|inner| inner.to_token_stream().to_string() == "i8")
     })
 }
 
-fn referenced_kind(kind: &Type) -> Option<Kind> {
+fn kind_of_referenced_argument(kind: &Type) -> Option<Kind> {
     if let Type::Slice(slice) = kind {
         return (slice.elem.to_token_stream().to_string() == "usize").then_some(Kind::Marks);
     }

@@ -49,16 +49,16 @@ pub fn header_text(known: &LibraryData<'_, '_>) -> String {
         m.nu(),
         m.parameters.len()
     );
-    write_frames(&mut text, known, &upper);
+    write_frame_number_enum(&mut text, known, &upper);
     for f in &known.functions {
         write_function(&mut text, f, known, number);
     }
-    write_common(&mut text, prefix, number, !m.parameters.is_empty());
+    write_common_declarations(&mut text, prefix, number, !m.parameters.is_empty());
     text.push_str("#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
     text
 }
 
-fn write_frames(text: &mut String, known: &LibraryData<'_, '_>, upper: &str) {
+fn write_frame_number_enum(text: &mut String, known: &LibraryData<'_, '_>, upper: &str) {
     if known.model.frames.is_empty() {
         return;
     }
@@ -113,7 +113,7 @@ fn write_function(text: &mut String, f: &Function, known: &LibraryData<'_, '_>, 
     let _ = writeln!(text, " */\nint {}_{}({});\n", known.prefix, f.name, list.join(", "));
 }
 
-fn write_common(text: &mut String, prefix: &str, number: &str, has_parameters: bool) {
+fn write_common_declarations(text: &mut String, prefix: &str, number: &str, has_parameters: bool) {
     if has_parameters {
         let _ = write!(
             text,

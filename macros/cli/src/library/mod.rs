@@ -8,8 +8,8 @@ mod header;
 mod write;
 
 use crate::Stop;
-use crate::commands::text_option;
-use crate::grid::{self, Grid};
+use crate::commands::text_option_value;
+use crate::grid::{self, TableGrid};
 use crate::input::{CompiledMechanism, Input};
 use crate::sources::{self, manifest_dependency};
 use clap::ArgMatches;
@@ -41,7 +41,7 @@ struct LibraryData<'a, 'g> {
     model: &'a Model<'g>,
     prefix: &'a str,
     /// Values of the interpolation tables of the mechanism.
-    tables: Vec<Grid>,
+    tables: Vec<TableGrid>,
     /// Exported functions of the library, in the order of their indices.
     functions: Vec<Function>,
     left_out: Vec<String>,
@@ -89,7 +89,7 @@ pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Resu
     let expansion = format!("{}\n{}", emitted.tokens, emitted.text);
     let file = syn::parse_file(&expansion)?;
     let (mut functions, left_out) = functions::read_struct_functions(&file.items, &input.declaration.name);
-    functions.extend(frame_functions(&model));
+    functions.extend(functions_with_frame_index(&model));
     functions.extend(limit_functions(&model));
     let requests = source.mechanism.requests;
     let kinematic = model.kinematic;
@@ -101,20 +101,20 @@ pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Resu
         source: &source,
         model: &model,
         prefix,
-        tables: grid::table_options(matches, &source.tables_with_variable_counts())?,
+        tables: grid::tables_from_options(matches, &source.tables_with_variable_counts())?,
         functions,
         left_out,
         equations: output.equations.plain.clone(),
     };
     let description = describe::description_as_json(&known);
-    let linkwork = text_option(matches, "linkwork")
+    let linkwork = text_option_value(matches, "linkwork")
         .map(absolute_source_folder)
         .transpose()?
-        .or_else(sources::repository_of_command);
+        .or_else(sources::source_repository_of_binary);
     let manifest = manifest_text(prefix, linkwork.as_deref(), requests.reproducible);
     let text = match matches.get_flag("expanded") {
-        true => write::library_text(&known, &description, "")? + &expansion,
-        false => write::library_text(&known, &description, &declaration_with_absolute_paths(input)?)?,
+        true => write::library_source_text(&known, &description, "")? + &expansion,
+        false => write::library_source_text(&known, &description, &declaration_with_absolute_paths(input)?)?,
     };
     Ok(Crate {
         prefix: prefix.to_string(),
@@ -166,7 +166,7 @@ fn declaration_with_absolute_paths(input: &Input) -> Result<String, Stop> {
 }
 
 /// Returns the functions that take a frame by its index.
-fn frame_functions(model: &Model<'_>) -> Vec<Function> {
+fn functions_with_frame_index(model: &Model<'_>) -> Vec<Function> {
     if model.frames.is_empty() {
         return Vec::new();
     }
@@ -232,7 +232,7 @@ fn limit_functions(model: &Model<'_>) -> Vec<Function> {
         return Vec::new();
     }
     let (nq, nv) = (model.nq(), model.nv());
-    let limit_function = |name: &str, about: &str, takes: Option<(&str, usize)>| Function {
+    let limit_function_declaration = |name: &str, about: &str, takes: Option<(&str, usize)>| Function {
         name: name.to_string(),
         docs: vec![about.to_string()],
         call: match takes {
@@ -244,29 +244,37 @@ fn limit_functions(model: &Model<'_>) -> Vec<Function> {
         lanes: None,
     };
     vec![
-        limit_function(
+        limit_function_declaration(
             "lower_limits",
             "Lower bounds of the coordinates, in the order of `v`; infinite for coordinates without a limit.",
             None,
         ),
-        limit_function(
+        limit_function_declaration(
             "upper_limits",
             "Upper bounds of the coordinates, in the order of `v`; infinite for coordinates without a limit.",
             None,
         ),
-        limit_function(
+        limit_function_declaration(
             "velocity_limits",
             "Maximum velocities, in both directions; infinite for coordinates without a limit.",
             None,
         ),
-        limit_function(
+        limit_function_declaration(
             "effort_limits",
             "Maximum forces and torques, in both directions; infinite for coordinates without a limit.",
             None,
         ),
-        limit_function("clamp_configuration", "The configuration within its bounds.", Some(("q", nq))),
-        limit_function("clamp_velocity", "The velocity within its bounds.", Some(("v", nv))),
-        limit_function("clamp_effort", "Forces and torques within their bounds.", Some(("tau", nv))),
+        limit_function_declaration(
+            "clamp_configuration",
+            "The configuration within its bounds.",
+            Some(("q", nq)),
+        ),
+        limit_function_declaration("clamp_velocity", "The velocity within its bounds.", Some(("v", nv))),
+        limit_function_declaration(
+            "clamp_effort",
+            "Forces and torques within their bounds.",
+            Some(("tau", nv)),
+        ),
     ]
 }
 
@@ -345,7 +353,7 @@ fn manifest_text(prefix: &str, linkwork: Option<&Path>, reproducible: bool) -> S
 }
 
 /// Returns the indices of the parameters of each field of a struct.
-fn parameters_by_field(members: &[String]) -> BTreeMap<&str, Vec<usize>> {
+fn parameter_indices_of_fields(members: &[String]) -> BTreeMap<&str, Vec<usize>> {
     let mut fields: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (k, member) in members.iter().enumerate() {
         let field = member.split(['.', '[']).next().unwrap_or(member);

@@ -1,11 +1,11 @@
 //! Rust source of the crate: the declaration, the table of functions, and the exported functions.
 
-use super::{Function, Kind, LibraryData, parameters_by_field};
+use super::{Function, Kind, LibraryData, parameter_indices_of_fields};
 use crate::Stop;
 use std::fmt::Write;
 
 /// Returns the text of `lib.rs`. Without a declaration, the caller must append the generated code.
-pub fn library_text(
+pub fn library_source_text(
     known: &LibraryData<'_, '_>,
     description: &str,
     declaration: &str,
@@ -47,7 +47,7 @@ pub fn library_text(
         format!("{description}\0"),
         known.functions.iter().map(|f| function_table_row(f, nv)).collect::<String>(),
         constructor_expression(known),
-        parameter_check(known),
+        parameter_check_code(known),
         match (m.kinematic, known.has_contacts()) {
             (true, _) =>
                 "let _ = motion;\nErr(Failure::new(\"the mechanism has no dynamics\"))".to_string(),
@@ -113,7 +113,7 @@ fn constructor_expression(known: &LibraryData<'_, '_>) -> String {
         tables.map(|(k, field)| [field.to_string(), format!("TABLE_{k}")]).collect();
     let has_numbers = !known.model.parameters.is_empty();
     let unused = if has_numbers { "" } else { "let _ = parameter;\n" };
-    let fields = parameters_by_field(&known.model.parameters);
+    let fields = parameter_indices_of_fields(&known.model.parameters);
     let own: Vec<String> =
         shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
     let index_of_field = |field: &str| {
@@ -161,7 +161,7 @@ fn tables_as_constants(known: &LibraryData<'_, '_>) -> String {
     text
 }
 
-fn parameter_check(known: &LibraryData<'_, '_>) -> &'static str {
+fn parameter_check_code(known: &LibraryData<'_, '_>) -> &'static str {
     match known.model.parameters.is_empty() {
         true => "Ok(())",
         false => "self.validate().map_err(Failure::new)",
@@ -213,14 +213,14 @@ fn write_exports(text: &mut String, known: &LibraryData<'_, '_>) {
             unsafe {{ raw::call::<{kind}>(function, parameters, arguments, results, states, threads) }}
         }}\n"
     );
-    write_motions(text, known);
+    write_motion_functions(text, known);
     if !m.parameters.is_empty() {
-        write_defaults(text, known);
+        write_file_parameter_export(text, known);
     }
 }
 
 /// Writes the exported C functions for simulations and rollouts.
-fn write_motions(text: &mut String, known: &LibraryData<'_, '_>) {
+fn write_motion_functions(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, kind, number, m) =
         (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
@@ -265,7 +265,7 @@ fn write_motions(text: &mut String, known: &LibraryData<'_, '_>) {
 }
 
 /// Writes the exported function for the parameters of a robot file.
-fn write_defaults(text: &mut String, known: &LibraryData<'_, '_>) {
+fn write_file_parameter_export(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, number, m) = (known.prefix, known.scalar_type_name(), known.model);
     let of_file = known.source.mechanism.shell.file_fields.is_empty();
     let values: String = match of_file {

@@ -19,7 +19,7 @@ pub fn available_compilers() -> Vec<&'static str> {
 fn kernel_test_program(case: &Case, scalar: &str) -> String {
     let p = case.prefix;
     // Other states have other values.
-    let format_batch_numbers = |numbers: &[f64]| {
+    let varied_batch_numbers_text = |numbers: &[f64]| {
         let scale_of_state = |k: usize| (k + 1) as f64 / STATES as f64;
         let states = numbers.iter().flat_map(|x| (0..STATES).map(move |k| x * scale_of_state(k)));
         let texts: Vec<String> = states.map(|x| format!("({scalar}){x:?}")).collect();
@@ -36,7 +36,7 @@ fn kernel_test_program(case: &Case, scalar: &str) -> String {
         let _ = writeln!(
             text,
             "    static const number {name}[] = {{{}}};\n    (void){name};",
-            format_batch_numbers(numbers)
+            varied_batch_numbers_text(numbers)
         );
     }
     let own = match case.parameters.is_empty() {
@@ -45,10 +45,10 @@ fn kernel_test_program(case: &Case, scalar: &str) -> String {
             let _ = writeln!(
                 text,
                 "    static const number own[] = {{{}}};",
-                format_batch_numbers(&case.parameters)
+                varied_batch_numbers_text(&case.parameters)
             );
             let mut list = "own, ".to_string();
-            for (k, table) in split_tables(tables).iter().enumerate() {
+            for (k, table) in split_table_initialisers(tables).iter().enumerate() {
                 let _ = writeln!(text, "    static const {p}_device::{p}_table table{k} = {table};");
                 let _ = write!(list, "table{k}, ");
             }
@@ -70,7 +70,7 @@ fn kernel_test_program(case: &Case, scalar: &str) -> String {
 }
 
 /// Splits a list of C table initialisers into the tables.
-fn split_tables(tables: &str) -> Vec<String> {
+fn split_table_initialisers(tables: &str) -> Vec<String> {
     let parts = tables.split("{{").skip(1);
     parts.map(|part| format!("{{{{{}", part.trim_end_matches(", "))).collect()
 }

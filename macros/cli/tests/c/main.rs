@@ -14,7 +14,7 @@ use compiled::{
 use linkwork::prelude::*;
 use linkwork::{Frames, discrete};
 use linkwork_models::{AnymalB, CartPole, FourBar, FurutaPendulum, PandaArm, SimpleHumanoid, Solo12, Ur5};
-use mechanisms::{Awkward, Balloon, Wing};
+use mechanisms::{Balloon, MechanismWithAwkwardNames, Wing};
 
 fn deterministic_numbers(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + 1.7 * k as f64).sin()).collect()
@@ -95,7 +95,7 @@ macro_rules! case {
         let mut entries = functions!(m($($t)?), q, v, a, tau);
         entries.extend($functions!(m($($t)?), q, v, a, tau, u));
         let time: Option<f64> = [$($t)?].first().copied();
-        entries.extend(frame_calls(m, time, q, v, a));
+        entries.extend(first_and_last_frame_calls(m, time, q, v, a));
         let _ = (&u, &tau);
         Case {
             prefix: $prefix,
@@ -132,12 +132,12 @@ fn derivative_by_step_size<const NQ: usize, const NV: usize>(
         .iter()
         .map(|k| [change_after_displacement(k * d), change_after_displacement(-k * d)])
         .collect();
-    let finite_difference_by_length = |i: usize| {
+    let finite_difference_over_length = |i: usize| {
         let weighted_difference = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
         (weighted_difference(0, 45.0) + weighted_difference(1, -9.0) + weighted_difference(2, 1.0))
             / (60.0 * d)
     };
-    (0..2 * NV).map(finite_difference_by_length).collect()
+    (0..2 * NV).map(finite_difference_over_length).collect()
 }
 
 /// Expands to calls of discrete steps and of their Jacobians.
@@ -211,7 +211,7 @@ fn vector_from_slice<const N: usize>(numbers: &[f64]) -> linkwork::nalgebra::SVe
 }
 
 /// Returns calls for the first and the last frame.
-fn frame_calls<M, const NQ: usize, const NV: usize>(
+fn first_and_last_frame_calls<M, const NQ: usize, const NV: usize>(
     m: &M,
     time: Option<f64>,
     q: linkwork::nalgebra::SVector<f64, NQ>,
@@ -280,9 +280,9 @@ fn cuda_kernels_of_trees_agree_with_rust() {
     case.entries.extend(steps!(Balloon, m, case));
     case.entries.extend(products!(Balloon, m, case, 0.7));
     kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
-    let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
-    let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
-    case.entries.extend(products!(Awkward, m, case));
+    let m = MechanismWithAwkwardNames { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
+    let mut case = case!("awkward", MechanismWithAwkwardNames, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
+    case.entries.extend(products!(MechanismWithAwkwardNames, m, case));
     kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
     let ([drag], [lift], [moment]) = wing_tables(true, true);
     let m = Wing { mass: 2.0, lift, drag, moment };
@@ -319,8 +319,8 @@ fn c_code_of_declared_mechanisms_agrees_with_rust() {
 
 #[test]
 fn names_reserved_in_c_are_replaced() {
-    let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
-    let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
+    let m = MechanismWithAwkwardNames { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
+    let mut case = case!("awkward", MechanismWithAwkwardNames, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
     let argument_values = |name: &str| {
         let (_, numbers) = case.given.iter().find(|(known, _)| *known == name).expect("an argument");
         numbers.clone()
@@ -342,7 +342,7 @@ fn names_reserved_in_c_are_replaced() {
         entry!("inverse_dynamics_by_parameters", "q, v, a", m.inverse_dynamics_by_parameters(&q, &v, &a)),
         entry!("inverse_dynamics_second_derivatives", "q, v, a, tau", qq, qv, vv, qa),
     ]);
-    case.entries.extend(steps!(Awkward, m, case));
+    case.entries.extend(steps!(MechanismWithAwkwardNames, m, case));
     check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
 }
 
@@ -362,7 +362,7 @@ fn wing_tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1
         [&[0.0, 1.0], &[-1.0, 0.0, 1.5], &[0.0, 0.3]],
         &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95],
     );
-    fn with_table_options<const N: usize>(
+    fn table_with_options<const N: usize>(
         table: Result<Table<N>, linkwork::TableError>,
         smooth: bool,
         on: bool,
@@ -372,9 +372,9 @@ fn wing_tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1
         [if on { table.extrapolated() } else { table }]
     }
     (
-        with_table_options(drag, smooth, extrapolated),
-        with_table_options(lift, smooth, extrapolated),
-        with_table_options(moment, smooth, extrapolated),
+        table_with_options(drag, smooth, extrapolated),
+        table_with_options(lift, smooth, extrapolated),
+        table_with_options(moment, smooth, extrapolated),
     )
 }
 

@@ -1,6 +1,6 @@
 //! Directional and adjoint derivatives against central differences that an importer computes from values.
 
-use super::{FOUR_BAR, Fmu, set_options};
+use super::{FOUR_BAR, Fmu, set_option_arguments};
 
 /// Checks that directional and adjoint derivatives are equal, and equal to central differences.
 pub fn check_derivatives(fmu: &Fmu, numbers: [f64; 3], count: usize) {
@@ -23,7 +23,7 @@ fn check_rate_derivatives(fmu: &Fmu, states: usize) {
 
 #[test]
 fn four_bar_has_derivatives() {
-    let values = set_options(FOUR_BAR);
+    let values = set_option_arguments(FOUR_BAR);
     let Some(fmu) =
         Fmu::new("four_bar_derivatives", &[&["../../models/src/four_bar.rs"], &values[..]].concat())
     else {
@@ -37,8 +37,9 @@ fn four_bar_has_derivatives() {
 
 /// A disk that rolls has constraints of velocities and quaternions or angles.
 #[test]
-fn rolling_disk_has_derivatives() {
-    let values = set_options(&["g=9.81", "m=2", "radius=0.4", "q.lean=0.3", "v.roll=6", "v.heading=1"]);
+fn rolling_disk_rate_derivatives_match_differences() {
+    let values =
+        set_option_arguments(&["g=9.81", "m=2", "radius=0.4", "q.lean=0.3", "v.roll=6", "v.heading=1"]);
     let Some(fmu) = Fmu::new("rolling_disk", &[&["../../models/src/rolling_disk.rs"], &values[..]].concat())
     else {
         return;
@@ -49,8 +50,8 @@ fn rolling_disk_has_derivatives() {
 
 /// Mechanisms with contacts have central differences; here the contact is open.
 #[test]
-fn contacts_have_derivatives() {
-    let values = set_options(&["bounce=0.7", "q.height=1.1", "v.height=-2"]);
+fn fmu_with_contacts_has_directional_derivatives() {
+    let values = set_option_arguments(&["bounce=0.7", "q.height=1.1", "v.height=-2"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"], &values[..]].concat();
     let Some(fmu) = Fmu::new("ball_derivatives", &arguments) else { return };
     // Rates of two states and two energies, by two states and one parameter.

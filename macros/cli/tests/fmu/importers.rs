@@ -1,7 +1,7 @@
 //! Importers of others: FMPy, and `fmi-sim`, which is written in Rust. Both read the descriptions and
 //! simulate six mechanisms in both modes.
 
-use super::{TOP, c_compiler, run_linkwork, set_options, simulate_states};
+use super::{TOP, find_c_compiler, run_linkwork, set_option_arguments, simulate_states};
 use linkwork::Table;
 use linkwork_models::Fighter;
 use std::fs;
@@ -18,7 +18,8 @@ struct Case {
 
 impl Case {
     fn new(name: &'static str, file: &[&str], values: &'static [&'static str], euler: f64) -> Case {
-        let arguments = file.iter().copied().chain(set_options(values)).map(ToString::to_string).collect();
+        let arguments =
+            file.iter().copied().chain(set_option_arguments(values)).map(ToString::to_string).collect();
         Case { name, arguments, euler }
     }
 
@@ -27,7 +28,7 @@ impl Case {
     }
 
     /// Exports the mechanism and returns the path of the FMU.
-    fn export(&self, folder: &Path) -> String {
+    fn export_fmu_of_case(&self, folder: &Path) -> String {
         let path = folder.join(format!("{}.fmu", self.name)).to_str().expect("a path in UTF-8").to_string();
         let arguments = [&["export", "fmu", "--out", &path], &self.arguments()[..]].concat();
         run_linkwork(&arguments).unwrap_or_else(|error| panic!("{error}"));
@@ -47,7 +48,7 @@ fn table_lines<const N: usize>(table: &Table<N>) -> String {
 }
 
 /// Returns the F-16 near level flight, with its tables in files.
-fn fighter(folder: &Path) -> Case {
+fn fighter_case(folder: &Path) -> Case {
     let f = Fighter::F16;
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");
     let flight = ["q.flight.z=-3000", "v.flight.vx=150", "v.flight.vz=5", "x.power=20", "u.throttle=0.3"];
@@ -108,7 +109,7 @@ fn fighter(folder: &Path) -> Case {
 }
 
 /// Returns the six mechanisms; the files of tables are written to a folder.
-fn six_cases(folder: &Path) -> Vec<Case> {
+fn fmu_importer_cases(folder: &Path) -> Vec<Case> {
     fs::create_dir_all(folder).expect("a folder of the tests");
     vec![
         Case::new(
@@ -130,7 +131,7 @@ fn six_cases(folder: &Path) -> Vec<Case> {
             1e-2,
         ),
         Case::new("ur5", &["../../models/urdf/ur5.urdf"], &[], 1e-2),
-        fighter(folder),
+        fighter_case(folder),
         Case::new("top", &["../../models/src/heavy_top.rs"], TOP, 5e-2),
     ]
 }
@@ -146,12 +147,13 @@ fn test_folder(name: &str) -> PathBuf {
 fn fmpy_validates_and_simulates() {
     let python = std::env::var("LINKWORK_PYTHON").unwrap_or_else(|_| "python3".to_string());
     let has = Command::new(&python).args(["-c", "import fmpy"]).output().is_ok_and(|o| o.status.success());
-    if !has || c_compiler().is_none() {
+    if !has || find_c_compiler().is_none() {
         println!("skipped: there is no FMPy (LINKWORK_PYTHON names a Python that has it)");
         return;
     }
     let folder = test_folder("fmpy");
-    let paths: Vec<String> = six_cases(&folder).iter().map(|case| case.export(&folder)).collect();
+    let paths: Vec<String> =
+        fmu_importer_cases(&folder).iter().map(|case| case.export_fmu_of_case(&folder)).collect();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmu/fmpy_check.py");
     let output = Command::new(&python).arg(script).args(&paths).output().expect("Python starts");
     let error = String::from_utf8_lossy(&output.stderr);
@@ -159,20 +161,20 @@ fn fmpy_validates_and_simulates() {
 }
 
 /// Returns the checksum of an archive's file (CRC-32 of ISO 3309).
-fn checksum(bytes: &[u8]) -> u32 {
-    let step = |sum: u32| (sum >> 1) ^ (0xedb8_8320 & 0_u32.wrapping_sub(sum & 1));
-    let add_byte = |sum: u32, byte: &u8| (0..8).fold(sum ^ u32::from(*byte), |sum, _| step(sum));
-    !bytes.iter().fold(!0, add_byte)
+fn archive_crc32(bytes: &[u8]) -> u32 {
+    let crc_bit_step = |sum: u32| (sum >> 1) ^ (0xedb8_8320 & 0_u32.wrapping_sub(sum & 1));
+    let crc_with_byte = |sum: u32, byte: &u8| (0..8).fold(sum ^ u32::from(*byte), |sum, _| crc_bit_step(sum));
+    !bytes.iter().fold(!0, crc_with_byte)
 }
 
 /// Replaces the units of variables by blanks in the description, the first file of an archive. The standard
 /// has them, but the reader of fmi-sim 0.7 rejects the attribute.
 fn blank_units(path: &str) {
     let mut archive = fs::read(path).expect("an archive");
-    let number_at = |at: usize, count: usize| {
+    let little_endian_number_at = |at: usize, count: usize| {
         archive[at..at + count].iter().rev().fold(0, |n, b| n << 8 | usize::from(*b))
     };
-    let (size, start) = (number_at(18, 4), 30 + number_at(26, 2));
+    let (size, start) = (little_endian_number_at(18, 4), 30 + little_endian_number_at(26, 2));
     let text = String::from_utf8(archive[start..start + size].to_vec()).expect("a text");
     let mut blank = String::new();
     let mut rest = text.as_str();
@@ -183,7 +185,7 @@ fn blank_units(path: &str) {
         rest = &rest[end..];
     }
     blank += rest;
-    let sum = checksum(blank.as_bytes()).to_le_bytes();
+    let sum = archive_crc32(blank.as_bytes()).to_le_bytes();
     archive[start..start + size].copy_from_slice(blank.as_bytes());
     archive[14..18].copy_from_slice(&sum);
     let directory = archive.windows(4).position(|bytes| bytes == b"PK\x01\x02").expect("a directory");
@@ -213,13 +215,13 @@ fn fmi_sim_states(program: &str, path: &str, [mode, interval]: [&str; 2], count:
 fn fmi_sim_simulates() {
     let program = std::env::var("LINKWORK_FMI_SIM").unwrap_or_else(|_| "fmi-sim".to_string());
     let has = Command::new(&program).arg("--version").output().is_ok();
-    if !has || c_compiler().is_none() {
+    if !has || find_c_compiler().is_none() {
         println!("skipped: there is no fmi-sim (cargo install fmi-sim, or LINKWORK_FMI_SIM names it)");
         return;
     }
     let folder = test_folder("fmi_sim");
-    for case in six_cases(&folder) {
-        let path = case.export(&folder);
+    for case in fmu_importer_cases(&folder) {
+        let path = case.export_fmu_of_case(&folder);
         blank_units(&path);
         let expected = match case.name {
             // After 0.45 s the ball falls from 1 m to the floor, and leaves it with 0.7 of its speed.

@@ -1,6 +1,6 @@
 //! FMUs whose binary contains the run-time library, which simulates contacts with friction.
 
-use super::{c_compiler, compare_states, run_linkwork, set_options, unpack_archive};
+use super::{compare_states, find_c_compiler, run_linkwork, set_option_arguments, unpack_archive};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,8 +19,8 @@ fn library_file() -> Option<PathBuf> {
 
 /// Exports a mechanism with the library, and compiles the importer with its binary. Returns the program and
 /// the token.
-fn importer_of(name: &str, arguments: &[&str]) -> Option<(PathBuf, String)> {
-    let (compiler, library) = (c_compiler()?, library_file()?);
+fn export_and_compile_importer(name: &str, arguments: &[&str]) -> Option<(PathBuf, String)> {
+    let (compiler, library) = (find_c_compiler()?, library_file()?);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join(name);
     fs::create_dir_all(&folder).expect("a folder of the tests");
     let archive = folder.join("model.fmu");
@@ -77,16 +77,17 @@ fn co_simulate(program: &Path, token: &str, stop: f64, samples: usize) -> Vec<Ve
 /// A box slides `v² / (2 μ g)` on a rough floor and stays there. The motion equals that of the command.
 #[test]
 fn a_box_slides_and_stops() {
-    let values = set_options(&["q.pose.z=0.05", "v.pose.vx=1"]);
+    let values = set_option_arguments(&["q.pose.z=0.05", "v.pose.vx=1"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "Crate"], &values[..]].concat();
-    let Some((program, token)) = importer_of("crate", &arguments) else { return };
+    let Some((program, token)) = export_and_compile_importer("crate", &arguments) else { return };
     let rows = co_simulate(&program, &token, 0.3, 3);
     let last = &rows[3];
     assert!((last[1] - 1.0 / (2.0 * 0.4 * 9.81)).abs() < 1e-4 && (last[3] - 0.05).abs() < 1e-6, "{last:?}");
     let times = ["--duration", "0.3", "--every", "0.1"];
     let text = run_linkwork(&[&["simulate"], &arguments[..], &times].concat()).expect("a motion");
-    let read_row = |line: &str| line.split(',').map(|x| x.parse().expect("a number")).collect::<Vec<f64>>();
-    let expected: Vec<Vec<f64>> = text.lines().skip(1).map(read_row).collect();
+    let parse_number_row =
+        |line: &str| line.split(',').map(|x| x.parse().expect("a number")).collect::<Vec<f64>>();
+    let expected: Vec<Vec<f64>> = text.lines().skip(1).map(parse_number_row).collect();
     compare_states("crate", &rows, &expected, 1e-9);
     let restored =
         Command::new(&program).args(["states", &token, "0", "0", "0"]).output().expect("it starts");
@@ -98,9 +99,9 @@ fn a_box_slides_and_stops() {
 /// A ball with Poisson's restitution rebounds to a quarter of the height from which it falls.
 #[test]
 fn a_ball_bounces_with_restitution_of_poisson() {
-    let values = set_options(&["bounce=0.5", "q.height=1"]);
+    let values = set_option_arguments(&["bounce=0.5", "q.height=1"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "Stack"], &values[..]].concat();
-    let Some((program, token)) = importer_of("stack", &arguments) else { return };
+    let Some((program, token)) = export_and_compile_importer("stack", &arguments) else { return };
     let fall = (2.0 * 0.9 / 9.81_f64).sqrt();
     let last = co_simulate(&program, &token, 1.5 * fall, 1).pop().expect("rows");
     assert!((last[1] - 0.1 - 0.9 / 4.0).abs() < 1e-2 && last[2].abs() < 2e-2, "{last:?}");

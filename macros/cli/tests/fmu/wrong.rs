@@ -1,16 +1,16 @@
 //! Wrong calls: each is an error with a message, and changes nothing.
 
-use super::{Fmu, set_options};
+use super::{Fmu, set_option_arguments};
 use std::process::Command;
 
 #[test]
 fn wrong_calls_and_values_are_errors_with_messages() {
-    let values = set_options(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
+    let values = set_option_arguments(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
     let Some(fmu) = Fmu::new("wrong", &[&["../../models/src/cart_pole.rs"], &values[..]].concat()) else {
         return;
     };
     // The value reference 11 of the pole's mass follows time, 4 states, 4 rates, 1 input and the cart's mass.
-    let found = fmu.importer_lines("errors", [0.0, 11.0, 0.0]);
+    let found = fmu.output_lines_of_importer("errors", [0.0, 11.0, 0.0]);
     let expected = [
         "3 fmi3Instantiate: the instantiation token is not that of modelDescription.xml",
         "3 fmi3InstantiateCoSimulation: there is no Event Mode and no intermediate update",
@@ -51,11 +51,18 @@ fn random_calls_do_no_harm() {
         .output()
         .is_ok_and(|output| output.status.success());
     let more: &[&str] = if has_sanitizers { &[sanitizers, "-fno-sanitize-recover=all"] } else { &[] };
-    let cart = set_options(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
-    let four_bar = set_options(&["g=9.81", "density=1", "a=0.3", "b=1", "c=0.8", "d=0.9", "q.input=1"]);
-    let door = set_options(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
-    let top =
-        set_options(&["g=9.81", "mass=1", "height=0.2", "axial=0.02", "transverse=0.03", "v.tip.wz=20"]);
+    let cart = set_option_arguments(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
+    let four_bar =
+        set_option_arguments(&["g=9.81", "density=1", "a=0.3", "b=1", "c=0.8", "d=0.9", "q.input=1"]);
+    let door = set_option_arguments(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
+    let top = set_option_arguments(&[
+        "g=9.81",
+        "mass=1",
+        "height=0.2",
+        "axial=0.02",
+        "transverse=0.03",
+        "v.tip.wz=20",
+    ]);
     let all: [(&str, &[&str], &[&str]); 4] = [
         ("random_cart", &["../../models/src/cart_pole.rs"], &cart),
         ("random_four_bar", &["../../models/src/four_bar.rs"], &four_bar),
@@ -65,7 +72,7 @@ fn random_calls_do_no_harm() {
     for (name, file, values) in all {
         let Some(fmu) = Fmu::with_importer(name, &[file, values].concat(), "attack.c", more) else { return };
         let variables = fmu.description.matches("<Float64 ").count();
-        let lines = fmu.attack_lines(variables, 60);
+        let lines = fmu.random_call_output_lines(variables, 60);
         let last: Vec<usize> =
             lines[lines.len() - 1].split_whitespace().filter_map(|word| word.parse().ok()).collect();
         assert_eq!(last[0], 0, "{name}: {lines:?}");

@@ -214,7 +214,7 @@ fn contacts_simulated_by_pages_have_closed_forms() {
             #[contact(ball.sphere(0.1), ground.plane(z), friction = 0.3)] floor: Contact,
         }";
     std::fs::write(here.join("contacts.rs"), text).unwrap();
-    let simulate_with_values = |name: &str, values: &[&str], seconds: f64| {
+    let simulate_page_with_values = |name: &str, values: &[&str], seconds: f64| {
         let set: Vec<&str> = values.iter().flat_map(|value| ["--set", value]).collect();
         simulate_page(
             &here,
@@ -225,16 +225,16 @@ fn contacts_simulated_by_pages_have_closed_forms() {
     };
     // The highest point after the first impact: as long again as half of the fall.
     let fall = (2.0 * 0.9 / 9.81_f64).sqrt();
-    let Some(top) = simulate_with_values("Bouncing", &["q.height=1"], 1.5 * fall) else { return };
+    let Some(top) = simulate_page_with_values("Bouncing", &["q.height=1"], 1.5 * fall) else { return };
     assert!((top[0] - 0.1 - 0.9 / 4.0).abs() < 1e-3 && top[1].abs() < 5e-3, "{top:?}");
-    let at_rest = simulate_with_values("Bouncing", &["q.height=1"], 3.0).unwrap();
+    let at_rest = simulate_page_with_values("Bouncing", &["q.height=1"], 3.0).unwrap();
     assert!((at_rest[0] - 0.1).abs() < 1e-5 && at_rest[1].abs() < 1e-5, "{at_rest:?}");
-    let block = simulate_with_values("Sliding", &["q.pose.z=0.05", "v.pose.vx=2"], 1.0).unwrap();
+    let block = simulate_page_with_values("Sliding", &["q.pose.z=0.05", "v.pose.vx=2"], 1.0).unwrap();
     assert!(
         (block[0] - 4.0 / (2.0 * 0.3 * 9.81)).abs() < 1e-5 && (block[2] - 0.05).abs() < 1e-9,
         "{block:?}"
     );
-    let ball = simulate_with_values("Rolling", &["q.pose.z=0.1", "v.pose.vx=2"], 1.0).unwrap();
+    let ball = simulate_page_with_values("Rolling", &["q.pose.z=0.1", "v.pose.vx=2"], 1.0).unwrap();
     let energy = (5.0 / 7.0 * 2.0_f64).powi(2) * 1.4;
     assert!((ball[ball.len() - 3] - energy).abs() < 1e-5 && (ball[2] - 0.1).abs() < 1e-9, "{ball:?}");
 }

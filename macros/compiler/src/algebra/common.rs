@@ -1,6 +1,6 @@
 //! Extraction of common factors from the items of a sum, as long as it reduces the number of printed symbols.
 
-use super::item::{Item, Order, SumFactor, common_number_factor, is_close};
+use super::item::{Item, PrintOrder, SumFactor, common_number_factor, is_close};
 use super::polynomial::Monomial;
 
 /// Maximum number of items of a sum that are searched for common factors: longer sums are not readable
@@ -26,10 +26,14 @@ pub enum FactorScope {
 }
 
 /// Extracts common factors from a sum and from the sums in its items.
-pub fn factor_sum_and_items(order: &Order, mut items: Vec<Item>, scope: FactorScope) -> Vec<Item> {
+pub fn extract_common_factors_of_sum(
+    order: &PrintOrder,
+    mut items: Vec<Item>,
+    scope: FactorScope,
+) -> Vec<Item> {
     let kept =
         if scope == FactorScope::Kinds { order.rates.union_of_bits(order.positions) } else { Monomial::ONE };
-    let rules = Rules { order, kept, room: NESTED };
+    let rules = FactoringRules { order, kept, room: NESTED };
     factor_sums(&rules, &mut items);
     let degree_of_rates = |item: &Item| item.factor.restrict_to_mask(order.rates).degree();
     let mut kinds: Vec<u32> = match scope {
@@ -48,23 +52,23 @@ pub fn factor_sum_and_items(order: &Order, mut items: Vec<Item>, scope: FactorSc
 }
 
 /// Rules for extracting common factors from a sum.
-struct Rules<'a> {
-    order: &'a Order,
+struct FactoringRules<'a> {
+    order: &'a PrintOrder,
     /// Mask of the atoms that must not be extracted as factors.
     kept: Monomial,
     /// Maximum nesting depth of parentheses within an item.
     room: usize,
 }
 
-impl Rules<'_> {
+impl FactoringRules<'_> {
     /// Returns the rules for a sum in parentheses, which may contain one level of parentheses less.
     fn rules_in_parentheses(&self) -> Self {
-        Rules { room: self.room.saturating_sub(1), ..*self }
+        FactoringRules { room: self.room.saturating_sub(1), ..*self }
     }
 }
 
 /// Extracts common factors from the sums within items.
-fn factor_sums(rules: &Rules<'_>, items: &mut [Item]) {
+fn factor_sums(rules: &FactoringRules<'_>, items: &mut [Item]) {
     let inner = rules.rules_in_parentheses();
     for item in items {
         for sum in item.sums.iter_mut().filter(|sum| sum.power == 1) {
@@ -95,7 +99,7 @@ fn unwrap_single_sums(item: &mut Item) {
 
 /// Extracts common factors from a sum, except the atoms in `rules.kept`. In a short sum, every group of items
 /// is tried first, and the shortest result is used.
-fn factor_sum(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
+fn factor_sum(rules: &FactoringRules<'_>, items: Vec<Item>) -> Vec<Item> {
     let mut best = factor_greedily(rules, items.clone());
     if items.len() > FEW {
         return best;
@@ -110,7 +114,7 @@ fn factor_sum(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
 }
 
 /// Repeatedly takes out the common factor that saves the most symbols.
-fn factor_greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
+fn factor_greedily(rules: &FactoringRules<'_>, mut items: Vec<Item>) -> Vec<Item> {
     while items.len() <= MOST {
         let mut best: Option<CommonFactorGroup> = None;
         for group in shortening_groups(rules, &items) {
@@ -134,7 +138,7 @@ struct CommonFactorGroup {
 }
 
 /// Replaces the members of a group by the factored item.
-fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: CommonFactorGroup) -> Vec<Item> {
+fn replace_group(rules: &FactoringRules<'_>, mut items: Vec<Item>, group: CommonFactorGroup) -> Vec<Item> {
     let CommonFactorGroup { members, mut whole, .. } = group;
     if let Some(last) = whole.sums.last_mut() {
         last.items = factor_greedily(&rules.rules_in_parentheses(), std::mem::take(&mut last.items));
@@ -153,23 +157,24 @@ fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: CommonFactorGro
 
 /// Returns the groups of items whose factored form is shorter than their sum, within the allowed nesting
 /// depth.
-fn shortening_groups(rules: &Rules<'_>, items: &[Item]) -> Vec<CommonFactorGroup> {
-    let size_of_items = |items: &[Item]| rules.order.printed_length(items);
-    let group_of_members = |members: Vec<usize>| {
+fn shortening_groups(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<CommonFactorGroup> {
+    let printed_length_of_items = |items: &[Item]| rules.order.printed_length(items);
+    let combined_group = |members: Vec<usize>| {
         let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
-        let whole = combine_items(rules, &before, members.len() == items.len())?;
-        let saved = size_of_items(&before).checked_sub(size_of_items(std::slice::from_ref(&whole)))?;
+        let whole = factored_sum_of_items(rules, &before, members.len() == items.len())?;
+        let saved = printed_length_of_items(&before)
+            .checked_sub(printed_length_of_items(std::slice::from_ref(&whole)))?;
         (saved > 0 && nesting_depth(&whole) <= rules.room).then_some(CommonFactorGroup {
             members,
             whole,
             saved,
         })
     };
-    candidate_item_sets(rules, items).into_iter().filter_map(group_of_members).collect()
+    candidate_item_sets(rules, items).into_iter().filter_map(combined_group).collect()
 }
 
 /// Returns the sets of at least two items that share an atom or a sum.
-fn candidate_item_sets(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
+fn candidate_item_sets(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
     let mut add = |has: &dyn Fn(&Item) -> bool| {
         let members: Vec<usize> = (0..items.len()).filter(|k| has(&items[*k])).collect();
@@ -191,7 +196,7 @@ fn candidate_item_sets(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
 /// Returns the sum of items as one item: their common factors times the sum of the quotients. The first
 /// summand in parentheses is positive. If the first summand is a negative multiple of an acceleration, and
 /// `items` are not the whole sum, the sign is taken out; otherwise a positive summand is moved to the front.
-fn combine_items(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
+fn factored_sum_of_items(rules: &FactoringRules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     let first = items.first()?;
     let factor = items
         .iter()

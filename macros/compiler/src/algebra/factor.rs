@@ -1,8 +1,8 @@
 //! Grouping of polynomials as in textbooks: by rates, then by functions of positions, with parameters as
 //! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
-use super::common::{FactorScope, factor_sum_and_items};
-use super::item::{Item, Order, SumFactor, common_number_factor, is_close};
+use super::common::{FactorScope, extract_common_factors_of_sum};
+use super::item::{Item, PrintOrder, SumFactor, common_number_factor, is_close};
 use super::polynomial::{AtomRank, Monomial, Polynomial, Ring, Term};
 
 /// Relative magnitude below which a coefficient counts as rounding error among similar terms.
@@ -11,9 +11,9 @@ const NOISE: f64 = 1e-11;
 /// Removes terms that are rounding error: their coefficients are small relative to other terms with the same
 /// parameters and the same degrees in velocities and accelerations.
 pub fn remove_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
-    let parameters = ring.mask_of_atoms(|_, rank| rank == AtomRank::Parameter);
-    let rates = ring.mask_of_atoms(|_, rank| rank >= AtomRank::Rate);
-    let accelerations = ring.mask_of_atoms(|_, rank| rank == AtomRank::Acceleration);
+    let parameters = ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Parameter);
+    let rates = ring.mask_of_selected_atoms(|_, rank| rank >= AtomRank::Rate);
+    let accelerations = ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Acceleration);
     let kind_of_term = |t: &Term| {
         let rates = t.monomial.restrict_to_mask(rates);
         (t.monomial.restrict_to_mask(parameters), rates.degree(), rates.intersects_mask(accelerations))
@@ -35,17 +35,17 @@ pub fn remove_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
 
 /// Returns the items of a polynomial in printing order. `scope` selects the items from which common factors
 /// are taken out.
-pub fn items_of_polynomial(ring: &Ring, order: &Order, p: &Polynomial, scope: FactorScope) -> Vec<Item> {
+pub fn items_of_polynomial(ring: &Ring, order: &PrintOrder, p: &Polynomial, scope: FactorScope) -> Vec<Item> {
     let mut items = Vec::new();
     let mut groups = group_by_mask(&p.terms, order.rates);
-    order.sort_groups(ring, &mut groups);
+    order.sort_term_groups(ring, &mut groups);
     for (rates, terms) in groups {
         if rates != Monomial::ONE {
             items.push(factored_item(order, &terms));
             continue;
         }
         let mut groups = group_by_mask(&terms, order.functions);
-        order.sort_groups(ring, &mut groups);
+        order.sort_term_groups(ring, &mut groups);
         groups.sort_by_key(|(functions, _)| *functions != Monomial::ONE);
         for (functions, terms) in groups {
             match functions {
@@ -54,7 +54,7 @@ pub fn items_of_polynomial(ring: &Ring, order: &Order, p: &Polynomial, scope: Fa
             }
         }
     }
-    factor_sum_and_items(order, items, scope)
+    extract_common_factors_of_sum(order, items, scope)
 }
 
 /// Groups terms by the factors that are in a mask.
@@ -72,8 +72,8 @@ fn group_by_mask(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
 
 /// Appends the items of terms in parameters and positions alone: first squares of linear forms, then groups
 /// with identical positions, then groups with any common factor.
-fn append_plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
-    order.sort_terms(&mut terms);
+fn append_plain_items(order: &PrintOrder, mut terms: Vec<Term>, items: &mut Vec<Item>) {
+    order.sort_terms_for_printing(&mut terms);
     while let Some(square) = terms.iter().find_map(|t| find_squared_sum(order, t, &terms)) {
         let all = expand_square(&square);
         terms.retain(|t| !all.iter().any(|s| s.monomial == t.monomial));
@@ -87,7 +87,7 @@ fn append_plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>
     while let Some(first) = terms.first().copied() {
         let count_terms_with_atom =
             |k: usize| terms.iter().filter(|t| t.monomial.power_of_atom(k) > 0).count();
-        let of_first = order.factors_in_order(first.monomial).into_iter().map(|(k, _)| k);
+        let of_first = order.factors_in_printing_order(first.monomial).into_iter().map(|(k, _)| k);
         let best = of_first.rev().max_by_key(|k| count_terms_with_atom(*k));
         let (group, rest) = terms
             .iter()
@@ -101,7 +101,7 @@ fn append_plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>
 
 /// Returns the square of a sum whose first summand is the squared position in `leading`, if all terms of the
 /// expanded square are among `terms`.
-fn find_squared_sum(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
+fn find_squared_sum(order: &PrintOrder, leading: &Term, terms: &[Term]) -> Option<Item> {
     let positions = leading.monomial.restrict_to_mask(order.positions);
     let (x, _) = positions.atoms_with_powers().find(|(_, power)| *power == 2)?;
     let rest = leading.monomial.quotient(Monomial::first_power_of_atom(x));
@@ -138,14 +138,14 @@ fn expand_square(square: &Item) -> Vec<Term> {
 
 /// Returns the common factor of all terms times the sum of the quotients, which is grouped by functions of
 /// positions once more.
-fn factored_item(order: &Order, terms: &[Term]) -> Item {
+fn factored_item(order: &PrintOrder, terms: &[Term]) -> Item {
     let first = terms.first().map_or(Monomial::ONE, |t| t.monomial);
     let factor = terms.iter().fold(first, |m, t| m.greatest_common_divisor(t.monomial));
     if let [only] = terms {
         return Item::item_without_sums(only.coefficient, factor);
     }
     let mut terms = terms.to_vec();
-    order.sort_terms(&mut terms);
+    order.sort_terms_for_printing(&mut terms);
     let coefficient = common_number_factor(terms.iter().map(|t| t.coefficient));
     for t in &mut terms {
         *t = Term { monomial: t.monomial.quotient(factor), coefficient: t.coefficient / coefficient };

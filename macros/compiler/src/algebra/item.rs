@@ -34,7 +34,7 @@ impl Item {
 }
 
 /// Order of the factors and terms of printed polynomials.
-pub struct Order {
+pub struct PrintOrder {
     /// All atoms of the ring, in the order in which factors are printed.
     pub atoms: Vec<usize>,
     /// Mask of the atoms that are velocities, functions of velocities, accelerations or inputs.
@@ -74,19 +74,19 @@ fn sort_key_of_atom(ring: &Ring, atom: usize) -> (AtomRank, u8, Vec<usize>) {
     }
 }
 
-impl Order {
+impl PrintOrder {
     /// Creates the printing order of the atoms of a ring.
-    pub fn new(ring: &Ring) -> Order {
+    pub fn new(ring: &Ring) -> PrintOrder {
         let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
         atoms.sort_by_cached_key(|k| sort_key_of_atom(ring, *k));
-        Order {
+        PrintOrder {
             atoms,
-            rates: ring.mask_of_atoms(|_, rank| rank >= AtomRank::Rate),
-            accelerations: ring.mask_of_atoms(|_, rank| rank == AtomRank::Acceleration),
-            functions: ring.mask_of_atoms(|_, rank| rank == AtomRank::Function),
-            positions: ring.mask_of_atoms(|_, rank| rank == AtomRank::Position),
-            parameters: ring.mask_of_atoms(|_, rank| rank == AtomRank::Parameter),
-            sizes: atom_lengths(ring),
+            rates: ring.mask_of_selected_atoms(|_, rank| rank >= AtomRank::Rate),
+            accelerations: ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Acceleration),
+            functions: ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Function),
+            positions: ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Position),
+            parameters: ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Parameter),
+            sizes: printed_atom_lengths(ring),
         }
     }
 
@@ -106,12 +106,12 @@ impl Order {
 
     fn printed_item_length(&self, item: &Item) -> usize {
         let of_sums = item.sums.iter().map(|sum| self.printed_length(&sum.items)).sum::<usize>();
-        let factors = size_of_monomial(&self.sizes, item.factor) + of_sums;
+        let factors = printed_length_of_monomial(&self.sizes, item.factor) + of_sums;
         factors + usize::from(factors == 0 || !is_close(item.coefficient.abs(), 1.0))
     }
 
     /// Returns the factors of a monomial, atom and power, in printing order.
-    pub fn factors_in_order(&self, m: Monomial) -> Vec<(usize, u8)> {
+    pub fn factors_in_printing_order(&self, m: Monomial) -> Vec<(usize, u8)> {
         let powers = self.atoms.iter().map(|k| (*k, m.power_of_atom(*k)));
         powers.filter(|(_, n)| *n > 0).collect()
     }
@@ -122,7 +122,7 @@ impl Order {
     }
 
     /// Sorts terms: ascending degree in functions of positions, then by their factors, high powers first.
-    pub fn sort_terms(&self, terms: &mut [Term]) {
+    pub fn sort_terms_for_printing(&self, terms: &mut [Term]) {
         terms.sort_by_cached_key(|t| {
             let powers: Vec<Reverse<u8>> =
                 self.atoms.iter().map(|k| Reverse(t.monomial.power_of_atom(*k))).collect();
@@ -131,7 +131,7 @@ impl Order {
     }
 
     /// Sorts groups of terms: accelerations first, then rates, then positions, and high powers first.
-    pub fn sort_groups(&self, ring: &Ring, groups: &mut [(Monomial, Vec<Term>)]) {
+    pub fn sort_term_groups(&self, ring: &Ring, groups: &mut [(Monomial, Vec<Term>)]) {
         groups.sort_by_cached_key(|(key, _)| {
             let rank = key.atoms_with_powers().map(|(k, _)| ring.ranks[k]).max();
             let powers: Vec<Reverse<u8>> =
@@ -142,32 +142,37 @@ impl Order {
 }
 
 /// Returns the printed length of each atom: its number of names, numbers and functions.
-fn atom_lengths(ring: &Ring) -> Vec<usize> {
+fn printed_atom_lengths(ring: &Ring) -> Vec<usize> {
     let mut sizes = Vec::with_capacity(ring.atoms.len());
     for atom in &ring.atoms {
-        let size_of_polynomial = |p: &Polynomial| -> usize {
+        let printed_length_of_polynomial = |p: &Polynomial| -> usize {
             let numeric_factor_count =
                 |t: &Term| usize::from(t.monomial == Monomial::ONE || !is_close(t.coefficient.abs(), 1.0));
-            p.terms.iter().map(|t| size_of_monomial(&sizes, t.monomial) + numeric_factor_count(t)).sum()
+            p.terms
+                .iter()
+                .map(|t| printed_length_of_monomial(&sizes, t.monomial) + numeric_factor_count(t))
+                .sum()
         };
         let angle_term_count =
             |w: &Wave| w.angle.iter().map(|n| usize::from(*n != 0) + usize::from(n.abs() > 1)).sum::<usize>();
         let size = match atom {
             Atom::Symbol(_) => 1,
             Atom::Wave(w) => 1 + angle_term_count(w),
-            Atom::Inverse(p) => size_of_polynomial(p),
-            Atom::Call(_, p) => 1 + size_of_polynomial(p),
+            Atom::Inverse(p) => printed_length_of_polynomial(p),
+            Atom::Call(_, p) => 1 + printed_length_of_polynomial(p),
             Atom::Atan2(a, b) | Atom::Power(a, b) | Atom::Extreme(_, a, b) => {
-                1 + size_of_polynomial(a) + size_of_polynomial(b)
+                1 + printed_length_of_polynomial(a) + printed_length_of_polynomial(b)
             }
-            Atom::Table(_, _, arguments) => 1 + arguments.iter().map(size_of_polynomial).sum::<usize>(),
+            Atom::Table(_, _, arguments) => {
+                1 + arguments.iter().map(printed_length_of_polynomial).sum::<usize>()
+            }
         };
         sizes.push(size);
     }
     sizes
 }
 
-fn size_of_monomial(sizes: &[usize], m: Monomial) -> usize {
+fn printed_length_of_monomial(sizes: &[usize], m: Monomial) -> usize {
     m.atoms_with_powers().map(|(k, _)| sizes.get(k).copied().unwrap_or(1)).sum()
 }
 

@@ -11,7 +11,7 @@ const UNKNOWN: u32 = u32::MAX;
 const MULTIPLE: f64 = 4.0;
 
 /// Cache of the polynomial normal forms of the expressions of one graph.
-pub struct Normal<'g> {
+pub struct NormalFormCache<'g> {
     graph: &'g Graph,
     /// Ring of all cached polynomials.
     pub ring: Ring,
@@ -20,10 +20,10 @@ pub struct Normal<'g> {
     polynomials: Vec<Polynomial>,
 }
 
-impl<'g> Normal<'g> {
+impl<'g> NormalFormCache<'g> {
     /// Creates an empty cache. `rank` returns the rank of a symbol.
-    pub fn new(graph: &'g Graph, rank: fn(Symbol) -> AtomRank) -> Normal<'g> {
-        Normal { graph, ring: Ring::new(rank), known: Vec::new(), polynomials: Vec::new() }
+    pub fn new(graph: &'g Graph, rank: fn(Symbol) -> AtomRank) -> NormalFormCache<'g> {
+        NormalFormCache { graph, ring: Ring::new(rank), known: Vec::new(), polynomials: Vec::new() }
     }
 
     /// Returns the normal form of `e`, `None` if it exceeds the limits of the ring.
@@ -44,7 +44,7 @@ impl<'g> Normal<'g> {
             });
             if todo.len() == before {
                 self.ring.spend_steps(1)?;
-                let polynomial = self.expand_node(id)?;
+                let polynomial = self.expand_node_to_polynomial(id)?;
                 self.known[id as usize] = self.polynomials.len() as u32;
                 self.polynomials.push(polynomial);
                 todo.pop();
@@ -53,7 +53,7 @@ impl<'g> Normal<'g> {
         Some(self.polynomials[self.known[e.id() as usize] as usize].clone())
     }
 
-    fn expand_node(&mut self, id: Id) -> Option<Polynomial> {
+    fn expand_node_to_polynomial(&mut self, id: Id) -> Option<Polynomial> {
         let polynomial_of_node = |id: Id| &self.polynomials[self.known[id as usize] as usize];
         let atom = match self.graph.node(id) {
             // This constant only prevents NaN for the direction of a zero-length vector. The equations do not
@@ -77,8 +77,12 @@ impl<'g> Normal<'g> {
                 let inverse = inverse(&mut self.ring, polynomial_of_node(b))?;
                 return self.ring.multiply_and_reduce(polynomial_of_node(a), &inverse);
             }
-            Node::Call(Function::Sin, a) => return expand_wave(&mut self.ring, polynomial_of_node(a), false),
-            Node::Call(Function::Cos, a) => return expand_wave(&mut self.ring, polynomial_of_node(a), true),
+            Node::Call(Function::Sin, a) => {
+                return expand_sine_or_cosine(&mut self.ring, polynomial_of_node(a), false);
+            }
+            Node::Call(Function::Cos, a) => {
+                return expand_sine_or_cosine(&mut self.ring, polynomial_of_node(a), true);
+            }
             Node::Symbol(s) => Atom::Symbol(s),
             Node::Call(f, a) => Atom::Call(f, polynomial_of_node(a).clone()),
             Node::Atan2(a, b) => Atom::Atan2(polynomial_of_node(a).clone(), polynomial_of_node(b).clone()),
@@ -104,7 +108,7 @@ impl<'g> Normal<'g> {
 
 /// Expands the sine or cosine of a sum of angles: rotates a point on the unit circle by one angle after
 /// another.
-fn expand_wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomial> {
+fn expand_sine_or_cosine(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomial> {
     let (mut cos, mut sin) = (Polynomial::from_number(1.0), Polynomial::default());
     for term in &argument.terms {
         let size = term.coefficient.abs();
@@ -132,7 +136,7 @@ pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     let common = p.terms.iter().fold(first.monomial, |m, t| m.greatest_common_divisor(t.monomial));
     let mut product = Monomial::ONE;
     for (atom, power) in common.atoms_with_powers() {
-        let inverse = inverse_atom(ring, atom)?;
+        let inverse = monomial_of_inverse_atom(ring, atom)?;
         for _ in 0..power {
             product = product.checked_product(inverse)?;
         }
@@ -148,7 +152,7 @@ pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     Some(Polynomial::single_term(product, 1.0 / first.coefficient))
 }
 
-fn inverse_atom(ring: &mut Ring, atom: usize) -> Option<Monomial> {
+fn monomial_of_inverse_atom(ring: &mut Ring, atom: usize) -> Option<Monomial> {
     if let Some(Atom::Inverse(p)) = ring.atoms.get(atom)
         && let [term] = p.terms.as_slice()
     {

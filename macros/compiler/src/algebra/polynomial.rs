@@ -203,7 +203,7 @@ impl Ring {
     }
 
     /// Raises the limits of the ring to those for equations that the user requests.
-    pub fn raise_limits(&mut self) {
+    pub fn raise_term_limits(&mut self) {
         (self.work, self.terms) = (MORE * WORK, MORE * TERMS);
     }
 
@@ -247,28 +247,28 @@ impl Ring {
             }
         }
         self.ranks.push(self.rank_of_atom(&atom));
-        self.written.push(self.printed_argument_terms(&atom));
+        self.written.push(self.count_printed_argument_terms(&atom));
         self.atoms.push(atom);
         Some(index)
     }
 
     /// Returns the number of terms of a polynomial in printed form. Terms in the arguments of functions, also
     /// nested ones, are counted at each occurrence. The count saturates.
-    pub fn written_terms(&self, p: &Polynomial) -> usize {
+    pub fn printed_term_count(&self, p: &Polynomial) -> usize {
         let nested =
             p.terms.iter().flat_map(|t| t.monomial.atoms_with_powers()).map(|(k, _)| self.written[k]);
         nested.fold(p.terms.len(), usize::saturating_add)
     }
 
-    fn printed_argument_terms(&self, atom: &Atom) -> usize {
+    fn count_printed_argument_terms(&self, atom: &Atom) -> usize {
         match atom {
             Atom::Symbol(_) | Atom::Wave(_) => 0,
-            Atom::Inverse(p) | Atom::Call(_, p) => self.written_terms(p),
+            Atom::Inverse(p) | Atom::Call(_, p) => self.printed_term_count(p),
             Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => {
-                self.written_terms(p).saturating_add(self.written_terms(q))
+                self.printed_term_count(p).saturating_add(self.printed_term_count(q))
             }
             Atom::Table(.., arguments) => {
-                arguments.iter().map(|p| self.written_terms(p)).fold(0, usize::saturating_add)
+                arguments.iter().map(|p| self.printed_term_count(p)).fold(0, usize::saturating_add)
             }
         }
     }
@@ -352,7 +352,7 @@ impl Ring {
         loop {
             let is_reducible_term = |t: &Term| {
                 t.monomial.intersects_mask(self.squared)
-                    || self.cancelling_factor(t.monomial).is_some()
+                    || self.cancelling_atom_pair(t.monomial).is_some()
                     || self.cosine_squared_over_sine(t.monomial).is_some()
             };
             if !p.terms.iter().any(is_reducible_term) {
@@ -367,7 +367,7 @@ impl Ring {
         }
     }
 
-    fn cancelling_factor(&self, m: Monomial) -> Option<Monomial> {
+    fn cancelling_atom_pair(&self, m: Monomial) -> Option<Monomial> {
         let pair = self.inverses.iter().find(|(a, b)| m.power_of_atom(*a) > 0 && m.power_of_atom(*b) > 0)?;
         Monomial::first_power_of_atom(pair.0).checked_product(Monomial::first_power_of_atom(pair.1))
     }
@@ -385,7 +385,7 @@ impl Ring {
     /// Applies one rewrite rule to a term. Returns the term unchanged if no rule applies.
     fn rewrite_term(&self, term: &Term) -> Option<Polynomial> {
         let Term { monomial, coefficient } = *term;
-        if let Some(one) = self.cancelling_factor(monomial) {
+        if let Some(one) = self.cancelling_atom_pair(monomial) {
             return Some(Polynomial::single_term(monomial.quotient(one), coefficient));
         }
         if let Some([inverse, cosine, sine]) = self.cosine_squared_over_sine(monomial) {
@@ -413,18 +413,18 @@ impl Ring {
     }
 
     /// Returns a mask with all bits of the powers of the atoms for which `holds` is true.
-    pub fn mask_of_atoms(&self, holds: impl Fn(&Atom, AtomRank) -> bool) -> Monomial {
+    pub fn mask_of_selected_atoms(&self, holds: impl Fn(&Atom, AtomRank) -> bool) -> Monomial {
         let atoms = self.atoms.iter().zip(&self.ranks).enumerate();
         atoms
             .filter(|(_, (a, r))| holds(a, **r))
-            .fold(Monomial::ONE, |m, (k, _)| m.union_of_bits(Monomial::all_of(k)))
+            .fold(Monomial::ONE, |m, (k, _)| m.union_of_bits(Monomial::power_mask_of_atom(k)))
     }
 
     /// Evaluates a polynomial at these values of the symbols.
     pub fn evaluate_polynomial(&self, p: &Polynomial, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
         let mut values: Vec<f64> = Vec::with_capacity(self.atoms.len());
         for atom in &self.atoms {
-            let value_of_polynomial = |p: &Polynomial| value_at_atoms(p, &values);
+            let value_of_polynomial = |p: &Polynomial| polynomial_value_at_atoms(p, &values);
             values.push(match atom {
                 Atom::Symbol(s) => symbol(*s),
                 Atom::Wave(w) => {
@@ -441,11 +441,11 @@ impl Ring {
                     .evaluate_surrogate(std::array::from_fn(|k| x.get(k).map_or(0.0, value_of_polynomial))),
             });
         }
-        value_at_atoms(p, &values)
+        polynomial_value_at_atoms(p, &values)
     }
 }
 
-fn value_at_atoms(p: &Polynomial, atoms: &[f64]) -> f64 {
+fn polynomial_value_at_atoms(p: &Polynomial, atoms: &[f64]) -> f64 {
     p.terms.iter().map(|t| term_value(t, atoms)).sum()
 }
 

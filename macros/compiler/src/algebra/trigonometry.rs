@@ -17,14 +17,14 @@ const ROUNDING: f64 = 1e-11;
 
 /// A coefficient times a sorted product of sines and cosines.
 #[derive(Clone, Debug, PartialEq)]
-struct Product {
+struct SineCosineProduct {
     waves: Vec<Wave>,
     coefficient: f64,
 }
 
 /// Returns the shortest form found of a polynomial. `None` if the limits of the ring are exceeded.
 pub fn simplify_trigonometry(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
-    let mask = ring.mask_of_atoms(|atom, _| matches!(atom, Atom::Wave(_)));
+    let mask = ring.mask_of_selected_atoms(|atom, _| matches!(atom, Atom::Wave(_)));
     let mut terms = p.terms.clone();
     terms.sort_by_key(|t| t.monomial.clear_mask(mask));
     let mut out = Vec::with_capacity(terms.len());
@@ -33,7 +33,7 @@ pub fn simplify_trigonometry(ring: &mut Ring, p: &Polynomial) -> Option<Polynomi
             out.extend_from_slice(group);
             continue;
         }
-        for product in shortest_products(ring, group, mask)? {
+        for product in shortest_trigonometric_products(ring, group, mask)? {
             let mut monomial = group[0].monomial.clear_mask(mask);
             for wave in product.waves {
                 monomial = monomial.checked_product(ring.monomial_of_atom(Atom::Wave(wave))?)?;
@@ -44,8 +44,13 @@ pub fn simplify_trigonometry(ring: &mut Ring, p: &Polynomial) -> Option<Polynomi
     Some(Polynomial::sum_of_terms(out))
 }
 
-fn shortest_products(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Product>> {
-    let products: Vec<Product> = terms.iter().map(|t| split_term_into_waves(ring, t, mask)).collect();
+fn shortest_trigonometric_products(
+    ring: &mut Ring,
+    terms: &[Term],
+    mask: Monomial,
+) -> Option<Vec<SineCosineProduct>> {
+    let products: Vec<SineCosineProduct> =
+        terms.iter().map(|t| split_term_into_waves(ring, t, mask)).collect();
     let degree = terms.iter().map(|t| t.monomial.restrict_to_mask(mask).degree()).max();
     let mut best = merge_product_pairs(ring, products.clone())?;
     if degree <= Some(DEGREE) {
@@ -59,13 +64,16 @@ fn shortest_products(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<
 }
 
 /// Replaces `cos²` by `1 − sin²` in a sum of products.
-fn replace_cosine_squares(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
+fn replace_cosine_squares(
+    ring: &mut Ring,
+    mut products: Vec<SineCosineProduct>,
+) -> Option<Vec<SineCosineProduct>> {
     let mut sum = Vec::new();
     while let Some(mut product) = products.pop() {
         ring.spend_steps(1 + sum.len())?;
         let waves = &product.waves;
         match (1..waves.len()).find(|k| waves[*k].cosine && waves[*k] == waves[k - 1]) {
-            None => collect_product(&mut sum, product),
+            None => add_product_to_sum(&mut sum, product),
             Some(k) => {
                 let mut squared = product.clone();
                 product.waves.drain(k - 1..=k);
@@ -80,7 +88,7 @@ fn replace_cosine_squares(ring: &mut Ring, mut products: Vec<Product>) -> Option
     Some(sum)
 }
 
-fn split_term_into_waves(ring: &Ring, term: &Term, mask: Monomial) -> Product {
+fn split_term_into_waves(ring: &Ring, term: &Term, mask: Monomial) -> SineCosineProduct {
     let mut waves = Vec::new();
     for (atom, power) in term.monomial.restrict_to_mask(mask).atoms_with_powers() {
         if let Atom::Wave(wave) = &ring.atoms[atom] {
@@ -88,24 +96,27 @@ fn split_term_into_waves(ring: &Ring, term: &Term, mask: Monomial) -> Product {
         }
     }
     waves.sort_unstable();
-    Product { waves, coefficient: term.coefficient }
+    SineCosineProduct { waves, coefficient: term.coefficient }
 }
 
 /// Returns the length of a sum: number of terms, number of multiple angles, number of sines and cosines. Sums
 /// are compared in this order.
-fn length(products: &[Product]) -> (usize, usize, usize) {
+fn length(products: &[SineCosineProduct]) -> (usize, usize, usize) {
     let waves_of_products = || products.iter().flat_map(|p| &p.waves);
     let multiples = waves_of_products().filter(|w| w.angle.iter().any(|n| n.abs() > 1)).count();
     (products.len(), multiples, waves_of_products().count())
 }
 
 /// Merges pairs of products until no two of them can be merged.
-fn merge_product_pairs(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
+fn merge_product_pairs(
+    ring: &mut Ring,
+    mut products: Vec<SineCosineProduct>,
+) -> Option<Vec<SineCosineProduct>> {
     'again: loop {
         for j in 1..products.len() {
             for i in 0..j {
                 ring.spend_steps(1)?;
-                let Some(both) = combine_products(&products[i], &products[j]) else { continue };
+                let Some(both) = sum_as_single_product(&products[i], &products[j]) else { continue };
                 products.remove(j);
                 products.remove(i);
                 if both.coefficient != 0.0 {
@@ -119,11 +130,11 @@ fn merge_product_pairs(ring: &mut Ring, mut products: Vec<Product>) -> Option<Ve
 }
 
 /// Returns the sum of two products if the sum is a single product.
-fn combine_products(a: &Product, b: &Product) -> Option<Product> {
+fn sum_as_single_product(a: &SineCosineProduct, b: &SineCosineProduct) -> Option<SineCosineProduct> {
     let ratio = b.coefficient / a.coefficient;
     if a.waves == b.waves {
         let coefficient = if is_close(ratio, -1.0) { 0.0 } else { a.coefficient + b.coefficient };
-        return Some(Product { waves: a.waves.clone(), coefficient });
+        return Some(SineCosineProduct { waves: a.waves.clone(), coefficient });
     }
     if ![1.0, -1.0, -2.0, -0.5].iter().any(|r| is_close(ratio, *r)) {
         return None;
@@ -138,7 +149,7 @@ fn combine_products(a: &Product, b: &Product) -> Option<Product> {
     };
     common.extend(sum);
     common.sort_unstable();
-    Some(Product { waves: common, coefficient })
+    Some(SineCosineProduct { waves: common, coefficient })
 }
 
 fn is_close(a: f64, b: f64) -> bool {
@@ -167,27 +178,29 @@ fn apply_sum_rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)
         }
         ([], [a, b]) if a == b && has_coefficient_ratio(-2.0) => {
             let sign = if a.cosine { -1.0 } else { 1.0 };
-            Some(normalised_wave(true, combine_angles(a, b, 1), sign))
+            Some(normalised_wave(true, signed_sum_of_wave_angles(a, b, 1), sign))
         }
-        ([], [a]) if a.cosine => apply_half_angle_rule(&Wave { angle: [0; ANGLES], cosine: true }, a, ratio),
-        ([a], [b]) if a.cosine == b.cosine => apply_half_angle_rule(a, b, ratio),
-        ([a, b], [c, d]) => angle_sum([a, b], [c, d], ratio),
+        ([], [a]) if a.cosine => {
+            apply_sum_to_product_rule(&Wave { angle: [0; ANGLES], cosine: true }, a, ratio)
+        }
+        ([a], [b]) if a.cosine == b.cosine => apply_sum_to_product_rule(a, b, ratio),
+        ([a, b], [c, d]) => apply_angle_addition_rule([a, b], [c, d], ratio),
         _ => None,
     }
 }
 
 /// Applies `cos a cos b ± sin a sin b = cos(a ∓ b)` or `sin a cos b ± cos a sin b = sin(a ± b)`.
-fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<Wave>, f64)> {
+fn apply_angle_addition_rule([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let sign = [1, -1].into_iter().find(|s| is_close(ratio, f64::from(*s)))?;
     let (first, second) = if a.angle == c.angle { (c, d) } else { (d, c) };
-    let is_sine_cosine_pair = |a: &Wave, b: &Wave| a.angle == b.angle && a.cosine != b.cosine;
-    if !is_sine_cosine_pair(a, first) || !is_sine_cosine_pair(b, second) {
+    let are_sine_and_cosine_of_same_angle = |a: &Wave, b: &Wave| a.angle == b.angle && a.cosine != b.cosine;
+    if !are_sine_and_cosine_of_same_angle(a, first) || !are_sine_and_cosine_of_same_angle(b, second) {
         return None;
     }
     match (a.cosine, b.cosine) {
-        (true, true) => Some(normalised_wave(true, combine_angles(a, b, -sign), 1.0)),
-        (false, true) => Some(normalised_wave(false, combine_angles(a, b, sign), 1.0)),
-        (true, false) => Some(normalised_wave(false, combine_angles(b, a, sign), 1.0)),
+        (true, true) => Some(normalised_wave(true, signed_sum_of_wave_angles(a, b, -sign), 1.0)),
+        (false, true) => Some(normalised_wave(false, signed_sum_of_wave_angles(a, b, sign), 1.0)),
+        (true, false) => Some(normalised_wave(false, signed_sum_of_wave_angles(b, a, sign), 1.0)),
         // With two sines first, `combined` applies the rule with the products exchanged.
         (false, false) => None,
     }
@@ -195,28 +208,28 @@ fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<
 
 /// Applies `cos a + cos b = 2 cos((a+b)/2) cos((a−b)/2)` or the corresponding rules for differences and
 /// sines. `None` if the half angles are not integer multiples.
-fn apply_half_angle_rule(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
+fn apply_sum_to_product_rule(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let sign = [1, -1].into_iter().find(|s| is_close(ratio, f64::from(*s)))?;
-    let (up, down) = (combine_angles(a, b, 1), combine_angles(a, b, -1));
+    let (up, down) = (signed_sum_of_wave_angles(a, b, 1), signed_sum_of_wave_angles(a, b, -1));
     if up.iter().any(|n| n % 2 != 0) {
         return None;
     }
-    let half_of_angle = |angle: [i8; ANGLES]| angle.map(|n| n / 2);
+    let halved_angle_multiples = |angle: [i8; ANGLES]| angle.map(|n| n / 2);
     let ((first, up), (second, down), factor) = match (a.cosine, sign) {
         (true, 1) => ((true, up), (true, down), 2.0),
         (true, _) => ((false, up), (false, down), -2.0),
         (false, 1) => ((false, up), (true, down), 2.0),
         (false, _) => ((true, up), (false, down), 2.0),
     };
-    let (mut waves, f) = normalised_wave(first, half_of_angle(up), factor);
-    let (more, f) = normalised_wave(second, half_of_angle(down), f);
+    let (mut waves, f) = normalised_wave(first, halved_angle_multiples(up), factor);
+    let (more, f) = normalised_wave(second, halved_angle_multiples(down), f);
     waves.extend(more);
     waves.sort_unstable();
     Some((waves, f))
 }
 
 /// Replaces `sin 2a` by `2 sin a cos a`, which can be combined with `sin² a` and `cos² a`.
-fn unfold_double_angle(mut product: Product) -> Product {
+fn unfold_double_angle(mut product: SineCosineProduct) -> SineCosineProduct {
     let is_sine_of_even_angle = |w: &Wave| !w.cosine && w.angle.iter().all(|n| n % 2 == 0);
     while let Some(k) = product.waves.iter().position(is_sine_of_even_angle) {
         let angle = product.waves.remove(k).angle.map(|n| n / 2);
@@ -227,7 +240,7 @@ fn unfold_double_angle(mut product: Product) -> Product {
 }
 
 /// Returns the sum or difference of the angles of two waves.
-fn combine_angles(a: &Wave, b: &Wave, sign: i8) -> [i8; ANGLES] {
+fn signed_sum_of_wave_angles(a: &Wave, b: &Wave, sign: i8) -> [i8; ANGLES] {
     std::array::from_fn(|k| a.angle[k].saturating_add(sign * b.angle[k]))
 }
 
@@ -242,16 +255,16 @@ fn normalised_wave(cosine: bool, angle: [i8; ANGLES], factor: f64) -> (Vec<Wave>
 }
 
 /// Converts a sum of products to a Fourier sum, in which each product has at most one wave.
-fn fourier_sum(ring: &mut Ring, products: &[Product]) -> Option<Vec<Product>> {
-    let mut sum: Vec<Product> = Vec::new();
+fn fourier_sum(ring: &mut Ring, products: &[SineCosineProduct]) -> Option<Vec<SineCosineProduct>> {
+    let mut sum: Vec<SineCosineProduct> = Vec::new();
     for product in products {
-        let mut parts = vec![Product { waves: Vec::new(), coefficient: product.coefficient }];
+        let mut parts = vec![SineCosineProduct { waves: Vec::new(), coefficient: product.coefficient }];
         for wave in &product.waves {
-            parts = parts.iter().flat_map(|p| multiply_by_wave(p, wave)).collect();
+            parts = parts.iter().flat_map(|p| multiply_by_sine_or_cosine(p, wave)).collect();
         }
         ring.spend_steps(parts.len())?;
         for part in parts {
-            collect_product(&mut sum, part);
+            add_product_to_sum(&mut sum, part);
         }
         ring.spend_steps(sum.len())?;
     }
@@ -259,7 +272,7 @@ fn fourier_sum(ring: &mut Ring, products: &[Product]) -> Option<Vec<Product>> {
     Some(sum)
 }
 
-fn collect_product(sum: &mut Vec<Product>, part: Product) {
+fn add_product_to_sum(sum: &mut Vec<SineCosineProduct>, part: SineCosineProduct) {
     match sum.iter_mut().find(|p| p.waves == part.waves) {
         Some(p) if is_close(p.coefficient, -part.coefficient) => p.coefficient = 0.0,
         Some(p) => p.coefficient += part.coefficient,
@@ -269,11 +282,11 @@ fn collect_product(sum: &mut Vec<Product>, part: Product) {
 
 /// Multiplies a product of at most one wave by another wave: returns half the waves of the sum and the
 /// difference of their angles.
-fn multiply_by_wave(p: &Product, b: &Wave) -> Vec<Product> {
+fn multiply_by_sine_or_cosine(p: &SineCosineProduct, b: &Wave) -> Vec<SineCosineProduct> {
     let Some(a) = p.waves.first() else {
-        return vec![Product { waves: vec![*b], coefficient: p.coefficient }];
+        return vec![SineCosineProduct { waves: vec![*b], coefficient: p.coefficient }];
     };
-    let (up, down) = (combine_angles(a, b, 1), combine_angles(a, b, -1));
+    let (up, down) = (signed_sum_of_wave_angles(a, b, 1), signed_sum_of_wave_angles(a, b, -1));
     let half = p.coefficient * 0.5;
     let parts = match (a.cosine, b.cosine) {
         (true, true) => [normalised_wave(true, up, half), normalised_wave(true, down, half)],
@@ -281,6 +294,6 @@ fn multiply_by_wave(p: &Product, b: &Wave) -> Vec<Product> {
         (false, true) => [normalised_wave(false, up, half), normalised_wave(false, down, half)],
         (true, false) => [normalised_wave(false, up, half), normalised_wave(false, down, -half)],
     };
-    let product_of_waves = |(waves, coefficient)| Product { waves, coefficient };
-    parts.into_iter().map(product_of_waves).filter(|p| p.coefficient != 0.0).collect()
+    let product_with_coefficient = |(waves, coefficient)| SineCosineProduct { waves, coefficient };
+    parts.into_iter().map(product_with_coefficient).filter(|p| p.coefficient != 0.0).collect()
 }

@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-11;
 /// Returns a polynomial that equals `p` where the squares of `symbols` sum to one, with fewer terms if one is
 /// found. Returns `p` itself if the ring lacks one of the symbols, and `None` if the work limit of the ring
 /// is exceeded.
-pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Option<Polynomial> {
+pub fn simplify_on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Option<Polynomial> {
     let index_of_symbol_atom = |s: &Symbol| ring.atoms.iter().position(|atom| *atom == Atom::Symbol(*s));
     let Some(atoms) = symbols.iter().map(index_of_symbol_atom).collect::<Option<Vec<usize>>>() else {
         return Some(p.clone());
@@ -75,36 +75,36 @@ mod tests {
         let q = symbols.map(|s| ring.monomial_of_atom(Atom::Symbol(s)).unwrap());
         let quaternion_monomial =
             |list: &[usize]| list.iter().try_fold(Monomial::ONE, |m, k| m.checked_product(q[*k])).unwrap();
-        let quaternion_polynomial = |list: &[(f64, &[usize])]| {
+        let polynomial_in_quaternion = |list: &[(f64, &[usize])]| {
             let terms = list.iter().map(|(c, m)| Term { monomial: quaternion_monomial(m), coefficient: *c });
             Polynomial::sum_of_terms(terms.collect())
         };
         for (from, to) in [
             (
-                quaternion_polynomial(&[(2.0, &[0, 0]), (2.0, &[1, 1]), (2.0, &[2, 2]), (2.0, &[3, 3])]),
-                quaternion_polynomial(&[(2.0, &[])]),
+                polynomial_in_quaternion(&[(2.0, &[0, 0]), (2.0, &[1, 1]), (2.0, &[2, 2]), (2.0, &[3, 3])]),
+                polynomial_in_quaternion(&[(2.0, &[])]),
             ),
             (
-                quaternion_polynomial(&[
+                polynomial_in_quaternion(&[
                     (8.0, &[0, 0, 0, 1]),
                     (8.0, &[0, 1, 1, 1]),
                     (8.0, &[0, 1, 2, 2]),
                     (5.0, &[0, 1, 3, 3]),
                     (1.0, &[2]),
                 ]),
-                quaternion_polynomial(&[(8.0, &[0, 1]), (-3.0, &[0, 1, 3, 3]), (1.0, &[2])]),
+                polynomial_in_quaternion(&[(8.0, &[0, 1]), (-3.0, &[0, 1, 3, 3]), (1.0, &[2])]),
             ),
             // One minus three of the squares is the fourth.
             (
-                quaternion_polynomial(&[(1.0, &[]), (-1.0, &[0, 0]), (-1.0, &[1, 1]), (-1.0, &[2, 2])]),
-                quaternion_polynomial(&[(1.0, &[3, 3])]),
+                polynomial_in_quaternion(&[(1.0, &[]), (-1.0, &[0, 0]), (-1.0, &[1, 1]), (-1.0, &[2, 2])]),
+                polynomial_in_quaternion(&[(1.0, &[3, 3])]),
             ),
             (
-                quaternion_polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
-                quaternion_polynomial(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
+                polynomial_in_quaternion(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
+                polynomial_in_quaternion(&[(1.0, &[]), (-2.0, &[0, 0]), (-2.0, &[1, 1])]),
             ),
         ] {
-            assert_eq!(on_unit_sphere(&mut ring, &from, &symbols), Some(to));
+            assert_eq!(simplify_on_unit_sphere(&mut ring, &from, &symbols), Some(to));
         }
     }
 }

@@ -1,37 +1,40 @@
 //! Rows of the catalogue for the associated constants of generated types.
 
-use super::facts::{Facts, Need};
-use crate::syntax::Word;
+use super::facts::{Facts, FunctionNeed};
+use crate::syntax::RequestOption;
 
 /// Names of the associated constants of mechanisms, with the requirements of each.
-const CONSTANTS: [(&str, &[Need]); 28] = [
-    ("BASE_PARAMETERS", &[Need::Inertia, Need::Asks(Word::Regressor)]),
-    ("BODIES", &[Need::Inertia, Need::Asks(Word::Regressor)]),
+const CONSTANTS: [(&str, &[FunctionNeed]); 28] = [
+    ("BASE_PARAMETERS", &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Regressor)]),
+    ("BODIES", &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Regressor)]),
     ("CONFIGURATION", &[]),
-    ("CONSERVED", &[Need::Inertia, Need::Asks(Word::Conserved)]),
-    ("CONSTRAINTS", &[Need::Constraints]),
-    ("CONTACTS", &[Need::Contacts]),
-    ("CONTACT_ROWS", &[Need::Contacts]),
-    ("CYCLIC", &[Need::Inertia, Need::Asks(Word::Routh), Need::NoConstraints]),
-    ("DRAWING", &[Need::Asks(Word::Drawing)]),
+    ("CONSERVED", &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Conserved)]),
+    ("CONSTRAINTS", &[FunctionNeed::Constraints]),
+    ("CONTACTS", &[FunctionNeed::Contacts]),
+    ("CONTACT_ROWS", &[FunctionNeed::Contacts]),
+    (
+        "CYCLIC",
+        &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Routh), FunctionNeed::NoConstraints],
+    ),
+    ("DRAWING", &[FunctionNeed::Asks(RequestOption::Drawing)]),
     ("EQUATIONS", &[]),
     ("EQUATIONS_LATEX", &[]),
-    ("EQUILIBRIA", &[Need::Inertia, Need::Equilibria]),
-    ("FILE", &[Need::FileParameters]),
+    ("EQUILIBRIA", &[FunctionNeed::Inertia, FunctionNeed::Equilibria]),
+    ("FILE", &[FunctionNeed::FileParameters]),
     ("FRAMES", &[]),
     ("INPUTS", &[]),
-    ("LINEAR_EQUATIONS", &[Need::Inertia, Need::Equilibria]),
-    ("LINEAR_EQUATIONS_LATEX", &[Need::Inertia, Need::Equilibria]),
-    ("LINKS", &[Need::FileInertials]),
-    ("MASS_MATRIX_ENTRIES", &[Need::Inertia, Need::Asks(Word::Packed)]),
-    ("NC", &[Need::Constraints]),
-    ("NH", &[Need::Constraints]),
-    ("NP", &[Need::Constraints]),
+    ("LINEAR_EQUATIONS", &[FunctionNeed::Inertia, FunctionNeed::Equilibria]),
+    ("LINEAR_EQUATIONS_LATEX", &[FunctionNeed::Inertia, FunctionNeed::Equilibria]),
+    ("LINKS", &[FunctionNeed::FileInertials]),
+    ("MASS_MATRIX_ENTRIES", &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Packed)]),
+    ("NC", &[FunctionNeed::Constraints]),
+    ("NH", &[FunctionNeed::Constraints]),
+    ("NP", &[FunctionNeed::Constraints]),
     ("NQ", &[]),
-    ("NS", &[Need::Constraints]),
+    ("NS", &[FunctionNeed::Constraints]),
     ("NU", &[]),
     ("NV", &[]),
-    ("PARAMETERS", &[Need::Inertia, Need::Asks(Word::Sensitivities)]),
+    ("PARAMETERS", &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Sensitivities)]),
     ("VELOCITIES", &[]),
 ];
 
@@ -41,8 +44,9 @@ pub fn is_constant(name: &str) -> bool {
 }
 
 /// Returns the constants that a mechanism with these facts lacks because of a need.
-pub fn absent_constants(need: Need, facts: &Facts) -> Vec<&'static str> {
-    let first_unmet_need = |needs: &[Need]| needs.iter().copied().find(|need| !facts.meets_need(*need));
+pub fn absent_constants(need: FunctionNeed, facts: &Facts) -> Vec<&'static str> {
+    let first_unmet_need =
+        |needs: &[FunctionNeed]| needs.iter().copied().find(|need| !facts.meets_need(*need));
     CONSTANTS
         .iter()
         .filter(|(_, needs)| first_unmet_need(needs) == Some(need))

@@ -1,16 +1,16 @@
 //! Residuals, rates and Jacobians of the constraints, and the eliminations for constrained dynamics.
 
-use super::facts::{ConstraintFacts, Facts, Need};
+use super::facts::{ConstraintFacts, Facts, FunctionNeed};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{Q, Tau, V};
 use super::shape::{Argument, Record, Shape};
-use crate::mechanism::Supplied;
+use crate::mechanism::SuppliedQuantity;
 
-const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
+const SOLVED: &[FunctionNeed] = &[FunctionNeed::Constraints, FunctionNeed::Inertia];
 
 /// Rows of the functions of mechanisms with constraints that are derived from equations.
 pub const ROWS: &[Row] = &[
-    Row::derived_row(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| {
+    Row::derived_row(Id::ConstraintResiduals, "constraint_residuals", &[FunctionNeed::Constraints], |f| {
         Declaration {
             arguments: vec![Q],
             shape: Shape::Vector(constraint_facts(f).holonomic),
@@ -21,25 +21,29 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     }),
-    Row::derived_row(Id::ConstraintRates, "constraint_rates", &[Need::Constraints], |f| Declaration {
-        arguments: vec![Q, V],
-        shape: Shape::Vector(constraint_facts(f).all),
-        docs: vec![
-            "Velocities `J(q) v + …` of all constraints, m/s and rad/s: zero if the constraints are \
+    Row::derived_row(Id::ConstraintRates, "constraint_rates", &[FunctionNeed::Constraints], |f| {
+        Declaration {
+            arguments: vec![Q, V],
+            shape: Shape::Vector(constraint_facts(f).all),
+            docs: vec![
+                "Velocities `J(q) v + …` of all constraints, m/s and rad/s: zero if the constraints are \
              satisfied.",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
-    Row::derived_row(Id::ConstraintJacobian, "constraint_jacobian", &[Need::Constraints], |f| Declaration {
-        arguments: vec![Q],
-        shape: Shape::Matrix(constraint_facts(f).all, f.nv),
-        docs: vec![
-            "Jacobian `J(q)` of the constraints: derivatives of the constraint velocities with respect to \
+    Row::derived_row(Id::ConstraintJacobian, "constraint_jacobian", &[FunctionNeed::Constraints], |f| {
+        Declaration {
+            arguments: vec![Q],
+            shape: Shape::Matrix(constraint_facts(f).all, f.nv),
+            docs: vec![
+                "Jacobian `J(q)` of the constraints: derivatives of the constraint velocities with respect to \
              `v`.",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
-    Row::derived_row(Id::ConstraintBias, "constraint_bias", &[Need::Constraints], |f| Declaration {
+    Row::derived_row(Id::ConstraintBias, "constraint_bias", &[FunctionNeed::Constraints], |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(constraint_facts(f).all),
         docs: vec![
@@ -63,7 +67,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::SlippingResponse,
         "__slipping_response",
-        &[Need::Constraints, Need::Inertia, Need::Slipping],
+        &[FunctionNeed::Constraints, FunctionNeed::Inertia, FunctionNeed::Slipping],
         |f| Declaration {
             arguments: [vec![Q, V, force_argument(f), bias_argument(f)], sliding_signs_argument(f)].concat(),
             shape: constrained_solution_shape(f),
@@ -78,18 +82,18 @@ fn constraint_facts(f: &Facts) -> ConstraintFacts {
 }
 
 fn force_argument(f: &Facts) -> Argument {
-    Argument::Given("force", Supplied::Force, f.nv)
+    Argument::Given("force", SuppliedQuantity::Force, f.nv)
 }
 
 fn bias_argument(f: &Facts) -> Argument {
-    Argument::Given("bias", Supplied::Bias, constraint_facts(f).all)
+    Argument::Given("bias", SuppliedQuantity::Bias, constraint_facts(f).all)
 }
 
 /// Returns the argument with the signs of the normal forces of sliding contacts; an empty list without such
 /// contacts.
 fn sliding_signs_argument(f: &Facts) -> Vec<Argument> {
     let slipping = constraint_facts(f).slipping;
-    if slipping > 0 { vec![Argument::Given("sides", Supplied::Side, slipping)] } else { Vec::new() }
+    if slipping > 0 { vec![Argument::Given("sides", SuppliedQuantity::Side, slipping)] } else { Vec::new() }
 }
 
 /// Returns the shape of the constrained dynamics: accelerations and multipliers with measures of their

@@ -1,13 +1,13 @@
 //! Gap functions of contacts, and their normal and slip velocities.
 
-use super::facts::{Facts, Need};
+use super::facts::{Facts, FunctionNeed};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{self, A, Q, V};
 use super::shape::{Record, Shape};
-use crate::mechanism::{PAIR_POSE, Supplied};
-use crate::syntax::Word;
+use crate::mechanism::{PAIR_POSE, SuppliedQuantity};
+use crate::syntax::RequestOption;
 
-const TOUCHING: &[Need] = &[Need::Contacts];
+const TOUCHING: &[FunctionNeed] = &[FunctionNeed::Contacts];
 
 /// Rows of the functions of mechanisms with contacts.
 pub const ROWS: &[Row] = &[
@@ -57,7 +57,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .without_batch(),
-    Row::derived_row(Id::PolytopePoses, "__polytope_poses", &[Need::Polytopes], |f| Declaration {
+    Row::derived_row(Id::PolytopePoses, "__polytope_poses", &[FunctionNeed::Polytopes], |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(PAIR_POSE * f.polytopes),
         ..Declaration::default()
@@ -66,7 +66,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::ContactResponses,
         "__contact_responses",
-        &[Need::Contacts, Need::Inertia, Need::FewContacts],
+        &[FunctionNeed::Contacts, FunctionNeed::Inertia, FunctionNeed::FewContacts],
         |f| Declaration {
             arguments: vec![Q],
             shape: Shape::Array(f.contacts.rates * (f.nv + f.contacts.rates)),
@@ -77,7 +77,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::ContactDerivatives,
         "__contact_derivatives",
-        &[Need::Contacts, Need::Inertia, Need::Asks(Word::Derivatives)],
+        &[FunctionNeed::Contacts, FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives)],
         |f| Declaration {
             arguments: vec![Q, V, A, contact_forces(f)],
             shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts.rates)),
@@ -89,5 +89,5 @@ pub const ROWS: &[Row] = &[
 
 /// Returns the argument that contains the forces of all contacts.
 pub(super) fn contact_forces(f: &Facts) -> Argument {
-    Argument::Given("forces", Supplied::ContactForces, f.contacts.rates)
+    Argument::Given("forces", SuppliedQuantity::ContactForces, f.contacts.rates)
 }

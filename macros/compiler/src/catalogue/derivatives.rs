@@ -1,27 +1,29 @@
 //! Rows of the catalogue for the functions of the option `derivatives`.
 
-use super::facts::{Facts, Need};
+use super::facts::{Facts, FunctionNeed};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
 use super::shape::{Argument, Called, Record, Shape};
-use crate::mechanism::Supplied;
-use crate::syntax::Word;
+use crate::mechanism::SuppliedQuantity;
+use crate::syntax::RequestOption;
 
 const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and \
                        free joints this is a motion in body axes.";
 const KEPT: &str = "Entries that are always zero are not written: initialise the matrices with zeros once \
                     and pass them again in each call. No large value is moved.";
 
-const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
-const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints];
-const CONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints];
+const ASKED: &[FunctionNeed] = &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives)];
+const UNCONSTRAINED: &[FunctionNeed] =
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::NoConstraints];
+const CONSTRAINED: &[FunctionNeed] =
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::Constraints];
 
 /// Rows of the catalogue for the first derivatives of the dynamics.
 pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::MassMatrixInverse,
         "mass_matrix_inverse",
-        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::RegularMass],
+        &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::RegularMass],
         |f| Declaration {
             arguments: vec![Q],
             shape: Shape::Inverse(f.nv),
@@ -87,7 +89,12 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::AccelerationsAndInverse,
         "__accelerations_and_inverse",
-        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints, Need::Calls],
+        &[
+            FunctionNeed::Inertia,
+            FunctionNeed::Asks(RequestOption::Derivatives),
+            FunctionNeed::NoConstraints,
+            FunctionNeed::Calls,
+        ],
         |f| Declaration {
             arguments: vec![Q, V, Tau, Argument::Into("inverse", f.nv)],
             shape: Shape::Accelerated(f.nv),
@@ -109,7 +116,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::ForwardDynamicsDerivativesInto,
         "forward_dynamics_derivatives_into",
-        &[Need::Inertia, Need::NoConstraints, Need::Asks(Word::Derivatives)],
+        &[FunctionNeed::Inertia, FunctionNeed::NoConstraints, FunctionNeed::Asks(RequestOption::Derivatives)],
         |f| Declaration {
             arguments: [
                 vec![Q, V, Tau],
@@ -129,7 +136,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(Id::MotionDerivatives, "__motion_derivatives", CONSTRAINED, |f| {
         let nc = constraint_row_count(f);
         Declaration {
-            arguments: vec![Q, V, A, Argument::Given("lambda", Supplied::Multiplier, nc)],
+            arguments: vec![Q, V, A, Argument::Given("lambda", SuppliedQuantity::Multiplier, nc)],
             shape: Shape::Record(Record::MotionDerivatives(f.nv, nc)),
             ..Declaration::default()
         }
@@ -138,7 +145,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::PassiveDerivatives,
         Called::PassiveDerivatives.function_name(),
-        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::PassiveCalls],
+        &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::PassiveCalls],
         |f| Declaration {
             arguments: vec![Q, V],
             shape: Shape::Vector(f.passive.unwrap_or(0)),
@@ -153,7 +160,8 @@ pub const ROWS: &[Row] = &[
     .without_batch(),
 ];
 
-const MOMENTA: &[Need] = &[Need::Inertia, Need::Asks(Word::MomentumDerivatives)];
+const MOMENTA: &[FunctionNeed] =
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::MomentumDerivatives)];
 
 /// Rows of the catalogue for the derivatives of momenta.
 pub const MOMENTUM_ROWS: &[Row] = &[
@@ -182,7 +190,8 @@ pub const MOMENTUM_ROWS: &[Row] = &[
     }),
 ];
 
-const SECOND: &[Need] = &[Need::Inertia, Need::Asks(Word::SecondDerivatives)];
+const SECOND: &[FunctionNeed] =
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::SecondDerivatives)];
 const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, \
                          with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
 
@@ -225,7 +234,12 @@ pub const SECOND_ROWS: &[Row] = &[
     Row::derived_row(
         Id::ConstraintCurvature,
         "__constraint_curvature",
-        &[Need::Inertia, Need::Asks(Word::SecondDerivatives), Need::Constraints, Need::NoSlipping],
+        &[
+            FunctionNeed::Inertia,
+            FunctionNeed::Asks(RequestOption::SecondDerivatives),
+            FunctionNeed::Constraints,
+            FunctionNeed::NoSlipping,
+        ],
         |f| {
             let nc = constraint_row_count(f);
             Declaration {
@@ -233,10 +247,10 @@ pub const SECOND_ROWS: &[Row] = &[
                     Q,
                     V,
                     A,
-                    Argument::Given("lambda", Supplied::Multiplier, nc),
-                    Argument::Given("w", Supplied::Direction, f.nv),
-                    Argument::Given("z", Supplied::AccelerationFactor, nc),
-                    Argument::Given("y", Supplied::VelocityFactor, nc),
+                    Argument::Given("lambda", SuppliedQuantity::Multiplier, nc),
+                    Argument::Given("w", SuppliedQuantity::Direction, f.nv),
+                    Argument::Given("z", SuppliedQuantity::AccelerationFactor, nc),
+                    Argument::Given("y", SuppliedQuantity::VelocityFactor, nc),
                 ],
                 shape: Shape::Record(Record::ConstraintCurvature(f.nv, nc)),
                 ..Declaration::default()

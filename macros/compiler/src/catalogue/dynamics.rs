@@ -1,13 +1,19 @@
 //! Rows of the catalogue for the functions that every mechanism has.
 
-use super::facts::Need;
+use super::facts::FunctionNeed;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
 use super::shape::{Argument, Called, Shape};
-use crate::mechanism::Supplied;
-use crate::syntax::Word;
+use crate::mechanism::SuppliedQuantity;
+use crate::syntax::RequestOption;
 
-const INERTIA: &[Need] = &[Need::Inertia];
+const INERTIA: &[FunctionNeed] = &[FunctionNeed::Inertia];
+
+/// Need of functions that a drawing reads.
+const DRAWING: FunctionNeed = FunctionNeed::Asks(RequestOption::Drawing);
+
+/// Needs of functions that invert the mass matrix without constraints.
+const UNCONSTRAINED: &[FunctionNeed] = &[FunctionNeed::Inertia, FunctionNeed::NoConstraints];
 
 /// Rows of the equations of motion, energies and powers, and of total mass, centre of mass and momentum.
 pub const ROWS: &[Row] = &[
@@ -18,22 +24,22 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .without_batch(),
-    Row::derived_row(Id::Limits, "__limits", &[Need::Limits], |f| Declaration {
+    Row::derived_row(Id::Limits, "__limits", &[FunctionNeed::Limits], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.limits),
         ..Declaration::default()
     })
     .without_batch(),
-    Row::derived_row(Id::Drawing, "drawing_numbers", &[Need::Asks(Word::Drawing)], |f| Declaration {
+    Row::derived_row(Id::Drawing, "drawing_numbers", &[DRAWING], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.drawing),
         docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the current parameters."],
         ..Declaration::default()
     })
     .without_batch(),
-    Row::derived_row(Id::Heights, "__drawing_heights", &[Need::Asks(Word::Drawing), Need::Terrain], |f| Declaration {
+    Row::derived_row(Id::Heights, "__drawing_heights", &[DRAWING, FunctionNeed::Terrain], |f| Declaration {
         timeless: true,
-        arguments: vec![Argument::Given("place", Supplied::Position, 2)],
+        arguments: vec![Argument::Given("place", SuppliedQuantity::Position, 2)],
         shape: Shape::Array(f.heights),
         ..Declaration::default()
     })
@@ -53,13 +59,15 @@ pub const ROWS: &[Row] = &[
              kg between translations, kg·m² between rotations, kg·m mixed.",
         ]
         .into_iter()
-        .chain(f.acceleration_forces.then_some("It contains only the bodies: forces that depend on \
+        .chain(f.acceleration_forces.then_some(
+            "It contains only the bodies: forces that depend on \
                                                 accelerations are part of \
-                                                [`inverse_dynamics`](Self::inverse_dynamics)."))
+                                                [`inverse_dynamics`](Self::inverse_dynamics).",
+        ))
         .collect(),
         ..Declaration::default()
     })
-    .of_trait(&[Q]),
+    .with_trait_arguments(&[Q]),
     Row::derived_row(Id::BiasForces, "bias_forces", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
@@ -70,23 +78,27 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     })
-    .of_trait(&[Q, V]),
+    .with_trait_arguments(&[Q, V]),
     Row::derived_row(Id::InverseDynamics, "inverse_dynamics", INERTIA, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Vector(f.nv),
         docs: vec![
             match f.acceleration_forces {
-                true => "`τ = M(q) a + h(q, v) − C(q, v) a`: the forces (N) and torques (N·m) that cause the \
-                         acceleration `a`, with the forces `C a` that depend on accelerations.",
-                false => "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that cause the \
-                          acceleration `a`.",
+                true => {
+                    "`τ = M(q) a + h(q, v) − C(q, v) a`: the forces (N) and torques (N·m) that cause the \
+                         acceleration `a`, with the forces `C a` that depend on accelerations."
+                }
+                false => {
+                    "`τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that cause the \
+                          acceleration `a`."
+                }
             },
             "Recursive Newton–Euler algorithm (Featherstone 2008, ch. 5).",
         ],
         ..Declaration::default()
     })
-    .of_trait(&[Q, V, A]),
-    Row::derived_row(Id::ForwardDynamics, "forward_dynamics", &[Need::Inertia, Need::NoConstraints], |f| Declaration {
+    .with_trait_arguments(&[Q, V, A]),
+    Row::derived_row(Id::ForwardDynamics, "forward_dynamics", UNCONSTRAINED, |f| Declaration {
         arguments: vec![Q, V, Tau],
         shape: Shape::Vector(f.nv),
         docs: match f.acceleration_forces {
@@ -106,7 +118,7 @@ pub const ROWS: &[Row] = &[
         },
         ..Declaration::default()
     })
-    .of_trait(&[Q, V, Tau]),
+    .with_trait_arguments(&[Q, V, Tau]),
     Row::derived_row(Id::GeneralizedForces, "generalized_forces", &[], |f| Declaration {
         arguments: if f.velocity_inputs { vec![Q, V, U] } else { vec![Q, U] },
         shape: Shape::Vector(f.nv),
@@ -116,7 +128,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     })
-    .of_trait(&[Q, V, U]),
+    .with_trait_arguments(&[Q, V, U]),
     Row::derived_row(Id::KineticEnergy, "kinetic_energy", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Scalar,
@@ -129,14 +141,14 @@ pub const ROWS: &[Row] = &[
         }],
         ..Declaration::default()
     })
-    .of_trait(&[Q, V]),
+    .with_trait_arguments(&[Q, V]),
     Row::derived_row(Id::PotentialEnergy, "potential_energy", INERTIA, |_| Declaration {
         arguments: vec![Q],
         shape: Shape::Scalar,
         docs: vec!["Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J."],
         ..Declaration::default()
     })
-    .of_trait(&[Q]),
+    .with_trait_arguments(&[Q]),
     Row::derived_row(Id::GeneralizedMomentum, "generalized_momentum", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
@@ -149,7 +161,7 @@ pub const ROWS: &[Row] = &[
         }],
         ..Declaration::default()
     })
-    .of_trait(&[Q, V]),
+    .with_trait_arguments(&[Q, V]),
     Row::derived_row(Id::MomentumRate, "momentum_rate", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
@@ -159,31 +171,41 @@ pub const ROWS: &[Row] = &[
             "Hamilton's second equation; for ball and free joints in body components (Euler–Poincaré).",
         ]
         .into_iter()
-        .chain(f.acceleration_forces.then_some("Forces that depend on accelerations are not included and \
-                                                must be added."))
+        .chain(f.acceleration_forces.then_some(
+            "Forces that depend on accelerations are not included and \
+                                                must be added.",
+        ))
         .collect(),
         ..Declaration::default()
     })
-    .of_trait(&[Q, V]),
-    Row::derived_row(Id::DissipatedPower, "dissipated_power", INERTIA, |_| power_declaration(
-        vec![Q, V],
-        vec![
-            "Power dissipated by dashpots, friction and dissipation functions, W.",
-            "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − \
+    .with_trait_arguments(&[Q, V]),
+    Row::derived_row(Id::DissipatedPower, "dissipated_power", INERTIA, |_| {
+        power_declaration(
+            vec![Q, V],
+            vec![
+                "Power dissipated by dashpots, friction and dissipation functions, W.",
+                "Unless the mechanism is driven in time, `d(T + U)/dt = control_power + disturbance_power − \
              dissipated_power`.",
-        ],
-    )),
+            ],
+        )
+    }),
     Row::derived_row(Id::ControlPower, "control_power", INERTIA, |_| {
         power_declaration(vec![Q, V, U], vec!["Power of the inputs `u`, W."])
     }),
-    Row::derived_row(Id::DisturbancePower, "disturbance_power", INERTIA, |f| power_declaration(
-        vec![Q, V],
-        vec![match f.acceleration_forces {
-            true => "Power of applied forces that are neither conservative nor dissipative nor inputs, W, \
-                     without the power of forces that depend on accelerations.",
-            false => "Power of applied forces that are neither conservative nor dissipative nor inputs, W.",
-        }],
-    )),
+    Row::derived_row(Id::DisturbancePower, "disturbance_power", INERTIA, |f| {
+        power_declaration(
+            vec![Q, V],
+            vec![match f.acceleration_forces {
+                true => {
+                    "Power of applied forces that are neither conservative nor dissipative nor inputs, W, \
+                     without the power of forces that depend on accelerations."
+                }
+                false => {
+                    "Power of applied forces that are neither conservative nor dissipative nor inputs, W."
+                }
+            }],
+        )
+    }),
     Row::derived_row(Id::TotalMass, "total_mass", INERTIA, |_| Declaration {
         timeless: true,
         shape: Shape::Scalar,
@@ -208,12 +230,8 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::PassiveForces,
         Called::PassiveForces.function_name(),
-        &[Need::Inertia, Need::PassiveCalls],
-        |f| Declaration {
-            arguments: vec![Q, V],
-            shape: Shape::Vector(f.nv),
-            ..Declaration::default()
-        },
+        &[FunctionNeed::Inertia, FunctionNeed::PassiveCalls],
+        |f| Declaration { arguments: vec![Q, V], shape: Shape::Vector(f.nv), ..Declaration::default() },
     ),
 ];
 

@@ -1,11 +1,11 @@
 //! Facts about a mechanism on which its generated functions and their signatures depend.
 
 use crate::mechanism::Model;
-use crate::syntax::{Requests, Word};
+use crate::syntax::{RequestOption, RequestedFunctions};
 
 /// Requirement that a mechanism must meet to have a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
+pub enum FunctionNeed {
     /// Met by mechanisms with masses and inertias.
     Inertia,
     /// The mechanism has constraints: loops, rolling or others.
@@ -13,7 +13,7 @@ pub enum Need {
     /// The mechanism has no constraints.
     NoConstraints,
     /// The `#[mechanism]` attribute has this option.
-    Asks(Word),
+    Asks(RequestOption),
     /// The mass matrix is invertible: no constraint determines a coordinate without inertia.
     RegularMass,
     /// The mechanism has constraints of sliding contacts with friction.
@@ -49,56 +49,56 @@ pub enum Need {
     FewContacts,
 }
 
-impl Need {
+impl FunctionNeed {
     /// Returns all needs, in the order in which they are reported as reasons.
-    pub fn all_needs() -> impl Iterator<Item = Need> {
+    pub fn needs_in_reporting_order() -> impl Iterator<Item = FunctionNeed> {
         let rest = [
-            Need::NoConstraints,
-            Need::RegularMass,
-            Need::Speeds,
-            Need::NoSpeeds,
-            Need::Constraints,
-            Need::Slipping,
-            Need::NoSlipping,
-            Need::Contacts,
-            Need::Polytopes,
-            Need::Parameters,
-            Need::FileParameters,
-            Need::FileInertials,
-            Need::Equilibria,
-            Need::Limits,
-            Need::Terrain,
-            Need::Calls,
-            Need::PassiveCalls,
-            Need::FewContacts,
+            FunctionNeed::NoConstraints,
+            FunctionNeed::RegularMass,
+            FunctionNeed::Speeds,
+            FunctionNeed::NoSpeeds,
+            FunctionNeed::Constraints,
+            FunctionNeed::Slipping,
+            FunctionNeed::NoSlipping,
+            FunctionNeed::Contacts,
+            FunctionNeed::Polytopes,
+            FunctionNeed::Parameters,
+            FunctionNeed::FileParameters,
+            FunctionNeed::FileInertials,
+            FunctionNeed::Equilibria,
+            FunctionNeed::Limits,
+            FunctionNeed::Terrain,
+            FunctionNeed::Calls,
+            FunctionNeed::PassiveCalls,
+            FunctionNeed::FewContacts,
         ];
-        [Need::Inertia].into_iter().chain(Word::ALL.map(Need::Asks)).chain(rest)
+        [FunctionNeed::Inertia].into_iter().chain(RequestOption::ALL.map(FunctionNeed::Asks)).chain(rest)
     }
 
     /// Returns the name of the runtime's trait that expresses the need in error messages, `None` for needs of
     /// hidden functions.
-    pub fn trait_of_need(self) -> Option<&'static str> {
+    pub fn trait_name_of_need(self) -> Option<&'static str> {
         Some(match self {
-            Need::Inertia => "HasInertia",
-            Need::Constraints => "HasConstraints",
-            Need::NoConstraints => "HasNoConstraints",
-            Need::Asks(word) => word.trait_for_missing_option(),
-            Need::RegularMass => "HasRegularMass",
-            Need::Speeds => "HasSpeeds",
-            Need::NoSpeeds => "HasNoSpeeds",
-            Need::Slipping => "HasSlipping",
-            Need::NoSlipping => "HasNoSlipping",
-            Need::Contacts => "HasContacts",
-            Need::Parameters => "HasParameters",
-            Need::FileParameters => "HasFileParameters",
-            Need::FileInertials => "HasFileInertials",
-            Need::Equilibria => "DeclaresEquilibria",
-            Need::Limits
-            | Need::Terrain
-            | Need::Calls
-            | Need::PassiveCalls
-            | Need::FewContacts
-            | Need::Polytopes => return None,
+            FunctionNeed::Inertia => "HasInertia",
+            FunctionNeed::Constraints => "HasConstraints",
+            FunctionNeed::NoConstraints => "HasNoConstraints",
+            FunctionNeed::Asks(word) => word.trait_for_missing_option(),
+            FunctionNeed::RegularMass => "HasRegularMass",
+            FunctionNeed::Speeds => "HasSpeeds",
+            FunctionNeed::NoSpeeds => "HasNoSpeeds",
+            FunctionNeed::Slipping => "HasSlipping",
+            FunctionNeed::NoSlipping => "HasNoSlipping",
+            FunctionNeed::Contacts => "HasContacts",
+            FunctionNeed::Parameters => "HasParameters",
+            FunctionNeed::FileParameters => "HasFileParameters",
+            FunctionNeed::FileInertials => "HasFileInertials",
+            FunctionNeed::Equilibria => "DeclaresEquilibria",
+            FunctionNeed::Limits
+            | FunctionNeed::Terrain
+            | FunctionNeed::Calls
+            | FunctionNeed::PassiveCalls
+            | FunctionNeed::FewContacts
+            | FunctionNeed::Polytopes => return None,
         })
     }
 }
@@ -127,7 +127,7 @@ pub struct Facts {
     /// True if generalized speeds are declared.
     pub speeds: bool,
     /// Options of the `#[mechanism]` attribute.
-    pub requests: Requests,
+    pub requests: RequestedFunctions,
     /// Facts about the constraints, if the mechanism has any.
     pub constraints: Option<ConstraintFacts>,
     /// True if the generated derivatives of forward dynamics call other functions.
@@ -147,7 +147,7 @@ pub struct Facts {
     /// Number of conserved quantities.
     pub conserved: usize,
     /// Numbers of unilateral contacts and contact velocities.
-    pub contacts: ContactSizes,
+    pub contacts: ContactCounts,
     /// Number of pairs of polytopes whose features determine contacts.
     pub polytopes: usize,
     /// Number of bounds in the declared limits.
@@ -167,7 +167,7 @@ pub struct Facts {
 
 /// Numbers of unilateral contacts and contact velocities.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ContactSizes {
+pub struct ContactCounts {
     /// Number of contacts, `NK`.
     pub count: usize,
     /// Number of contact velocities, `NR`.
@@ -191,7 +191,7 @@ pub struct ConstraintFacts {
 
 impl Facts {
     /// Returns the facts that follow from a model. Counts that only follow from the equations are zero.
-    pub fn from_model(model: &Model<'_>, requests: Requests) -> Facts {
+    pub fn from_model(model: &Model<'_>, requests: RequestedFunctions) -> Facts {
         let constraints = (!model.constraints.is_empty()).then(|| ConstraintFacts {
             all: model.constraints.len(),
             holonomic: model.holonomic_count(),
@@ -210,9 +210,9 @@ impl Facts {
             speeds: model.speeds.is_some(),
             requests,
             constraints,
-            contacts: ContactSizes { count: model.contacts.len(), rates: model.contact_rates().len() },
+            contacts: ContactCounts { count: model.contacts.len(), rates: model.contact_rates().len() },
             polytopes: model.polytopes.len(),
-            limits: model.limit_values().len(),
+            limits: model.coordinate_limit_bounds().len(),
             equilibria: model.equilibria.len(),
             drawing: model.drawing_numbers().len(),
             heights: model.heights.len(),
@@ -223,28 +223,28 @@ impl Facts {
     }
 
     /// Returns true if the mechanism meets a requirement of a function.
-    pub fn meets_need(&self, need: Need) -> bool {
+    pub fn meets_need(&self, need: FunctionNeed) -> bool {
         match need {
-            Need::Inertia => !self.kinematic,
-            Need::Constraints => self.constraints.is_some(),
-            Need::NoConstraints => self.constraints.is_none(),
-            Need::Asks(word) => self.requests.has_option(word),
-            Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
-            Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
-            Need::NoSlipping => self.constraints.is_none_or(|c| c.slipping == 0),
-            Need::Contacts => self.contacts.count > 0,
-            Need::Polytopes => self.polytopes > 0,
-            Need::Parameters => self.parameters > 0,
-            Need::FileParameters => self.requests.file_parameters,
-            Need::FileInertials => self.requests.file_inertials,
-            Need::Equilibria => self.equilibria > 0,
-            Need::Limits => self.limits > 0,
-            Need::Terrain => self.heights > 0,
-            Need::Speeds => self.speeds,
-            Need::NoSpeeds => !self.speeds,
-            Need::Calls => self.calls,
-            Need::PassiveCalls => self.passive.is_some(),
-            Need::FewContacts => {
+            FunctionNeed::Inertia => !self.kinematic,
+            FunctionNeed::Constraints => self.constraints.is_some(),
+            FunctionNeed::NoConstraints => self.constraints.is_none(),
+            FunctionNeed::Asks(word) => self.requests.has_option(word),
+            FunctionNeed::RegularMass => self.constraints.is_none_or(|c| !c.determining),
+            FunctionNeed::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
+            FunctionNeed::NoSlipping => self.constraints.is_none_or(|c| c.slipping == 0),
+            FunctionNeed::Contacts => self.contacts.count > 0,
+            FunctionNeed::Polytopes => self.polytopes > 0,
+            FunctionNeed::Parameters => self.parameters > 0,
+            FunctionNeed::FileParameters => self.requests.file_parameters,
+            FunctionNeed::FileInertials => self.requests.file_inertials,
+            FunctionNeed::Equilibria => self.equilibria > 0,
+            FunctionNeed::Limits => self.limits > 0,
+            FunctionNeed::Terrain => self.heights > 0,
+            FunctionNeed::Speeds => self.speeds,
+            FunctionNeed::NoSpeeds => !self.speeds,
+            FunctionNeed::Calls => self.calls,
+            FunctionNeed::PassiveCalls => self.passive.is_some(),
+            FunctionNeed::FewContacts => {
                 self.constraints.is_none() && (1..=FEW_CONTACT_RATES).contains(&self.contacts.rates)
             }
         }

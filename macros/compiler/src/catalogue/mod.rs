@@ -18,12 +18,12 @@ mod speeds;
 mod written;
 
 pub use constants::{absent_constants, is_constant};
-pub use facts::{ConstraintFacts, ContactSizes, Facts, Need};
+pub use facts::{ConstraintFacts, ContactCounts, Facts, FunctionNeed};
 pub use outputs::{
     BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, contact_force_function, output_functions,
     reaction_function,
 };
-pub use row::{Declaration, Declared, Id, Made, Row};
+pub use row::{BodyOrigin, Declaration, DeclaredFunction, Id, Row};
 pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
 
 /// The rows, in the order in which functions are generated. The functions of the outputs are generated after
@@ -48,42 +48,43 @@ const TABLES: [&[Row]; 13] = [
 const BEFORE_OUTPUTS: usize = 5;
 
 /// Returns all rows of the catalogue.
-pub fn catalogue_rows() -> impl Iterator<Item = &'static Row> {
+pub fn function_catalogue_rows() -> impl Iterator<Item = &'static Row> {
     TABLES.into_iter().flatten()
 }
 
-fn declared_functions(tables: &[&'static [Row]], facts: &Facts) -> Vec<Declared> {
+fn declared_functions(tables: &[&'static [Row]], facts: &Facts) -> Vec<DeclaredFunction> {
     let present = tables.iter().copied().flatten().filter(|row| row.first_unmet_need(facts).is_none());
     let derived = present.filter_map(|row| match row.made {
-        Made::Derived(id) => Some(row.declare_function(id, facts)),
-        Made::Written => None,
+        BodyOrigin::Derived(id) => Some(row.declare_function(id, facts)),
+        BodyOrigin::Written => None,
     });
     derived.collect()
 }
 
 /// Returns the functions of a mechanism that are derived from equations and generated before its outputs.
-pub fn functions_before_outputs(facts: &Facts) -> Vec<Declared> {
+pub fn functions_derived_before_outputs(facts: &Facts) -> Vec<DeclaredFunction> {
     declared_functions(&TABLES[..BEFORE_OUTPUTS], facts)
 }
 
 /// Returns the functions of a mechanism that are derived from equations and generated after its outputs.
-pub fn functions_after_outputs(facts: &Facts) -> Vec<Declared> {
+pub fn functions_derived_after_outputs(facts: &Facts) -> Vec<DeclaredFunction> {
     declared_functions(&TABLES[BEFORE_OUTPUTS..], facts)
 }
 
 /// Returns the state-dependent functions of the runtime's mechanism trait, with their arguments in the trait.
-pub fn of_trait() -> impl Iterator<Item = (&'static Row, &'static [Argument])> {
+pub fn mechanism_trait_rows() -> impl Iterator<Item = (&'static Row, &'static [Argument])> {
     dynamics::ROWS.iter().filter_map(|row| Some((row, row.in_trait?)))
 }
 
 /// Returns the functions that a mechanism with these facts lacks, grouped by the first need that is not met,
 /// in the order of the needs.
-pub fn absent_functions(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
-    let rows_lacking = |need: Need| {
+pub fn absent_functions(facts: &Facts) -> Vec<(FunctionNeed, Vec<&'static Row>)> {
+    let rows_absent_for_need = |need: FunctionNeed| {
         // Another row of the same name may be present.
-        let is_row_present =
-            |row: &Row| catalogue_rows().any(|r| r.name == row.name && r.first_unmet_need(facts).is_none());
-        let all = catalogue_rows().filter(|row| {
+        let is_row_present = |row: &Row| {
+            function_catalogue_rows().any(|r| r.name == row.name && r.first_unmet_need(facts).is_none())
+        };
+        let all = function_catalogue_rows().filter(|row| {
             !row.is_hidden() && row.first_unmet_need(facts) == Some(need) && !is_row_present(row)
         });
         let mut found: Vec<&'static Row> = Vec::new();
@@ -94,18 +95,19 @@ pub fn absent_functions(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
         }
         (need, found)
     };
-    Need::all_needs().map(rows_lacking).collect()
+    FunctionNeed::needs_in_reporting_order().map(rows_absent_for_need).collect()
 }
 
 /// Returns the names of the functions with handwritten bodies that also have a batched variant.
-pub fn written_in_lanes(facts: &Facts) -> impl Iterator<Item = &'static str> {
-    let written = catalogue_rows().filter(|row| row.batched && matches!(row.made, Made::Written));
+pub fn handwritten_batched_functions(facts: &Facts) -> impl Iterator<Item = &'static str> {
+    let written =
+        function_catalogue_rows().filter(|row| row.batched && matches!(row.made, BodyOrigin::Written));
     written.filter(|row| row.first_unmet_need(facts).is_none()).map(|row| row.name)
 }
 
 /// Returns true if a mechanism with these facts has a function of this name that is not an output.
 pub fn has_function(name: &str, facts: &Facts) -> bool {
-    let mut present = catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
+    let mut present = function_catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
     let one = name.strip_suffix("_lanes").filter(|_| facts.requests.batch);
     present.any(|row| row.name == name || (row.batched && Some(row.name) == one))
 }

@@ -2,10 +2,10 @@
 
 use super::contacts::contact_forces;
 use super::facts::Facts;
-use super::row::{Declared, Id};
+use super::row::{DeclaredFunction, Id};
 use super::shape::Argument::{A, Q, T, U, V};
 use super::shape::{Argument, Shape};
-use crate::mechanism::{Supplied, Uses};
+use crate::mechanism::{SuppliedQuantity, UsedQuantities};
 
 /// Prefix of the hidden function of an output that contains reactions.
 pub const REACTION: &str = "__reaction_";
@@ -39,15 +39,15 @@ fn declared_output(
     shape: Shape,
     docs: Vec<String>,
     f: &Facts,
-) -> Declared {
+) -> DeclaredFunction {
     let arguments = f.time.then_some(T).into_iter().chain(arguments.iter().copied()).collect();
-    Declared { id, name, docs, arguments, shape }
+    DeclaredFunction { id, name, docs, arguments, shape }
 }
 
 /// Returns the functions of an output: its value, its Jacobian unless it depends on accelerations, and the
 /// requested derivatives. A matrix output has its value alone, since the derivatives of products with vectors
 /// serve the same purpose.
-pub fn output_functions(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
+pub fn output_functions(name: &str, size: usize, uses: UsedQuantities, f: &Facts) -> Vec<DeclaredFunction> {
     let mut arguments = vec![Q];
     arguments.extend((uses.velocities || uses.accelerations).then_some(V));
     arguments.extend(uses.accelerations.then_some(A));
@@ -108,10 +108,10 @@ pub fn output_functions(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<D
 
 /// Returns the hidden function of an output that contains reactions. It takes the state, accelerations and
 /// multipliers of the motion, and for a free-body diagram also the contact forces.
-pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declared {
+pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -> DeclaredFunction {
     let mut arguments = vec![Q, V, A];
     arguments.extend((f.nu > 0).then_some(U));
-    arguments.extend(f.constraints.map(|c| Argument::Given("lambda", Supplied::Multiplier, c.all)));
+    arguments.extend(f.constraints.map(|c| Argument::Given("lambda", SuppliedQuantity::Multiplier, c.all)));
     let touched = is_diagram && f.contacts.count > 0;
     arguments.extend(touched.then_some(contact_forces(f)));
     declared_output(Id::Reaction, format!("{REACTION}{name}"), &arguments, shape_of_size(size), Vec::new(), f)
@@ -119,7 +119,7 @@ pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -
 
 /// Returns the hidden function of an output that contains contact forces. It takes the state, the inputs and
 /// the forces of all contacts.
-pub fn contact_force_function(name: &str, size: usize, f: &Facts) -> Declared {
+pub fn contact_force_function(name: &str, size: usize, f: &Facts) -> DeclaredFunction {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.push(contact_forces(f));

@@ -1,21 +1,24 @@
 //! Rows of the functions of the options `centroidal`, `hamilton`, `routh`, `conserved`, `regressor`,
 //! `sensitivities` and `packed`.
 
-use super::facts::Need;
+use super::facts::FunctionNeed;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, V};
 use super::shape::{Argument, Shape};
-use crate::syntax::Word;
+use crate::syntax::RequestOption;
 
 /// Number of standard inertial parameters of a body.
 const STANDARD: usize = 10;
 
-const CENTROIDAL_ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Centroidal)];
-const HAMILTON: &[Need] = &[Need::Inertia, Need::Asks(Word::Hamilton), Need::RegularMass];
-const ROUTH: &[Need] = &[Need::Inertia, Need::Asks(Word::Routh), Need::NoConstraints];
-const CONSERVED: &[Need] = &[Need::Inertia, Need::Asks(Word::Conserved)];
-const REGRESSOR: &[Need] = &[Need::Inertia, Need::Asks(Word::Regressor)];
-const PACKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Packed)];
+const CENTROIDAL_ASKED: &[FunctionNeed] =
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Centroidal)];
+const HAMILTON: &[FunctionNeed] =
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Hamilton), FunctionNeed::RegularMass];
+const ROUTH: &[FunctionNeed] =
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Routh), FunctionNeed::NoConstraints];
+const CONSERVED: &[FunctionNeed] = &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Conserved)];
+const REGRESSOR: &[FunctionNeed] = &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Regressor)];
+const PACKED: &[FunctionNeed] = &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Packed)];
 
 /// Rows of the functions of the option `centroidal`.
 pub const CENTROIDAL: &[Row] = &[
@@ -179,7 +182,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::InverseDynamicsByParameters,
         "inverse_dynamics_by_parameters",
-        &[Need::Inertia, Need::Asks(Word::Sensitivities)],
+        &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Sensitivities)],
         |f| Declaration {
             arguments: vec![Q, V, A],
             shape: Shape::Matrix(f.nv, f.parameters),
@@ -193,7 +196,11 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::ForwardDynamicsByParameters,
         "forward_dynamics_by_parameters",
-        &[Need::Inertia, Need::Asks(Word::Sensitivities), Need::NoConstraints],
+        &[
+            FunctionNeed::Inertia,
+            FunctionNeed::Asks(RequestOption::Sensitivities),
+            FunctionNeed::NoConstraints,
+        ],
         |f| Declaration {
             arguments: vec![Q, V, Tau],
             shape: Shape::Matrix(f.nv, f.parameters),
@@ -208,7 +215,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(
         Id::GeneralizedForcesByParameters,
         "generalized_forces_by_parameters",
-        &[Need::Inertia, Need::Asks(Word::Sensitivities)],
+        &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Sensitivities)],
         |f| Declaration {
             arguments: vec![Q, V, Argument::U],
             shape: Shape::Matrix(f.nv, f.parameters),
@@ -238,7 +245,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived_row(Id::Figures, "__figures", &[Need::Parameters], |f| Declaration {
+    Row::derived_row(Id::Figures, "__figures", &[FunctionNeed::Parameters], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.figures),
         ..Declaration::default()

@@ -1,6 +1,6 @@
 //! A row of the catalogue: a function that can be generated.
 
-use super::facts::{Facts, Need};
+use super::facts::{Facts, FunctionNeed};
 use super::shape::{Argument, Shape};
 
 /// Identifiers of all functions that are derived from equations.
@@ -97,7 +97,7 @@ pub enum Id {
 
 /// Origin of the body of a catalogued function.
 #[derive(Clone, Copy)]
-pub enum Made {
+pub enum BodyOrigin {
     /// Body derived from equations, which the identifier selects.
     Derived(Id),
     /// Handwritten body, which calls other functions and the runtime.
@@ -110,10 +110,10 @@ pub struct Row {
     /// Name of the catalogued function.
     pub name: &'static str,
     /// Origin of the catalogued function's body.
-    pub made: Made,
+    pub made: BodyOrigin,
     /// Requirements of the function. The first requirement that is not met is reported as the reason for its
     /// absence.
-    pub needs: &'static [Need],
+    pub needs: &'static [FunctionNeed],
     /// Returns arguments, result and documentation for a mechanism with these facts.
     pub declare: fn(&Facts) -> Declaration,
     /// Arguments of the function in the runtime's mechanism trait, if the trait has the function. The
@@ -138,7 +138,7 @@ pub struct Declaration {
 
 /// Function that one mechanism has, with its signature.
 #[derive(Clone, Debug)]
-pub struct Declared {
+pub struct DeclaredFunction {
     /// Identifier of the function in the catalogue.
     pub id: Id,
     /// Name of the generated function.
@@ -156,20 +156,27 @@ impl Row {
     pub const fn derived_row(
         id: Id,
         name: &'static str,
-        needs: &'static [Need],
+        needs: &'static [FunctionNeed],
         declare: fn(&Facts) -> Declaration,
     ) -> Row {
-        Row { name, made: Made::Derived(id), needs, declare, in_trait: None, batched: true }
+        Row { name, made: BodyOrigin::Derived(id), needs, declare, in_trait: None, batched: true }
     }
 
     /// Creates the row of a handwritten function.
-    pub const fn handwritten_row(name: &'static str, needs: &'static [Need]) -> Row {
+    pub const fn handwritten_row(name: &'static str, needs: &'static [FunctionNeed]) -> Row {
         let empty_declaration = |_: &Facts| Declaration::default();
-        Row { name, made: Made::Written, needs, declare: empty_declaration, in_trait: None, batched: false }
+        Row {
+            name,
+            made: BodyOrigin::Written,
+            needs,
+            declare: empty_declaration,
+            in_trait: None,
+            batched: false,
+        }
     }
 
     /// Adds the function to the runtime's mechanism trait, with these arguments in the trait.
-    pub const fn of_trait(self, arguments: &'static [Argument]) -> Row {
+    pub const fn with_trait_arguments(self, arguments: &'static [Argument]) -> Row {
         Row { in_trait: Some(arguments), ..self }
     }
 
@@ -184,7 +191,7 @@ impl Row {
     }
 
     /// Returns the first need that a mechanism does not meet, `None` if it has the function.
-    pub fn first_unmet_need(&self, facts: &Facts) -> Option<Need> {
+    pub fn first_unmet_need(&self, facts: &Facts) -> Option<FunctionNeed> {
         self.needs.iter().copied().find(|need| !facts.meets_need(*need))
     }
 
@@ -194,10 +201,10 @@ impl Row {
     }
 
     /// Returns the declaration of the function for a mechanism with these facts.
-    pub fn declare_function(&self, id: Id, facts: &Facts) -> Declared {
+    pub fn declare_function(&self, id: Id, facts: &Facts) -> DeclaredFunction {
         let Declaration { arguments, timeless, shape, docs } = (self.declare)(facts);
         let time = (facts.time && !timeless).then_some(Argument::T);
-        Declared {
+        DeclaredFunction {
             id,
             name: self.name.to_string(),
             docs: docs.into_iter().map(ToString::to_string).collect(),

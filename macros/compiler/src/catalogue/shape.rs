@@ -1,6 +1,6 @@
 //! Types of the arguments and results of generated functions.
 
-use crate::mechanism::{Quantity, Supplied};
+use crate::mechanism::{Quantity, SuppliedQuantity};
 
 /// Argument of a generated function, identified by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub enum Argument {
     /// Inputs `u`, with `NU` entries.
     U,
     /// A vector of program inputs, with the name of the argument and its length.
-    Given(&'static str, Supplied, usize),
+    Given(&'static str, SuppliedQuantity, usize),
     /// A vector of standard inertial parameters, with its length.
     Standard(usize),
     /// A square matrix to which the result is written: name of the argument and number of rows.
@@ -110,9 +110,9 @@ impl Argument {
             | (Argument::Tau, Quantity::Force(k))
             | (Argument::U, Quantity::Input(k)) => Some(k),
             (Argument::Given(_, known, _), Quantity::Given(block, k)) if known == block => Some(k),
-            (Argument::Given(_, Supplied::ContactForces, _), Quantity::ContactForce(k))
-            | (Argument::Standard(_), Quantity::Given(Supplied::Inertia, k))
-            | (Argument::Factors(_), Quantity::Given(Supplied::Factor, k))
+            (Argument::Given(_, SuppliedQuantity::ContactForces, _), Quantity::ContactForce(k))
+            | (Argument::Standard(_), Quantity::Given(SuppliedQuantity::Inertia, k))
+            | (Argument::Factors(_), Quantity::Given(SuppliedQuantity::Factor, k))
             | (Argument::Momenta(_), Quantity::Momentum(k))
             | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
             | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k))
@@ -221,7 +221,7 @@ impl Shape {
 
     /// Returns the number of outputs of a program for this result.
     pub fn output_count(self, structure: &Structure) -> usize {
-        let border_entry_count = |n: usize| n * structure.inverse.values_per_velocity();
+        let border_entry_count = |n: usize| n * structure.inverse.extra_values_per_velocity();
         match self {
             Shape::Scalar => 1,
             Shape::Vector(n) | Shape::Array(n) => n,
@@ -366,7 +366,7 @@ pub enum InverseForm {
 impl InverseForm {
     /// Returns the number of values per velocity that the outputs contain in addition to the columns of the
     /// inverse: one for each velocity of the trunk.
-    fn values_per_velocity(&self) -> usize {
+    fn extra_values_per_velocity(&self) -> usize {
         match self {
             InverseForm::Explicit => 0,
             InverseForm::LowRankUpdate(trunk) | InverseForm::BlockArrow { trunk, .. } => trunk.len(),

@@ -1,13 +1,13 @@
 //! Functions of mechanisms with declared generalized speeds: conversion between these and the joint
 //! velocities.
 
-use super::facts::Need;
+use super::facts::FunctionNeed;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, V};
 use super::shape::Shape;
-use crate::syntax::Word;
+use crate::syntax::RequestOption;
 
-const SPEEDS: &[Need] = &[Need::Speeds];
+const SPEEDS: &[FunctionNeed] = &[FunctionNeed::Speeds];
 
 /// Rows of the conversions between generalized speeds and joint velocities.
 pub const ROWS: &[Row] = &[
@@ -66,7 +66,7 @@ pub const ROWS: &[Row] = &[
 pub const DERIVATIVES: &[Row] = &[Row::derived_row(
     Id::Turning,
     "__turning",
-    &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Speeds],
+    &[FunctionNeed::Inertia, FunctionNeed::Asks(RequestOption::Derivatives), FunctionNeed::Speeds],
     |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,

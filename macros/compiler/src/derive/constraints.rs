@@ -2,7 +2,7 @@
 
 use crate::expr::diff::gradient;
 use crate::expr::{Expr, Symbol};
-use crate::kinematics::motion_rates;
+use crate::kinematics::time_derivatives_along_motion;
 use crate::mechanics::constraints;
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::derivatives::symbolic;
@@ -29,11 +29,11 @@ pub(super) fn contact_gaps<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// Returns the time derivatives of the contact velocities at zero accelerations.
 pub(super) fn contact_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    motion_rates(model.configuration_space(), &model.contact_rates(), false)
+    time_derivatives_along_motion(model.configuration_space(), &model.contact_rates(), false)
 }
 
 /// Returns the coefficients of friction, restitution and static friction of each contact.
-pub(super) fn contact_laws<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub(super) fn contact_coefficients<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.contacts.iter().flat_map(|c| [c.friction, c.restitution, c.stiction]).collect()
 }
 
@@ -50,14 +50,14 @@ pub(super) struct ContactDerivatives<'g> {
 impl<'g> ContactDerivatives<'g> {
     pub(super) fn new(model: &Model<'g>) -> ContactDerivatives<'g> {
         let rates = model.contact_rates();
-        let accelerations = motion_rates(model.configuration_space(), &rates, true);
+        let accelerations = time_derivatives_along_motion(model.configuration_space(), &rates, true);
         let accelerations = symbolic::force_derivatives(model, &accelerations);
         let of_rates = symbolic::configuration_derivatives(model, &rates);
         ContactDerivatives { by_motion: [accelerations.by_q, accelerations.by_v, of_rates], rates }
     }
 
     /// Returns the derivatives of `Gᵀ f` with respect to `q` for some of the contact velocities.
-    fn contact_force_derivatives(
+    fn contact_joint_force_derivatives(
         &self,
         model: &Model<'g>,
         numbers: impl Iterator<Item = usize>,
@@ -72,21 +72,23 @@ impl<'g> ContactDerivatives<'g> {
     }
 
     pub(super) fn contact_derivative_outputs(&self, model: &Model<'g>) -> Vec<Expr<'g>> {
-        let forces = self.contact_force_derivatives(model, 0..self.rates.len());
+        let forces = self.contact_joint_force_derivatives(model, 0..self.rates.len());
         [&forces].into_iter().chain(&self.by_motion).flat_map(|rows| matrix_by_columns(model, rows)).collect()
     }
 
     /// Returns the derivatives of the contact forces with identical limbs in SIMD lanes; `None` if the
     /// expressions of the limbs differ in structure.
-    pub(super) fn outputs_in_lanes(
+    pub(super) fn contact_derivatives_in_lanes(
         &self,
         model: &Model<'g>,
         contacts: &mut LimbContacts<'_, 'g>,
     ) -> Option<Vec<Expr<'g>>> {
         let forces_of_limb =
-            |numbers: &Vec<usize>| self.contact_force_derivatives(model, numbers.iter().copied());
-        let of_limbs: Vec<Vec<Matrix<'g>>> =
-            contacts.contacts_of_limbs().map(|limbs| limbs.iter().map(forces_of_limb).collect()).collect();
+            |numbers: &Vec<usize>| self.contact_joint_force_derivatives(model, numbers.iter().copied());
+        let of_limbs: Vec<Vec<Matrix<'g>>> = contacts
+            .limb_contact_velocity_indices()
+            .map(|limbs| limbs.iter().map(forces_of_limb).collect())
+            .collect();
         let forces = contacts.sum_limb_matrices(&of_limbs)?;
         let mut outputs = matrix_by_columns(model, &forces);
         for rows in &self.by_motion {

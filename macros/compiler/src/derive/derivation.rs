@@ -4,11 +4,11 @@
 use super::derivatives::Derivatives;
 use super::dynamics::Dynamics;
 use super::output::Function;
-use super::regressor::Identification;
-use super::sensitivities::Sensitivities;
-use super::specialisation::Specialisation;
-use super::{OptionalData, constraints, outputs};
-use crate::catalogue::{Declared, Facts, Id, Structure};
+use super::regressor::IdentificationFunctions;
+use super::sensitivities::SensitivityDerivation;
+use super::specialisation::ParameterSpecialisation;
+use super::{OptionalFunctionData, constraints, outputs};
+use crate::catalogue::{DeclaredFunction, Facts, Id, Structure};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
@@ -16,7 +16,7 @@ use crate::mechanics::derivatives::parameters;
 use crate::mechanics::hamilton::Hamilton;
 use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanics::routh::Routh;
-use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{energy, forces, power};
 use crate::mechanism::{Chart, Model, PassiveForces};
 use crate::passes::Passes;
@@ -29,25 +29,25 @@ pub(super) struct Derivation<'a, 'g> {
     /// The model. With declared speeds, the model in which velocities are expressed in these.
     pub(super) model: &'a Model<'g>,
     pub(super) joints: &'a [Joint<'g>],
-    speeds: Option<&'a Rc<InSpeeds<'g>>>,
+    speeds: Option<&'a Rc<SpeedTransformation<'g>>>,
     passes: Passes,
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
     facts: &'a Facts,
     /// Data for the options `regressor`, `hamilton` and `conserved`.
-    extras: Option<&'a OptionalData<'a, 'g>>,
+    extras: Option<&'a OptionalFunctionData<'a, 'g>>,
     /// Data of the option `derivatives`; `None` without the option.
     derivatives: Option<&'a Derivatives<'a, 'g>>,
     dynamics: OnceCell<Dynamics<'g>>,
-    sensitivities: OnceCell<Sensitivities<'g>>,
+    sensitivities: OnceCell<SensitivityDerivation<'g>>,
 }
 
 impl<'a, 'g> Derivation<'a, 'g> {
     pub(super) fn new(
         model: &'a Model<'g>,
         joints: &'a [Joint<'g>],
-        speeds: Option<&'a Rc<InSpeeds<'g>>>,
+        speeds: Option<&'a Rc<SpeedTransformation<'g>>>,
         passes: Passes,
-        specialisation: Specialisation,
+        specialisation: ParameterSpecialisation,
         facts: &'a Facts,
     ) -> Derivation<'a, 'g> {
         let (dynamics, sensitivities) = (OnceCell::new(), OnceCell::new());
@@ -70,7 +70,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     pub(super) fn with_option_data<'b>(
         self,
         facts: &'b Facts,
-        extras: &'b OptionalData<'b, 'g>,
+        extras: &'b OptionalFunctionData<'b, 'g>,
         derivatives: Option<&'b Derivatives<'b, 'g>>,
     ) -> Derivation<'b, 'g>
     where
@@ -81,9 +81,13 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     /// Derives the declared functions. The list `done` holds the functions derived before, since some
     /// programs are reused.
-    pub(super) fn derive_declared(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
+    pub(super) fn derive_declared_functions(
+        &self,
+        declared: Vec<DeclaredFunction>,
+        mut done: Vec<Function>,
+    ) -> Vec<Function> {
         for declared in declared {
-            pipeline::begin_function(&declared.name);
+            pipeline::set_observed_function_name(&declared.name);
             let (program, structure) = match self.model.graph.is_full() {
                 true => Default::default(),
                 false => self.program_of_function(&declared, &done),
@@ -98,8 +102,9 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.dynamics.get_or_init(|| Dynamics::new(native, self.passes, self.specialisation, self.speeds))
     }
 
-    fn derived_sensitivities(&self) -> &Sensitivities<'g> {
-        self.sensitivities.get_or_init(|| Sensitivities::new(self.model, self.passes, self.specialisation))
+    fn derived_sensitivities(&self) -> &SensitivityDerivation<'g> {
+        self.sensitivities
+            .get_or_init(|| SensitivityDerivation::new(self.model, self.passes, self.specialisation))
     }
 
     /// Returns a function of the option `derivatives`, whose data exist if such a function is declared.
@@ -107,11 +112,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
         &self,
         function: impl FnOnce(&Derivatives<'a, 'g>) -> Program,
     ) -> (Program, Structure) {
-        self.structured_derivative(|derivatives| (function(derivatives), Structure::default()))
+        self.derivative_assembled_at_run_time(|derivatives| (function(derivatives), Structure::default()))
     }
 
     /// Returns a function of the option `derivatives` whose results the runtime assembles.
-    fn structured_derivative(
+    fn derivative_assembled_at_run_time(
         &self,
         function: impl FnOnce(&Derivatives<'a, 'g>) -> (Program, Structure),
     ) -> (Program, Structure) {
@@ -126,7 +131,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     /// Returns the program of a contact function from its values, one for each contact velocity.
     fn contact_program(&self, values: &[Expr<'g>]) -> Program {
         self.with_limb_contacts(self.specialisation.lower_to_program(values), |contacts| {
-            contacts.merge_values(values)
+            contacts.merge_contact_values(values)
         })
     }
 
@@ -141,7 +146,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     fn contact_derivatives(&self) -> Program {
         let found = constraints::ContactDerivatives::new(self.model);
         let plain = self.specialisation.lower_to_program(&found.contact_derivative_outputs(self.model));
-        self.with_limb_contacts(plain, |contacts| found.outputs_in_lanes(self.model, contacts))
+        self.with_limb_contacts(plain, |contacts| found.contact_derivatives_in_lanes(self.model, contacts))
     }
 
     /// Returns the program of a contact function with the version in which identical limbs are SIMD lanes, if
@@ -171,7 +176,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     /// declared.
     pub(super) fn regressor_outputs(
         &self,
-        outputs: impl FnOnce(&Identification<'a, 'g>) -> Vec<Expr<'g>>,
+        outputs: impl FnOnce(&IdentificationFunctions<'a, 'g>) -> Vec<Expr<'g>>,
     ) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.identification.as_ref()).map(outputs).unwrap_or_default()
     }
@@ -202,20 +207,24 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     /// Returns the program of a declared function, with the structure of its matrices. Functions that are
     /// `done` may be used.
-    fn program_of_function(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
+    fn program_of_function(&self, declared: &DeclaredFunction, done: &[Function]) -> (Program, Structure) {
         match self.speeds.and_then(|speeds| self.outputs_in_speeds(speeds, declared)) {
             Some(outputs) => self.lower_unstructured(&outputs),
-            None => self.program_in_velocities(declared, done),
+            None => self.program_in_joint_velocities(declared, done),
         }
     }
 
     /// Returns the program of a function whose velocities are those of the joints, or that contains none.
-    fn program_in_velocities(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
+    fn program_in_joint_velocities(
+        &self,
+        declared: &DeclaredFunction,
+        done: &[Function],
+    ) -> (Program, Structure) {
         let (model, joints) = (self.model, self.joints);
-        let find_done = |id: Id| done.iter().find(|f| f.id == id);
+        let find_derived_function = |id: Id| done.iter().find(|f| f.id == id);
         match declared.id {
             Id::Neutral => self.lower_unstructured(&neutral_configuration(model)),
-            Id::Limits => self.lower_unstructured(&model.limit_values()),
+            Id::Limits => self.lower_unstructured(&model.coordinate_limit_bounds()),
             Id::Drawing => self.lower_unstructured(&model.drawing_numbers()),
             Id::Heights => self.lower_unstructured(&model.heights),
             Id::Figures => self.lower_unstructured(&model.requirement_values()),
@@ -262,7 +271,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
                 unstructured_program(self.contact_program(&constraints::contact_biases(model)))
             }
             Id::PolytopePoses => self.lower_unstructured(&model.polytope_poses()),
-            Id::ContactLaws => self.lower_unstructured(&constraints::contact_laws(model)),
+            Id::ContactLaws => self.lower_unstructured(&constraints::contact_coefficients(model)),
             Id::ContactResponses => unstructured_program(self.contact_responses()),
             Id::ContactDerivatives => unstructured_program(self.contact_derivatives()),
             Id::ConstrainedDynamics => unstructured_program(self.derived_dynamics().constrained_dynamics()),
@@ -273,26 +282,28 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::OutputDerivatives
             | Id::OutputByParameters
             | Id::Reaction
-            | Id::Touched => self.lower_unstructured(&outputs::output_function_values(model, declared)),
-            Id::MassMatrixInverse => self.structured_derivative(Derivatives::mass_matrix_inverse),
+            | Id::Touched => self.lower_unstructured(&outputs::output_function_expressions(model, declared)),
+            Id::MassMatrixInverse => self.derivative_assembled_at_run_time(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivative_program(Derivatives::coriolis_matrix),
             Id::InverseDynamicsDerivatives => {
                 self.derivative_program(Derivatives::inverse_dynamics_derivatives)
             }
             Id::GeneralizedMomentumDerivatives => self.derivative_program(Derivatives::momentum_derivatives),
             Id::MomentumRateDerivatives => self.derivative_program(Derivatives::momentum_rate_derivatives),
-            Id::ForwardDynamicsDerivatives => self.structured_derivative(|d| {
-                d.forward_dynamics_derivatives(find_done(Id::InverseDynamicsDerivatives))
+            Id::ForwardDynamicsDerivatives => self.derivative_assembled_at_run_time(|d| {
+                d.forward_dynamics_derivatives(find_derived_function(Id::InverseDynamicsDerivatives))
             }),
             Id::Linearize => self.derivative_program(Derivatives::linearization_program),
-            Id::AccelerationsAndInverse => self.structured_derivative(Derivatives::accelerations_and_inverse),
+            Id::AccelerationsAndInverse => {
+                self.derivative_assembled_at_run_time(Derivatives::accelerations_and_inverse)
+            }
             Id::MotionDerivatives => self.derivative_program(Derivatives::motion_derivatives),
             Id::InputDerivatives => self.derivative_program(Derivatives::input_derivatives),
             Id::InverseDynamicsDerivativesInto => {
-                program_of_function(find_done(Id::InverseDynamicsDerivatives))
+                program_of_function(find_derived_function(Id::InverseDynamicsDerivatives))
             }
             Id::ForwardDynamicsDerivativesInto => {
-                program_of_function(find_done(Id::ForwardDynamicsDerivatives))
+                program_of_function(find_derived_function(Id::ForwardDynamicsDerivatives))
             }
             Id::InverseDynamicsSecondDerivatives => {
                 self.derivative_program(Derivatives::inverse_dynamics_second_derivatives)
@@ -305,13 +316,13 @@ impl<'a, 'g> Derivation<'a, 'g> {
                 self.lower_unstructured(&self.regressor_outputs(|i| i.joint_torque_regressor(joints)))
             }
             Id::StandardParameters => {
-                self.lower_unstructured(&self.regressor_outputs(Identification::standard_parameters))
+                self.lower_unstructured(&self.regressor_outputs(IdentificationFunctions::standard_parameters))
             }
             Id::BaseRegressor => {
-                self.lower_unstructured(&self.regressor_outputs(Identification::base_regressor))
+                self.lower_unstructured(&self.regressor_outputs(IdentificationFunctions::base_regressor))
             }
             Id::BaseParameters => {
-                self.lower_unstructured(&self.regressor_outputs(Identification::base_parameters))
+                self.lower_unstructured(&self.regressor_outputs(IdentificationFunctions::base_parameters))
             }
             Id::InverseDynamicsByParameters => {
                 unstructured_program(self.derived_sensitivities().inverse_dynamics())
@@ -345,7 +356,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         let at: Vec<usize> = entries.iter().map(|(i, j)| j * self.model.nv() + i).collect();
         let entries = if id == Id::MassMatrixInto { entries.clone() } else { Vec::new() };
         (
-            self.derived_dynamics().mass_matrix().with_outputs(&at),
+            self.derived_dynamics().mass_matrix().with_selected_outputs(&at),
             Structure { entries, ..Structure::default() },
         )
     }

@@ -3,22 +3,22 @@
 use super::limb_lanes;
 use super::output::Function;
 use super::second;
-use super::specialisation::Specialisation;
+use super::specialisation::ParameterSpecialisation;
 use crate::catalogue::{InverseForm, Structure};
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Operand, Program, lower};
 use crate::machine::{DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT};
 use crate::mechanics::derivatives::{
-    self, DerivationMethod, Factor, ForceDerivatives, Inverse, Linearized, Trunk, analytic,
-    divided_inverse_terms, invariance, symbolic,
+    self, DerivationMethod, Factor, ForceDerivatives, Inverse, LinearizedEquations, Trunk, analytic,
+    invariance, inverse_terms_for_runtime_loops, symbolic,
 };
 use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::displacement_commutators;
 use crate::mechanics::{self, added_mass, constraints, crba, forces, momentum, rnea};
 use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Passes, Variant};
-use crate::vectorise::{self, Limbs};
+use crate::vectorise::{self, VectorisedMechanism};
 
 /// Maximum number of velocities for which symbolic differentiation is tried as a candidate.
 pub(super) const DIFFERENTIATE: usize = 6;
@@ -34,7 +34,7 @@ pub(super) fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Varia
         variants.truncate(1);
     }
     if passes.parallel {
-        variants.extend(passes::in_common_axes(&variants));
+        variants.extend(passes::variants_in_common_axes(&variants));
     }
     variants
 }
@@ -54,7 +54,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         model: &Model<'g>,
         variants: &'a [Variant<'g>],
         passes: Passes,
-        specialisation: Specialisation,
+        specialisation: ParameterSpecialisation,
     ) -> Option<Derivatives<'a, 'g>> {
         let mut parts: Vec<DerivativeParts<'_, '_>> =
             variants.iter().map(|variant| DerivativeParts::new(variant, specialisation)).collect();
@@ -64,20 +64,20 @@ impl<'a, 'g> Derivatives<'a, 'g> {
                 ..DerivativeParts::new(variant, specialisation)
             }));
         }
-        let mut parts = parts.into_iter().min_by_key(DerivativeParts::operation_cost)?;
+        let mut parts = parts.into_iter().min_by_key(DerivativeParts::operation_count_of_force_columns)?;
         if parts.model.acceleration_forces.is_empty() {
-            parts.known = invariance::invariant_columns(parts.model, &parts.joints);
+            parts.known = invariance::columns_determined_by_invariance(parts.model, &parts.joints);
         }
         if derivatives::has_constant_subspaces(parts.model) {
             parts.wide = passes.tried_lane_counts(model.nv());
-            parts.find_limbs_and_trunk(passes.lanes && specialisation == Specialisation::None);
+            parts.find_limbs_and_trunk(passes.lanes && specialisation == ParameterSpecialisation::None);
         }
         let tau = forces::generalized_forces(model, &kinematics::joints_of_model(model));
         Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
     }
 
     /// Returns true if the generated derivatives of forward dynamics call other functions.
-    pub(super) fn calls_other_functions(&self) -> bool {
+    pub(super) fn forward_derivatives_call_functions(&self) -> bool {
         !self.constrained && self.parts.exceeds_single_function()
     }
 
@@ -87,11 +87,11 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 
     pub(super) fn mass_matrix_inverse(&self) -> (Program, Structure) {
-        self.parts.inverse_function(false)
+        self.parts.inverse_mass_matrix_program(false)
     }
 
     pub(super) fn accelerations_and_inverse(&self) -> (Program, Structure) {
-        self.parts.inverse_function(true)
+        self.parts.inverse_mass_matrix_program(true)
     }
 
     pub(super) fn coriolis_matrix(&self) -> Program {
@@ -111,7 +111,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     pub(super) fn momentum_rate_derivatives(&self) -> Program {
         let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
         let rate = momentum::momentum_rate(model, joints, &mechanics::velocity_symbols(model));
-        specialisation.lower_to_program(&force_columns(&symbolic::force_derivatives(model, &rate)))
+        specialisation.lower_to_program(&force_derivative_entries(&symbolic::force_derivatives(model, &rate)))
     }
 
     /// Returns the derivatives of forward dynamics. `forces` are the derivatives of inverse dynamics, which
@@ -121,10 +121,10 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         let is_zero_constant = |o: &Operand| *o == Operand::Const(0.0);
         let zeros =
             forces.map_or_else(Vec::new, |f| f.program.outputs.iter().map(is_zero_constant).collect());
-        let (inverse, known) = (parts.form_of_inverse(), parts.known.known_column_indices());
-        let program = match (self.calls_other_functions(), &parts.trunk) {
-            (true, _) => parts.specialisation.lower_to_program(&parts.known.all_known_columns()),
-            (false, Some(trunk)) => parts.forward_dynamics_in_parts(trunk),
+        let (inverse, known) = (parts.form_of_inverse(), parts.known.invariant_column_indices());
+        let program = match (self.forward_derivatives_call_functions(), &parts.trunk) {
+            (true, _) => parts.specialisation.lower_to_program(&parts.known.all_invariant_columns()),
+            (false, Some(trunk)) => parts.forward_derivatives_by_blocks(trunk),
             (false, None) => parts.forward_dynamics(),
         };
         (program, Structure { inverse, zeros, known, ..Structure::default() })
@@ -151,11 +151,11 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 
     pub(super) fn motion_derivatives(&self) -> Program {
-        self.parts.constrained_motion()
+        self.parts.constrained_motion_derivative_terms()
     }
 
     pub(super) fn input_derivatives(&self) -> Program {
-        self.parts.uncommuted_input_program(&self.tau)
+        self.parts.input_program_without_commutators(&self.tau)
     }
 }
 
@@ -168,11 +168,11 @@ struct DerivativeParts<'a, 'g> {
     /// accelerations.
     effective: crba::Matrix<'g>,
     method: DerivationMethod,
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
     /// Trunk of a large mechanism, if its tree branches.
     trunk: Option<Trunk>,
     /// Variant of the mechanism with identical limbs in SIMD lanes.
-    limbs: Option<InLanes<'g>>,
+    limbs: Option<MechanismInLanes<'g>>,
     /// Numbers of SIMD lanes that are tried for the recursion towards the root, in addition to scalar code.
     wide: &'static [usize],
     /// Columns of the derivatives of forward dynamics that follow from invariance.
@@ -180,14 +180,14 @@ struct DerivativeParts<'a, 'g> {
 }
 
 /// A mechanism with identical limbs in SIMD lanes.
-struct InLanes<'g> {
-    limbs: Limbs<'g>,
+struct MechanismInLanes<'g> {
+    limbs: VectorisedMechanism<'g>,
     mass: crba::Matrix<'g>,
     trunk: Option<Trunk>,
 }
 
 impl<'a, 'g> DerivativeParts<'a, 'g> {
-    fn new(variant: &'a Variant<'g>, specialisation: Specialisation) -> DerivativeParts<'a, 'g> {
+    fn new(variant: &'a Variant<'g>, specialisation: ParameterSpecialisation) -> DerivativeParts<'a, 'g> {
         let mass = crba::mass_matrix(&variant.model, &variant.joints);
         DerivativeParts {
             model: &variant.model,
@@ -206,114 +206,133 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
     /// Finds groups of identical limbs, and the trunk that carries all limbs.
     fn find_limbs_and_trunk(&mut self, lanes: bool) {
         let groups = if lanes { vectorise::find_limb_groups(self.model, &self.joints) } else { Vec::new() };
-        let limbs = Limbs::new(self.model, &self.joints, &groups, || passive_forces(self.model, true));
-        let marked = limbs.as_ref().map(|limbs| Trunk::branching_velocities(&limbs.joints, limbs.model.nv()));
+        let limbs =
+            VectorisedMechanism::new(self.model, &self.joints, &groups, || passive_forces(self.model, true));
+        let marked =
+            limbs.as_ref().map(|limbs| Trunk::has_branching_descendant(&limbs.joints, limbs.model.nv()));
         if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {
-                (Some(limbs), Some(marked)) => limbs.marked_outside_limbs(marked),
-                _ => Trunk::branching_velocities(&self.joints, self.model.nv()),
+                (Some(limbs), Some(marked)) => limbs.marked_velocities_outside_limbs(marked),
+                _ => Trunk::has_branching_descendant(&self.joints, self.model.nv()),
             };
             self.trunk = Trunk::new(&self.joints, &self.mass, &whole);
         }
         self.limbs = limbs.zip(marked).map(|(limbs, marked)| {
             let mass = crba::mass_matrix(&limbs.model, &limbs.joints);
             let trunk = self.trunk.as_ref().and_then(|_| Trunk::new(&limbs.joints, &mass, &marked));
-            InLanes { limbs, mass, trunk }
+            MechanismInLanes { limbs, mass, trunk }
         });
     }
 
-    fn operation_cost(&self) -> usize {
-        self.specialisation.lower_to_program(&self.force_columns(self.method)).counts.total_operations()
+    fn operation_count_of_force_columns(&self) -> usize {
+        self.specialisation
+            .lower_to_program(&self.force_derivative_entries(self.method))
+            .counts
+            .total_operations()
     }
 
-    fn force_columns(&self, method: DerivationMethod) -> Vec<Expr<'g>> {
+    fn force_derivative_entries(&self, method: DerivationMethod) -> Vec<Expr<'g>> {
         let a = mechanics::acceleration_symbols(self.model);
-        force_columns(&derivatives::inverse_dynamics(self.model, &self.joints, &a, method))
+        force_derivative_entries(&derivatives::inverse_dynamics(self.model, &self.joints, &a, method))
     }
 
     fn inverse_dynamics(&self) -> Program {
-        let program = self.specialisation.lower_to_program(&self.force_columns(self.method));
+        let program = self.specialisation.lower_to_program(&self.force_derivative_entries(self.method));
         let wide = self.wide.iter().map(|most| {
-            self.specialisation.lower_to_program(&self.force_columns(DerivationMethod::Recursion(*most)))
+            self.specialisation
+                .lower_to_program(&self.force_derivative_entries(DerivationMethod::Recursion(*most)))
         });
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let a = lanes.limbs.symbols_by_velocity(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
-                lower(&force_columns(&forces))
+                lower(&force_derivative_entries(&forces))
             })
         });
-        program.or_in_lanes(wide.chain(in_lanes))
+        program.with_cheapest_lane_variant(wide.chain(in_lanes))
     }
 
     fn forward_dynamics(&self) -> Program {
         let tau = mechanics::generalized_force_symbols(self.model);
-        let program_from_mass_matrix = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
+        let derivative_program_from_mass_matrix = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
             let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
             self.known.replace_known_columns(&mut found.forces);
-            self.specialisation.lower_to_program(&[all_columns(&found), found.accelerations].concat())
+            self.specialisation
+                .lower_to_program(&[linearization_columns(&found), found.accelerations].concat())
         };
         let wide = self.wide.iter().map(|most| {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
-            program_from_mass_matrix(&mass, DerivationMethod::Recursion(*most))
+            derivative_program_from_mass_matrix(&mass, DerivationMethod::Recursion(*most))
         });
-        program_from_mass_matrix(&self.effective, self.method).or_in_lanes(wide)
+        derivative_program_from_mass_matrix(&self.effective, self.method).with_cheapest_lane_variant(wide)
     }
 
     /// Returns the derivatives of forward dynamics with `M⁻¹` by the blocks of trunk and limbs.
-    fn forward_dynamics_in_parts(&self, trunk: &Trunk) -> Program {
+    fn forward_derivatives_by_blocks(&self, trunk: &Trunk) -> Program {
         let model = self.model;
         let inverse = Inverse::new(&self.mass, trunk);
-        let a = inverse.solve_divided(&self.unbalanced_forces());
+        let a = inverse.solve_by_trunk_and_limbs(&self.unbalanced_forces());
         let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
-        let derivative_outputs = |mut forces: ForceDerivatives<'g>,
-                                  [inverse, factors]: [crba::Matrix<'g>; 2],
-                                  a: Vec<Expr<'g>>| {
-            self.known.replace_known_columns(&mut forces);
-            [force_columns(&forces), entries_by_column(&inverse), factors.concat(), a].concat()
-        };
-        let program = self.specialisation.lower_to_program(&derivative_outputs(
+        let concatenated_derivative_outputs =
+            |mut forces: ForceDerivatives<'g>,
+             [inverse, factors]: [crba::Matrix<'g>; 2],
+             a: Vec<Expr<'g>>| {
+                self.known.replace_known_columns(&mut forces);
+                [force_derivative_entries(&forces), entries_by_column(&inverse), factors.concat(), a].concat()
+            };
+        let program = self.specialisation.lower_to_program(&concatenated_derivative_outputs(
             forces,
-            [inverse.inverse_columns(), inverse.limb_factor_rows()],
+            [inverse.trunk_and_limb_inverse_columns(), inverse.limb_to_trunk_factors()],
             a,
         ));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = limb_lanes::accelerations_in_lanes(&lanes.limbs, &inverse);
-            let parts =
-                limb_lanes::inverse(&lanes.limbs, &[inverse.inverse_columns(), inverse.limb_factor_rows()]);
+            let parts = limb_lanes::inverse(
+                &lanes.limbs,
+                &[inverse.trunk_and_limb_inverse_columns(), inverse.limb_to_trunk_factors()],
+            );
             Some([1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
-                lower(&derivative_outputs(forces, parts.clone(), lanes.limbs.scatter_to_velocities(&a)))
+                lower(&concatenated_derivative_outputs(
+                    forces,
+                    parts.clone(),
+                    lanes.limbs.scatter_to_velocities(&a),
+                ))
             }))
         });
-        program.or_in_lanes(in_lanes.into_iter().flatten())
+        program.with_cheapest_lane_variant(in_lanes.into_iter().flatten())
     }
 
     /// Returns the program of `M⁻¹`, by blocks if there is a trunk; after the accelerations if `accelerated`.
     fn inverse(&self, accelerated: bool) -> Program {
-        let inverse_outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
+        let inverse_matrix_outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
             [a.unwrap_or_default(), entries_by_column(&inverse), factors.concat()].concat()
         };
         let Some(trunk) = &self.trunk else {
             let mass = if accelerated { &self.effective } else { &self.mass };
             let factor = Factor::new(mass, &self.joints);
             let a = accelerated.then(|| factor.solve_factored(self.unbalanced_forces()));
-            return self.specialisation.lower_to_program(&inverse_outputs(a, [factor.inverse(), Vec::new()]));
+            return self
+                .specialisation
+                .lower_to_program(&inverse_matrix_outputs(a, [factor.inverse(), Vec::new()]));
         };
         let inverse = Inverse::new(&self.mass, trunk);
-        let a = accelerated.then(|| inverse.solve_divided(&self.unbalanced_forces()));
-        let program = self
-            .specialisation
-            .lower_to_program(&inverse_outputs(a, [inverse.inverse_columns(), inverse.limb_factor_rows()]));
-        program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
+        let a = accelerated.then(|| inverse.solve_by_trunk_and_limbs(&self.unbalanced_forces()));
+        let program = self.specialisation.lower_to_program(&inverse_matrix_outputs(
+            a,
+            [inverse.trunk_and_limb_inverse_columns(), inverse.limb_to_trunk_factors()],
+        ));
+        program.with_cheapest_lane_variant(self.limbs.iter().filter_map(|lanes| {
             let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
             let a = accelerated.then(|| {
                 lanes.limbs.scatter_to_velocities(&limb_lanes::accelerations_in_lanes(&lanes.limbs, &inverse))
             });
-            let parts =
-                limb_lanes::inverse(&lanes.limbs, &[inverse.inverse_columns(), inverse.limb_factor_rows()]);
-            Some(lower(&inverse_outputs(a, parts)))
+            let parts = limb_lanes::inverse(
+                &lanes.limbs,
+                &[inverse.trunk_and_limb_inverse_columns(), inverse.limb_to_trunk_factors()],
+            );
+            Some(lower(&inverse_matrix_outputs(a, parts)))
         }))
     }
 
@@ -327,10 +346,10 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
         let r = accelerated.then(|| self.unbalanced_forces());
         let program = self.specialisation.lower_to_program(&bordered_inverse_outputs(
             r,
-            divided_inverse_terms(&self.mass, &self.trunk_or_whole_mechanism()),
+            inverse_terms_for_runtime_loops(&self.mass, &self.trunk_or_whole_mechanism()),
         ));
-        program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
-            let parts = divided_inverse_terms(&lanes.mass, lanes.trunk.as_ref()?);
+        program.with_cheapest_lane_variant(self.limbs.iter().filter_map(|lanes| {
+            let parts = inverse_terms_for_runtime_loops(&lanes.mass, lanes.trunk.as_ref()?);
             let r = accelerated
                 .then(|| lanes.limbs.scatter_to_velocities(&limb_lanes::unbalanced_forces(&lanes.limbs)));
             Some(lower(&bordered_inverse_outputs(r, limb_lanes::inverse(&lanes.limbs, &parts))))
@@ -351,7 +370,7 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
 
     /// Returns the trunk, or a trunk of all velocities for a mechanism that does not branch.
     fn trunk_or_whole_mechanism(&self) -> Trunk {
-        self.trunk.clone().unwrap_or_else(|| Trunk::whole_trunk(&self.joints, self.model.nv()))
+        self.trunk.clone().unwrap_or_else(|| Trunk::trunk_of_all_velocities(&self.joints, self.model.nv()))
     }
 
     /// Returns the forces that accelerate the mechanism, `τ − h`.
@@ -370,7 +389,7 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
     fn linearization_program(&self, tau: &[Expr<'g>]) -> Program {
         let linear =
             derivatives::linearize_equations(self.model, &self.joints, &self.effective, tau, self.method);
-        let mut outputs = all_columns(&linear);
+        let mut outputs = linearization_columns(&linear);
         outputs.extend(entries_by_column(&displacement_commutators(self.model)));
         self.specialisation.lower_to_program(&outputs)
     }
@@ -379,33 +398,33 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
     /// displacements.
     fn input_force_program(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
-        outputs.extend(force_columns(&symbolic::force_derivatives(self.model, tau)));
-        outputs.extend(entries_by_column(&symbolic::by_input(self.model, tau)));
+        outputs.extend(force_derivative_entries(&symbolic::force_derivatives(self.model, tau)));
+        outputs.extend(entries_by_column(&symbolic::input_derivatives_of_expressions(self.model, tau)));
         outputs.extend(entries_by_column(&displacement_commutators(self.model)));
         self.specialisation.lower_to_program(&outputs)
     }
 
     /// Returns the program of the input forces `tau` with their derivatives, without the commutators of
     /// displacements.
-    fn uncommuted_input_program(&self, tau: &[Expr<'g>]) -> Program {
+    fn input_program_without_commutators(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
-        outputs.extend(force_columns(&symbolic::force_derivatives(self.model, tau)));
-        outputs.extend(entries_by_column(&symbolic::by_input(self.model, tau)));
+        outputs.extend(force_derivative_entries(&symbolic::force_derivatives(self.model, tau)));
+        outputs.extend(entries_by_column(&symbolic::input_derivatives_of_expressions(self.model, tau)));
         self.specialisation.lower_to_program(&outputs)
     }
 
     /// Returns, at constant accelerations and multipliers, the program of the derivatives of
     /// `M a + h − Jᵀ λ`, of `J a + b` and of the constraint velocities, followed by the commutators of
     /// displacements.
-    fn constrained_motion(&self) -> Program {
+    fn constrained_motion_derivative_terms(&self) -> Program {
         let model = self.model;
         let a = mechanics::acceleration_symbols(model);
         let mut forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
-        let parts = constraints::first_order(model, &a);
+        let parts = constraints::constraint_first_derivatives(model, &a);
         derivatives::subtract_matrix(&mut forces.by_q, &parts.forces.by_q);
         derivatives::subtract_matrix(&mut forces.by_v, &parts.forces.by_v);
-        let mut outputs = force_columns(&forces);
-        outputs.extend(force_columns(&parts.accelerations));
+        let mut outputs = force_derivative_entries(&forces);
+        outputs.extend(force_derivative_entries(&parts.accelerations));
         outputs.extend(entries_by_column(&parts.rates));
         outputs.extend(entries_by_column(&displacement_commutators(model)));
         self.specialisation.lower_to_program(&outputs)
@@ -422,17 +441,17 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
             let most = [1].iter().chain(self.wide);
             most.map(|most| lower(&entries_by_column(&limb_lanes::coriolis_matrix(&lanes.limbs, *most))))
         });
-        coriolis_program(1).or_in_lanes(wide.chain(in_lanes))
+        coriolis_program(1).with_cheapest_lane_variant(wide.chain(in_lanes))
     }
 
     /// Returns the program of `M⁻¹` and the form of its outputs; after the accelerations if `accelerated`.
-    fn inverse_function(&self, accelerated: bool) -> (Program, Structure) {
+    fn inverse_mass_matrix_program(&self, accelerated: bool) -> (Program, Structure) {
         let (program, inverse) = match self.inverts_in_runtime_loops() {
             true => {
                 let trunk = self.trunk_or_whole_mechanism();
                 let parted = InverseForm::BlockArrow {
                     trunk: trunk.velocities.clone(),
-                    limbs: trunk.velocities_of_limbs(),
+                    limbs: trunk.velocity_indices_of_limbs(),
                 };
                 (self.inverse_terms_program(accelerated), parted)
             }
@@ -455,12 +474,12 @@ pub(super) fn entries_by_column<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     (0..any.len()).flat_map(|j| m.iter().map(move |row| row[j])).collect()
 }
 
-fn force_columns<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
+fn force_derivative_entries<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
     [&d.by_q, &d.by_v].into_iter().flat_map(entries_by_column).collect()
 }
 
-fn all_columns<'g>(l: &Linearized<'g>) -> Vec<Expr<'g>> {
-    let mut all = force_columns(&l.forces);
+fn linearization_columns<'g>(l: &LinearizedEquations<'g>) -> Vec<Expr<'g>> {
+    let mut all = force_derivative_entries(&l.forces);
     all.extend(entries_by_column(&l.inverse));
     all.extend(entries_by_column(&l.by_u));
     all

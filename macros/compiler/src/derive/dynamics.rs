@@ -2,14 +2,14 @@
 //! equal functions, and the cheapest program is selected.
 
 use super::limb_lanes;
-use super::specialisation::{Candidate, Specialisation};
+use super::specialisation::{Candidate, ParameterSpecialisation};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
 use crate::mechanics::derivatives::Factor;
 use crate::mechanics::limb_contacts::LimbContacts;
-use crate::mechanics::speeds::{InSpeeds, ResultKind};
+use crate::mechanics::speeds::{ResultKind, SpeedTransformation};
 use crate::mechanics::{self, crba, energy, frames, limb_responses, momentum};
 use crate::mechanism::Model;
 use crate::passes::Passes;
@@ -18,7 +18,7 @@ use std::rc::Rc;
 mod frame_choice;
 mod variants;
 
-use frame_choice::{FrameChoice, smallest_size};
+use frame_choice::{FrameChoice, smallest_candidate_size};
 use variants::Variants;
 
 /// Inverse tolerance of the comparison of frames: frames whose mass matrix and inverse dynamics exceed the
@@ -33,7 +33,7 @@ pub(super) struct Dynamics<'g> {
     in_speeds: bool,
     /// True if forward dynamics uses one algorithm without comparing alternatives.
     is_large: bool,
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
     mass_matrix: Program,
     inverse_dynamics: Program,
     bias: Program,
@@ -46,10 +46,10 @@ impl<'g> Dynamics<'g> {
     pub(super) fn new(
         model: &Model<'g>,
         passes: Passes,
-        specialisation: Specialisation,
-        speeds: Option<&Rc<InSpeeds<'g>>>,
+        specialisation: ParameterSpecialisation,
+        speeds: Option<&Rc<SpeedTransformation<'g>>>,
     ) -> Dynamics<'g> {
-        let mut all = FrameChoice::all_frame_choices(model, passes, specialisation, speeds);
+        let mut all = FrameChoice::candidate_frame_choices(model, passes, specialisation, speeds);
         all.sort_by_key(|choice| choice.size);
         if model.nv() > COMPARED_VELOCITIES {
             all.truncate(1);
@@ -64,23 +64,24 @@ impl<'g> Dynamics<'g> {
                 choices.push(choice.variants);
             }
         }
-        choices.iter_mut().for_each(Variants::find_bias_forces);
+        choices.iter_mut().for_each(Variants::find_cheapest_bias_program);
         let wide = if speeds.is_none() { passes.tried_lane_counts(model.nv()) } else { &[] };
-        let wide = mass_matrices_in_lanes(&choices, specialisation, wide);
-        let side_by_side = in_lanes_of(
+        let wide = lane_mass_matrix_programs(&choices, specialisation, wide);
+        let side_by_side = cheapest_lane_programs(
             specialisation,
-            choices.iter().flat_map(|variants| variants.recursions_in_lanes(true)),
+            choices.iter().flat_map(|variants| variants.inverse_dynamics_in_limb_lanes(true)),
         );
         let biases = choices.iter().map(|variants| &variants.bias.program);
-        let bias = biases.min_by_key(|p| (p.counts.total_operations(), p.fused_length())).cloned();
+        let bias =
+            biases.min_by_key(|p| (p.counts.total_operations(), p.instruction_count_after_fusion())).cloned();
         let biases_in_lanes =
             choices.iter().filter_map(|variants| Some(variants.bias.simd.as_ref()?.1.clone()));
         Dynamics {
-            mass_matrix: specialisation.cheapest_program(masses.into_iter()).or_in_lanes(wide),
+            mass_matrix: specialisation.cheapest_program(masses.into_iter()).with_cheapest_lane_variant(wide),
             inverse_dynamics: specialisation
                 .cheapest_program(recursions.into_iter())
-                .or_in_lanes(side_by_side),
-            bias: bias.unwrap_or_default().or_in_lanes(biases_in_lanes),
+                .with_cheapest_lane_variant(side_by_side),
+            bias: bias.unwrap_or_default().with_cheapest_lane_variant(biases_in_lanes),
             is_large: model.nv() > COMPARED_VELOCITIES || least > COMPARED_OPERATIONS,
             choices,
             in_speeds: speeds.is_some(),
@@ -167,9 +168,9 @@ impl<'g> Dynamics<'g> {
                 Factor::new(&mass, &variants.joints).constraint_responses(rows)
             });
             let limbs = variants
-                .plain_limbs()
+                .limbs_for_all_functions()
                 .filter_map(|limbs| limb_responses::limb_contact_responses(limbs, rows));
-            plain.or_in_lanes(in_lanes_of(self.specialisation, limbs))
+            plain.with_cheapest_lane_variant(cheapest_lane_programs(self.specialisation, limbs))
         })
     }
 
@@ -181,10 +182,10 @@ impl<'g> Dynamics<'g> {
         rows: &crba::Matrix<'g>,
         outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
     ) -> Program {
-        let limbs = self.choices.first().and_then(|variants| variants.plain_limbs().next());
+        let limbs = self.choices.first().and_then(|variants| variants.limbs_for_all_functions().next());
         let mut contacts = limbs.and_then(|limbs| LimbContacts::new(limbs, rows));
         let found = contacts.as_mut().and_then(outputs);
-        plain.or_in_lanes(found.map(|outputs| self.specialisation.lower_to_program(&outputs)))
+        plain.with_cheapest_lane_variant(found.map(|outputs| self.specialisation.lower_to_program(&outputs)))
     }
 
     fn best_variant_program(&self, program: impl FnOnce(&Variants<'g>) -> Program) -> Program {
@@ -215,8 +216,8 @@ impl<'g> Dynamics<'g> {
             true => Vec::new(),
             false => self.choices.iter().flat_map(Variants::factorisation_candidates).collect(),
         };
-        let is_larger =
-            smallest_size(&factorised).is_none_or(|f| smallest_size(&articulated).is_some_and(|a| f > a));
+        let is_larger = smallest_candidate_size(&factorised)
+            .is_none_or(|f| smallest_candidate_size(&articulated).is_some_and(|a| f > a));
         let others = articulated.into_iter().filter(|_| is_larger);
         let both = [
             self.specialisation.cheapest_program(factorised.into_iter()),
@@ -225,42 +226,47 @@ impl<'g> Dynamics<'g> {
         let found = both
             .into_iter()
             .filter(|program| !program.outputs.is_empty())
-            .min_by_key(Program::estimated_time);
-        let in_lanes =
-            in_lanes_of(self.specialisation, self.choices.iter().flat_map(Variants::articulated_in_lanes));
-        found.unwrap_or_default().or_in_lanes(in_lanes)
+            .min_by_key(Program::estimated_call_time);
+        let in_lanes = cheapest_lane_programs(
+            self.specialisation,
+            self.choices.iter().flat_map(Variants::articulated_dynamics_in_lanes),
+        );
+        found.unwrap_or_default().with_cheapest_lane_variant(in_lanes)
     }
 }
 
 /// Returns programs of the mass matrix in which identical limbs, or columns, are SIMD lanes.
-fn mass_matrices_in_lanes<'g>(
+fn lane_mass_matrix_programs<'g>(
     choices: &[Variants<'g>],
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
     wide: &[usize],
 ) -> Vec<Program> {
     let limb_mass_matrices = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
-            variants.plain_limbs().map(|limbs| limb_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
+            variants
+                .limbs_for_all_functions()
+                .map(|limbs| limb_lanes::mass_matrix(limbs, most))
+                .collect::<Vec<_>>()
         };
-        in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
+        cheapest_lane_programs(specialisation, choices.iter().flat_map(mass_matrices))
     };
-    let column_mass_matrices = |most| {
+    let mass_matrices_with_column_lanes = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
             let all = variants.variants_for_all_functions();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
         };
-        in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
+        cheapest_lane_programs(specialisation, choices.iter().flat_map(mass_matrices))
     };
     [1].iter()
         .chain(wide)
         .flat_map(|most| limb_mass_matrices(*most))
-        .chain(wide.iter().flat_map(|most| column_mass_matrices(*most)))
+        .chain(wide.iter().flat_map(|most| mass_matrices_with_column_lanes(*most)))
         .collect()
 }
 
 /// Returns the programs with SIMD lanes that may be the cheapest for the outputs.
-fn in_lanes_of<'g>(
-    specialisation: Specialisation,
+fn cheapest_lane_programs<'g>(
+    specialisation: ParameterSpecialisation,
     lists: impl Iterator<Item = Vec<Expr<'g>>>,
 ) -> Vec<Program> {
     let programs =

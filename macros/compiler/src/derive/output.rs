@@ -1,7 +1,7 @@
 //! Result of the derivation: everything that code generation writes.
 
-use crate::catalogue::{Argument, Called, Declared, Id, Shape, Structure};
-use crate::equations::Written;
+use crate::catalogue::{Argument, Called, DeclaredFunction, Id, Shape, Structure};
+use crate::equations::PrintedEquations;
 use crate::lower::Program;
 use crate::mechanism::{Chart, Piece, Quantity};
 
@@ -26,13 +26,13 @@ pub struct Function {
 
 impl Function {
     /// Returns a declared function with its program and the structure of its matrices.
-    pub fn new(declared: Declared, program: Program, structure: Structure) -> Function {
-        let Declared { id, name, docs, arguments, shape } = declared;
+    pub fn new(declared: DeclaredFunction, program: Program, structure: Structure) -> Function {
+        let DeclaredFunction { id, name, docs, arguments, shape } = declared;
         Function { id, name, docs, arguments, shape, program, structure }
     }
 
     /// Returns an empty function for a mechanism with an error.
-    pub fn empty_function(declared: Declared) -> Function {
+    pub fn empty_function(declared: DeclaredFunction) -> Function {
         Function::new(declared, Program::default(), Structure::default())
     }
 
@@ -68,18 +68,18 @@ impl Function {
 
     /// Returns true if the program, and its version in lanes, has the number of outputs that the result takes
     /// and reads only arguments of the function.
-    fn has_expected_outputs(&self) -> bool {
+    fn has_declared_inputs_and_outputs(&self) -> bool {
         let expected = self.shape.output_count(&self.structure);
         let programs = [Some(&self.program), self.program.simd.as_deref()];
         programs.into_iter().flatten().all(|program| {
-            let reads_arguments = || {
+            let uses_only_available_arguments = || {
                 program
                     .used_symbols()
                     .into_iter()
                     .map(Quantity::from_symbol)
                     .all(|q| self.is_available_argument(q))
             };
-            program.outputs.len() == expected && reads_arguments()
+            program.outputs.len() == expected && uses_only_available_arguments()
         })
     }
 
@@ -99,19 +99,19 @@ pub struct Output {
     /// Functions to be emitted, each with its documentation, shape and program.
     pub functions: Vec<Function>,
     /// Kinematic programs of the links.
-    pub links: Vec<LinkSteps>,
+    pub links: Vec<LinkRecursionPrograms>,
     /// Kinematic programs of the named frames.
     pub frames: Vec<FrameSteps>,
     /// First indices in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
     /// The equations of motion for printing; empty for large mechanisms.
-    pub equations: Written,
+    pub equations: PrintedEquations,
     /// The linearised equations of every declared equilibrium.
-    pub linear_equations: Vec<Written>,
+    pub linear_equations: Vec<PrintedEquations>,
     /// Variants of functions with precomputed values, if the option `prepare` is set.
     pub prepared: Option<Prepared>,
     /// Associated constants in addition to sizes and names.
-    pub constants: Vec<Constant>,
+    pub constants: Vec<AssociatedConstant>,
 }
 
 impl Output {
@@ -121,17 +121,23 @@ impl Output {
     }
 
     /// Returns the text of an operation on constants whose result is not finite, if a program contains one.
-    pub fn undefined_operation(&self) -> Option<String> {
+    pub fn non_finite_constant_operation(&self) -> Option<String> {
         let numbers = self.prepared.iter().map(|prepared| &prepared.numbers);
-        self.all_functions().map(|f| &f.program).chain(numbers).find_map(Program::undefined_operation)
+        self.all_functions()
+            .map(|f| &f.program)
+            .chain(numbers)
+            .find_map(Program::non_finite_constant_operation)
     }
 
     /// Returns the name of a function whose program does not fit its arguments or its result. This is an
     /// internal error, which would produce wrong code.
-    pub fn misfitting_function(&self) -> Option<&str> {
-        let function = self.all_functions().find(|f| !f.has_expected_outputs()).map(|f| f.name.as_str());
-        let link = self.links.iter().any(|l| !l.has_expected_outputs()).then_some("the steps of a link");
-        let frame = self.frames.iter().find(|f| !f.has_expected_outputs()).map(|f| f.name.as_str());
+    pub fn function_with_mismatched_program(&self) -> Option<&str> {
+        let function =
+            self.all_functions().find(|f| !f.has_declared_inputs_and_outputs()).map(|f| f.name.as_str());
+        let link =
+            self.links.iter().any(|l| !l.has_declared_inputs_and_outputs()).then_some("the steps of a link");
+        let frame =
+            self.frames.iter().find(|f| !f.has_declared_inputs_and_outputs()).map(|f| f.name.as_str());
         function.or(link).or(frame)
     }
 }
@@ -150,7 +156,7 @@ pub const PLACEMENT: usize = 12;
 pub const TWIST: usize = 6;
 
 /// Programs for the placement, twist and acceleration of one link from those of its parent.
-pub struct LinkSteps {
+pub struct LinkRecursionPrograms {
     /// Parent link; `None` for the ground.
     pub parent: Option<usize>,
     /// Indices in `v` of the degrees of freedom of its joint.
@@ -167,8 +173,8 @@ pub struct LinkSteps {
     pub columns: Program,
 }
 
-impl LinkSteps {
-    fn has_expected_outputs(&self) -> bool {
+impl LinkRecursionPrograms {
+    fn has_declared_inputs_and_outputs(&self) -> bool {
         [&self.placement, &self.twist, &self.acceleration, &self.columns]
             .map(|program| program.outputs.len())
             .eq(&[PLACEMENT, TWIST, TWIST, TWIST * self.velocities.len()])
@@ -192,14 +198,14 @@ pub struct FrameSteps {
 }
 
 impl FrameSteps {
-    fn has_expected_outputs(&self) -> bool {
+    fn has_declared_inputs_and_outputs(&self) -> bool {
         [&self.placement, &self.twist, &self.acceleration].map(|program| program.outputs.len())
             == [PLACEMENT, TWIST, TWIST]
     }
 }
 
 /// Associated constant of the generated type that is a list.
-pub struct Constant {
+pub struct AssociatedConstant {
     /// Name of the constant.
     pub name: &'static str,
     /// Documentation of the constant.
@@ -210,21 +216,26 @@ pub struct Constant {
     pub list: Vec<String>,
 }
 
-impl Constant {
-    fn string_list_constant(name: &'static str, docs: &'static str, list: &[String]) -> Constant {
-        Constant { name, docs, item: "&'static str", list: list.iter().map(|s| format!("{s:?}")).collect() }
+impl AssociatedConstant {
+    fn string_list_constant(name: &'static str, docs: &'static str, list: &[String]) -> AssociatedConstant {
+        AssociatedConstant {
+            name,
+            docs,
+            item: "&'static str",
+            list: list.iter().map(|s| format!("{s:?}")).collect(),
+        }
     }
 
     /// Returns the lists of names for the option `regressor`.
-    pub fn regressor_name_constants(bodies: &[String], base: &[String]) -> Vec<Constant> {
+    pub fn regressor_name_constants(bodies: &[String], base: &[String]) -> Vec<AssociatedConstant> {
         vec![
-            Constant::string_list_constant(
+            AssociatedConstant::string_list_constant(
                 "BODIES",
                 "Name of the body of each group of ten standard parameters, which include everything fixed \
                  to it.",
                 bodies,
             ),
-            Constant::string_list_constant(
+            AssociatedConstant::string_list_constant(
                 "BASE_PARAMETERS",
                 "Name of each base parameter: the link parameter, in the frame of its joint, that represents \
                  the combination.",
@@ -234,8 +245,8 @@ impl Constant {
     }
 
     /// Returns the list of the rows and columns of the entries for the option `packed`.
-    pub fn packed_entry_constant(list: &[(usize, usize)]) -> Constant {
-        Constant {
+    pub fn packed_entries_constant(list: &[(usize, usize)]) -> AssociatedConstant {
+        AssociatedConstant {
             name: "MASS_MATRIX_ENTRIES",
             docs: "Row and column of every entry of `mass_matrix_packed`: the lower triangle of the mass \
                    matrix without entries that are always zero.",
@@ -245,8 +256,8 @@ impl Constant {
     }
 
     /// Returns the list of the coordinates that the option `routh` eliminates.
-    pub fn cyclic_coordinate_constant(list: &[usize]) -> Constant {
-        Constant {
+    pub fn cyclic_coordinate_constant(list: &[usize]) -> AssociatedConstant {
+        AssociatedConstant {
             name: "CYCLIC",
             docs: "Index in `v` of the velocity of each cyclic coordinate. The Lagrangian does not depend on \
                    a cyclic coordinate, for any values of the parameters, and only inputs change its \
@@ -257,8 +268,8 @@ impl Constant {
     }
 
     /// Returns the list of the names of the conserved quantities.
-    pub fn conserved_name_constant(list: &[String]) -> Constant {
-        Constant::string_list_constant(
+    pub fn conserved_names_constant(list: &[String]) -> AssociatedConstant {
+        AssociatedConstant::string_list_constant(
             "CONSERVED",
             "Name of every entry of [`conserved`](Self::conserved): a quantity that is constant in every \
              motion without inputs, for any values of the parameters. The energy, Jacobi's integral and \
@@ -269,26 +280,26 @@ impl Constant {
 
     /// Returns the lists of the linearised equations of declared equilibria, each with its name; empty
     /// without equilibria.
-    pub fn linear_equations(all: &[(String, Written)]) -> Vec<Constant> {
+    pub fn linear_equations(all: &[(String, PrintedEquations)]) -> Vec<AssociatedConstant> {
         if all.is_empty() {
             return Vec::new();
         }
         let collect_text_parts =
-            |part: fn(&(String, Written)) -> String| all.iter().map(part).collect::<Vec<String>>();
+            |part: fn(&(String, PrintedEquations)) -> String| all.iter().map(part).collect::<Vec<String>>();
         vec![
-            Constant::string_list_constant(
+            AssociatedConstant::string_list_constant(
                 "EQUILIBRIA",
                 "Name of every declared equilibrium.",
                 &collect_text_parts(|(name, _)| name.clone()),
             ),
-            Constant::string_list_constant(
+            AssociatedConstant::string_list_constant(
                 "LINEAR_EQUATIONS",
                 "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in \
                  the parameters of the mechanism: the state at rest, the equations and, for at most three \
                  velocities and degree seven, the characteristic equation with the conditions of stability.",
                 &collect_text_parts(|(_, written)| written.plain.clone()),
             ),
-            Constant::string_list_constant(
+            AssociatedConstant::string_list_constant(
                 "LINEAR_EQUATIONS_LATEX",
                 "[`LINEAR_EQUATIONS`](Self::LINEAR_EQUATIONS) as LaTeX: an `aligned` environment of \
                  `amsmath` each.",
@@ -298,12 +309,12 @@ impl Constant {
     }
 
     /// Returns the list of the pieces of the drawing, for the option `drawing`.
-    pub fn drawing_constant(pieces: &[Piece<'_>]) -> Constant {
+    pub fn drawing_pieces_constant(pieces: &[Piece<'_>]) -> AssociatedConstant {
         let mut first = 0;
         let written = pieces.iter().map(|piece| {
             first += piece.numbers.len();
             let Piece { name, role, kind, frames: [a, b], .. } = piece;
-            let frame_option_source = |frame: &Option<usize>| match frame {
+            let rust_option_of_frame_index = |frame: &Option<usize>| match frame {
                 Some(k) => format!("::core::option::Option::Some({k})"),
                 None => "::core::option::Option::None".to_string(),
             };
@@ -311,11 +322,11 @@ impl Constant {
             format!(
                 "::linkwork::drawing::Piece {{ name: {name:?}, role: ::linkwork::drawing::Role::{role:?}, \
                  kind: ::linkwork::drawing::Kind::{kind:?}, frames: [{}, {}], first: {at} }}",
-                frame_option_source(a),
-                frame_option_source(b)
+                rust_option_of_frame_index(a),
+                rust_option_of_frame_index(b)
             )
         });
-        Constant {
+        AssociatedConstant {
             name: "DRAWING",
             docs: "Geometry of the mechanism for drawings, an entry for each solid, surface, joint, force \
                    element and input.",
@@ -325,7 +336,7 @@ impl Constant {
     }
 
     /// Returns the list of the names of the parameters.
-    pub fn parameter_name_constant(list: &[String]) -> Constant {
-        Constant::string_list_constant("PARAMETERS", "Name of every parameter of the struct.", list)
+    pub fn parameter_names_constant(list: &[String]) -> AssociatedConstant {
+        AssociatedConstant::string_list_constant("PARAMETERS", "Name of every parameter of the struct.", list)
     }
 }

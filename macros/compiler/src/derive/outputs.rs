@@ -1,16 +1,18 @@
 //! Derivation of declared outputs: their functions, their Jacobians, and reactions.
 
-use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Declared, Facts, Id, JACOBIAN, REACTION, TOUCHED};
+use crate::catalogue::{
+    self, BY_PARAMETERS, DERIVATIVES, DeclaredFunction, Facts, Id, JACOBIAN, REACTION, TOUCHED,
+};
 use crate::expr::Expr;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::kinematics::{symbols_in, time_derivative};
 use crate::mechanics::derivatives::symbolic;
 use crate::mechanics::reactions;
-use crate::mechanism::{Model, OutputValue, Quantity, Uses};
+use crate::mechanism::{Model, OutputExpression, Quantity, UsedQuantities};
 
 /// Returns the functions of all outputs, in order. Mechanisms without dynamics have no reactions.
-pub fn signatures_of_outputs(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
-    let functions_of_output = |output: &OutputValue<'_>| {
+pub fn declared_output_functions(model: &Model<'_>, facts: &Facts) -> Vec<DeclaredFunction> {
+    let functions_of_output = |output: &OutputExpression<'_>| {
         let size = output.values.len();
         let depends_on_quantity = |f: fn(&Quantity) -> bool| {
             symbols_in(&output.values).into_iter().map(Quantity::from_symbol).any(|q| f(&q))
@@ -24,16 +26,18 @@ pub fn signatures_of_outputs(model: &Model<'_>, facts: &Facts) -> Vec<Declared> 
             (true, false) => {
                 vec![catalogue::reaction_function(&output.name, size, output.diagram.is_some(), facts)]
             }
-            (false, _) => catalogue::output_functions(&output.name, size, uses_of_output(output), facts),
+            (false, _) => {
+                catalogue::output_functions(&output.name, size, quantities_used_by_output(output), facts)
+            }
         }
     };
     model.outputs.iter().flat_map(functions_of_output).collect()
 }
 
-fn uses_of_output(output: &OutputValue<'_>) -> Uses {
+fn quantities_used_by_output(output: &OutputExpression<'_>) -> UsedQuantities {
     let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::from_symbol).collect();
     let depends_on_quantity = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
-    Uses {
+    UsedQuantities {
         velocities: depends_on_quantity(|q| matches!(q, Quantity::Velocity(_))),
         accelerations: depends_on_quantity(|q| matches!(q, Quantity::Acceleration(_))),
         inputs: depends_on_quantity(|q| matches!(q, Quantity::Input(_))),
@@ -41,7 +45,7 @@ fn uses_of_output(output: &OutputValue<'_>) -> Uses {
 }
 
 /// Returns the values of a declared output function.
-pub fn output_function_values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
+pub fn output_function_expressions<'g>(model: &Model<'g>, declared: &DeclaredFunction) -> Vec<Expr<'g>> {
     let name = match declared.id {
         Id::Reaction => declared.name.strip_prefix(REACTION),
         Id::Touched => declared.name.strip_prefix(TOUCHED),
@@ -69,32 +73,34 @@ fn output_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g
     let blocks = [
         (by_state.by_q, model.nv()),
         (by_state.by_v, model.nv()),
-        (symbolic::by_acceleration(model, values), model.nv()),
-        (symbolic::by_input(model, values), model.nu()),
+        (symbolic::acceleration_derivative_matrix(model, values), model.nv()),
+        (symbolic::input_derivatives_of_expressions(model, values), model.nu()),
     ];
-    let columns_of_block = |(rows, width): &(Vec<Vec<Expr<'g>>>, usize)| -> Vec<Expr<'g>> {
+    let block_entries_by_column = |(rows, width): &(Vec<Vec<Expr<'g>>>, usize)| -> Vec<Expr<'g>> {
         (0..*width).flat_map(|k| rows.iter().map(move |row| row[k])).collect()
     };
-    blocks.iter().flat_map(columns_of_block).collect()
+    blocks.iter().flat_map(block_entries_by_column).collect()
 }
 
 fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let parameter_derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let differentiated_outputs =
-        |mut d: Derivative<'g>| -> Vec<Expr<'g>> { values.iter().map(|e| d.differentiate(*e)).collect() };
+    let parameter_derivative =
+        |k| DirectionalDerivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let differentiated_outputs = |mut d: DirectionalDerivative<'g>| -> Vec<Expr<'g>> {
+        values.iter().map(|e| d.differentiate(*e)).collect()
+    };
     (0..model.parameters.len()).flat_map(|k| differentiated_outputs(parameter_derivative(k))).collect()
 }
 
 /// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of
 /// its time derivative if the output depends only on configuration and time.
-fn output_jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>) -> Vec<Expr<'g>> {
-    let rates: Vec<Expr<'g>> = match uses_of_output(output).velocities {
+fn output_jacobian<'g>(model: &Model<'g>, output: &OutputExpression<'g>) -> Vec<Expr<'g>> {
+    let rates: Vec<Expr<'g>> = match quantities_used_by_output(output).velocities {
         true => output.values.clone(),
         false => output.values.iter().map(|e| time_derivative(model.configuration_space(), *e)).collect(),
     };
     let mut entries = Vec::new();
     for k in 0..model.nv() {
-        let mut d = Derivative::with_respect_to(Quantity::Velocity(k).symbol(), model.graph);
+        let mut d = DirectionalDerivative::with_respect_to(Quantity::Velocity(k).symbol(), model.graph);
         entries.extend(rates.iter().map(|e| d.differentiate(*e)));
     }
     entries

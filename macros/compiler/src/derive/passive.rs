@@ -10,7 +10,7 @@ use std::rc::Rc;
 
 /// Returns the model with passive forces as symbols if they take enough operations, otherwise `None`. Their
 /// derivatives are computed only if `derivatives` is true.
-pub(super) fn with_given_forces<'g>(model: &Model<'g>, derivatives: bool) -> Option<Model<'g>> {
+pub(super) fn with_passive_force_arguments<'g>(model: &Model<'g>, derivatives: bool) -> Option<Model<'g>> {
     if passive_operation_count(model) < CALLED_OPERATIONS {
         return None;
     }

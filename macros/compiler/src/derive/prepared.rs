@@ -4,7 +4,7 @@
 use super::output::{Function, Prepared};
 use crate::catalogue;
 use crate::expr::{Expr, Graph, Id};
-use crate::lower::{lower, pipeline, replace_hoisted};
+use crate::lower::{lower, pipeline, replace_hoisted_symbols};
 use crate::mechanism::Quantity;
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ pub fn extract_prepared_values(graph: &Graph, mut functions: Vec<Function>) -> P
     // Conditions on parameters are checked before the values are computed.
     functions.retain(|f| f.id != catalogue::Id::Figures);
     for f in &mut functions {
-        replace_hoisted(&mut f.program, &mut place);
+        replace_hoisted_symbols(&mut f.program, &mut place);
     }
     Prepared { numbers: lower(&numbers).run_passes(pipeline::PART), functions }
 }

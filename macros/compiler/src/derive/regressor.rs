@@ -1,7 +1,7 @@
 //! The functions of the option `regressor`: the dynamics as linear functions of the mass properties, and the
 //! minimal set of identifiable combinations (base parameters).
 
-use super::output::Constant;
+use super::output::AssociatedConstant;
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::mechanics;
@@ -9,11 +9,11 @@ use crate::mechanics::independence::{ColumnTest, classify_columns};
 use crate::mechanics::regressor::{
     COUNT, NAMES, RegressorFrame, inertia_from_parameters, inertial_parameters, regressor_columns,
 };
-use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity, Supplied};
-use crate::passes::{Gauge, Regroup, regroup_inertias};
+use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity, SuppliedQuantity};
+use crate::passes::{RegroupOptions, VanishingMomentConvention, move_inertias_to_parents};
 
 /// Data for the functions of parameter identification: regressors and base parameters.
-pub(super) struct Identification<'a, 'g> {
+pub(super) struct IdentificationFunctions<'a, 'g> {
     model: &'a Model<'g>,
     /// First declared body of each link that has bodies.
     bodies: Vec<&'a NamedFrame<'g>>,
@@ -30,13 +30,13 @@ struct BaseParameters<'g> {
     columns: Vec<Vec<Expr<'g>>>,
 }
 
-impl<'a, 'g> Identification<'a, 'g> {
-    pub(super) fn new(model: &'a Model<'g>, joints: &[Joint<'g>]) -> Identification<'a, 'g> {
+impl<'a, 'g> IdentificationFunctions<'a, 'g> {
+    pub(super) fn new(model: &'a Model<'g>, joints: &[Joint<'g>]) -> IdentificationFunctions<'a, 'g> {
         let first_massive_frame =
             |link: usize| model.frames.iter().find(|f| f.massive && f.link == Some(LinkId(link)));
         let bodies: Vec<&NamedFrame<'g>> = (0..model.links.len()).filter_map(first_massive_frame).collect();
         let base = derive_base_parameters(model, joints, &bodies);
-        Identification { model, bodies, base }
+        IdentificationFunctions { model, bodies, base }
     }
 
     /// Returns the numbers of bodies and of base parameters.
@@ -45,17 +45,21 @@ impl<'a, 'g> Identification<'a, 'g> {
     }
 
     /// Returns the names of the bodies and of the base parameters.
-    pub(super) fn name_constants(&self) -> Vec<Constant> {
-        let name_of_link = |k: usize| {
+    pub(super) fn identification_name_constants(&self) -> Vec<AssociatedConstant> {
+        let body_or_velocity_name_of_link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
             let first_velocity = || kinematics::joints_of_model(self.model)[k].dofs.first().map(|d| d.index);
             let name_of_first_velocity =
                 || first_velocity().map_or(String::new(), |v| self.model.velocities[v].0.clone());
             body.map_or_else(name_of_first_velocity, |body| body.name.clone())
         };
-        let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", name_of_link(*k), NAMES[*p]));
+        let base = self
+            .base
+            .entries
+            .iter()
+            .map(|(k, p)| format!("{}.{}", body_or_velocity_name_of_link(*k), NAMES[*p]));
         let bodies: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
-        Constant::regressor_name_constants(&bodies, &base.collect::<Vec<String>>())
+        AssociatedConstant::regressor_name_constants(&bodies, &base.collect::<Vec<String>>())
     }
 
     pub(super) fn joint_torque_regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
@@ -83,7 +87,7 @@ impl<'a, 'g> Identification<'a, 'g> {
             .flat_map(|site| {
                 let back = site.pose.inverse();
                 let own = &self.model.links[site.link.0].inertia;
-                inertial_parameters(&zero.add_placed_inertia(own, &back.rotation, back.translation))
+                inertial_parameters(&zero.sum_with_placed_inertia(own, &back.rotation, back.translation))
             })
             .collect()
     }
@@ -105,12 +109,15 @@ fn derive_base_parameters<'g>(
     given.links.iter_mut().for_each(|link| link.inertia = Inertia::zero(g));
     for (k, site) in bodies.iter().filter_map(|body| site_of_body(body)).enumerate() {
         let own = inertia_from_parameters(std::array::from_fn(|p| {
-            Quantity::Given(Supplied::Inertia, COUNT * k + p).expr(g)
+            Quantity::Given(SuppliedQuantity::Inertia, COUNT * k + p).expr(g)
         }));
         let link = &mut given.links[site.link.0].inertia;
-        *link = link.add_placed_inertia(&own, &site.pose.rotation, site.pose.translation);
+        *link = link.sum_with_placed_inertia(&own, &site.pose.rotation, site.pose.translation);
     }
-    regroup_inertias(&mut given, Regroup { gauge: Gauge::Second, to_children: false, symbolic: true });
+    move_inertias_to_parents(
+        &mut given,
+        RegroupOptions { gauge: VanishingMomentConvention::Second, to_children: false, symbolic: true },
+    );
 
     let left: Vec<[Expr<'g>; COUNT]> =
         given.links.iter().map(|link| inertial_parameters(&link.inertia)).collect();
@@ -151,13 +158,13 @@ fn derive_base_parameters<'g>(
 impl BaseParameters<'_> {
     /// Removes the inertial parameters that are combinations of other ones.
     fn keep_independent_parameters(&mut self, parts: &[ColumnTest]) {
-        retain_independent(&mut self.entries, parts);
-        retain_independent(&mut self.values, parts);
-        retain_independent(&mut self.columns, parts);
+        retain_independent_items(&mut self.entries, parts);
+        retain_independent_items(&mut self.values, parts);
+        retain_independent_items(&mut self.columns, parts);
     }
 }
 
-fn retain_independent<T>(list: &mut Vec<T>, parts: &[ColumnTest]) {
+fn retain_independent_items<T>(list: &mut Vec<T>, parts: &[ColumnTest]) {
     let mut parts = parts.iter();
     list.retain(|_| parts.next() == Some(&ColumnTest::Own));
 }

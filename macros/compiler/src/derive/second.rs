@@ -1,7 +1,7 @@
 //! Derivation of the functions of the option `second_derivatives`.
 
 use super::derivatives::{DIFFERENTIATE, entries_by_column};
-use super::specialisation::Specialisation;
+use super::specialisation::ParameterSpecialisation;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
@@ -14,15 +14,15 @@ pub(super) fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     wide: &[usize],
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
 ) -> Program {
     // Passive forces as symbols hide their dependence on the state, so the elements themselves are
     // differentiated.
     let model = &Model { passive: None, ..model.clone() };
-    let in_lanes = |most: usize| {
+    let hessian_blocks_in_lanes = |most: usize| {
         second::hessian_by_recursion(model, joints, most).map(|found| state_hessian_blocks(&found).concat())
     };
-    let Some(plain) = in_lanes(1) else {
+    let Some(plain) = hessian_blocks_in_lanes(1) else {
         return specialisation.lower_to_program(
             &state_hessian_blocks(&second::hessian_by_differentiation(model, joints)).concat(),
         );
@@ -35,15 +35,17 @@ pub(super) fn inverse_dynamics<'g>(
     };
     let program = specialisation
         .cheapest_program(candidates.into_iter().map(|list| specialisation.candidate_with_size(list)));
-    let wide = wide.iter().filter_map(|most| Some(specialisation.lower_to_program(&in_lanes(*most)?)));
-    program.or_in_lanes(wide)
+    let wide = wide
+        .iter()
+        .filter_map(|most| Some(specialisation.lower_to_program(&hessian_blocks_in_lanes(*most)?)));
+    program.with_cheapest_lane_variant(wide)
 }
 
 /// Returns the second derivatives of the power of the input forces.
 pub(super) fn input_power_hessian<'g>(
     model: &Model<'g>,
     tau: &[Expr<'g>],
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
 ) -> Program {
     let InputHessian { state: by_state, qu, vu, uu } = second::of_inputs(model, tau);
     let [qq, qv, vv, _] = state_hessian_blocks(&by_state);
@@ -52,7 +54,7 @@ pub(super) fn input_power_hessian<'g>(
 }
 
 /// Returns the second derivatives of the terms that constraints add to the equations of motion.
-pub(super) fn constraint_hessian(model: &Model<'_>, specialisation: Specialisation) -> Program {
+pub(super) fn constraint_hessian(model: &Model<'_>, specialisation: ParameterSpecialisation) -> Program {
     let ConstraintHessian { state: by_state, q_lambda } = second::hessian_of_constraints(model);
     let mut outputs = state_hessian_blocks(&by_state).concat();
     outputs.extend(entries_by_column(&q_lambda));

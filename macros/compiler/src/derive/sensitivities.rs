@@ -1,6 +1,6 @@
 //! The functions of the option `sensitivities`: derivatives of the motion with respect to the parameters.
 
-use super::specialisation::Specialisation;
+use super::specialisation::ParameterSpecialisation;
 use crate::expr::Expr;
 use crate::kinematics;
 use crate::lower::Program;
@@ -10,18 +10,18 @@ use crate::mechanism::Model;
 use crate::passes::{self, Passes, Variant};
 
 /// The model, or the cheapest of its variants, from which both functions are derived.
-pub(super) struct Sensitivities<'g> {
+pub(super) struct SensitivityDerivation<'g> {
     variant: Option<Variant<'g>>,
     inverse: Program,
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
 }
 
-impl<'g> Sensitivities<'g> {
+impl<'g> SensitivityDerivation<'g> {
     pub(super) fn new(
         model: &Model<'g>,
         passes: Passes,
-        specialisation: Specialisation,
-    ) -> Sensitivities<'g> {
+        specialisation: ParameterSpecialisation,
+    ) -> SensitivityDerivation<'g> {
         // Passive forces as symbols hide their dependence on the parameters, so the elements themselves are
         // differentiated.
         let model = &Model { passive: None, ..model.clone() };
@@ -37,19 +37,19 @@ impl<'g> Sensitivities<'g> {
             for_inverse_dynamics: false,
         });
         if passes.parallel {
-            variants.extend(passes::in_common_axes(&variants));
+            variants.extend(passes::variants_in_common_axes(&variants));
         }
-        let inverse_dynamics_program = |variant: &Variant<'_>| {
+        let parameter_derivatives_program = |variant: &Variant<'_>| {
             specialisation
                 .lower_to_program(&parameters::inverse_dynamics(&variant.model, &variant.joints).concat())
         };
         let all = variants.into_iter().map(|variant| {
-            let program = inverse_dynamics_program(&variant);
+            let program = parameter_derivatives_program(&variant);
             (variant, program)
         });
         let best = all.min_by_key(|(_, program)| program.counts.total_operations());
         let (variant, inverse) = best.map_or((None, Program::default()), |(variant, p)| (Some(variant), p));
-        Sensitivities { variant, inverse, specialisation }
+        SensitivityDerivation { variant, inverse, specialisation }
     }
 
     pub(super) fn inverse_dynamics(&self) -> Program {

@@ -1,6 +1,6 @@
 //! Diagnostics for singular mass matrices: a lack of inertia is a user error, reported with its cause.
 
-use crate::diag::{Diagnostics, all_of};
+use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Graph, Sym3, Vec3};
 use crate::kinematics::Joint;
 use crate::mechanics::{added_mass, crba, massless, regularity};
@@ -12,14 +12,14 @@ const LEAVE_OUT: &str = "or omit the dynamics with `inertia = none`: frames, the
                          and outputs remain";
 
 /// Returns true if the mass matrix is regular; otherwise reports the cause.
-pub fn check_mass_matrix<'g>(
+pub fn report_singular_mass_matrix<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
     cx: &mut Diagnostics,
 ) -> bool {
-    let loaded = massless::augmented_mass(model, joints, mass.clone());
-    let mut singular = regularity::singular_velocities(model, joints, &loaded);
+    let loaded = massless::mass_with_weighted_constraints(model, joints, mass.clone());
+    let mut singular = regularity::singular_mass_matrix_entries(model, joints, &loaded);
     if singular.is_empty() {
         return true;
     }
@@ -49,15 +49,18 @@ pub fn check_effective_mass<'g>(
     cx: &mut Diagnostics,
 ) -> bool {
     let [force, ..] = model.acceleration_forces.as_slice() else { return true };
-    let singular =
-        regularity::singular_velocities(model, joints, &added_mass::effective_mass_matrix(model, mass));
+    let singular = regularity::singular_mass_matrix_entries(
+        model,
+        joints,
+        &added_mass::effective_mass_matrix(model, mass),
+    );
     let names: Vec<String> = singular.iter().map(|k| format!("`{}`", model.velocities[*k].0)).collect();
     if names.is_empty() {
         return true;
     }
     cx.report_error(
         force.place.clone(),
-        format!("forces that depend on accelerations cancel the inertia of {}", all_of(&names)),
+        format!("forces that depend on accelerations cancel the inertia of {}", join_names_with_and(&names)),
     )
     .add_help("an added mass of water or air opposes the acceleration, as in `value = -added * a(…)`");
     false
@@ -80,8 +83,8 @@ fn massless_base<'g>(
         let mut with_mass = model.clone();
         with_mass.links[bare].inertia = unit_mass_properties(model.graph);
         let mass = crba::mass_matrix(&with_mass, joints);
-        let loaded = massless::augmented_mass(&with_mass, joints, mass);
-        let rest = regularity::singular_velocities(&with_mass, joints, &loaded);
+        let loaded = massless::mass_with_weighted_constraints(&with_mass, joints, mass);
+        let rest = regularity::singular_mass_matrix_entries(&with_mass, joints, &loaded);
         (rest.len() < singular.len()).then_some((bare, rest))
     })
 }
@@ -126,7 +129,7 @@ fn report_massless_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Di
         1 => ("coordinate", "moves", "the joint carries"),
         _ => ("coordinates", "move", "the joints carry"),
     };
-    let message = format!("the {subject} {} {verb} no body with inertia", all_of(&list));
+    let message = format!("the {subject} {} {verb} no body with inertia", join_names_with_and(&list));
     let diagnostic = cx.report_error(place.clone(), message);
     diagnostic
         .add_help(format!("the mass matrix is singular: give mass or inertia to the bodies that {joints}"));

@@ -4,26 +4,26 @@
 use super::derivation::Derivation;
 use super::derivatives::entries_by_column;
 use super::second;
-use crate::catalogue::{Declared, Id};
+use crate::catalogue::{DeclaredFunction, Id};
 use crate::expr::Expr;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::replace_all;
 use crate::kinematics::symbols_in;
 use crate::mechanics::derivatives::second::{self as hessian, Hessian, InputHessian};
 use crate::mechanics::derivatives::{Factor, ForceDerivatives, analytic, subtract_matrix, symbolic};
-use crate::mechanics::speeds::{InSpeeds, ResultKind};
+use crate::mechanics::speeds::{ResultKind, SpeedTransformation};
 use crate::mechanics::{
     self, added_mass, constraints, crba, energy, forces, momentum, power, reactions, rnea,
 };
 use crate::mechanism::{Model, Quantity};
-use crate::syntax::{Printed, Requests};
+use crate::syntax::{EquationsOption, RequestedFunctions};
 
 /// Returns the error message and help for an option that does not support these speeds.
-pub(super) fn unsupported_option(
-    speeds: &InSpeeds<'_>,
-    requests: Requests,
+pub(super) fn unsupported_option_message(
+    speeds: &SpeedTransformation<'_>,
+    requests: RequestedFunctions,
 ) -> Option<(&'static str, &'static str)> {
-    if requests.routh || requests.equations == Printed::Routh {
+    if requests.routh || requests.equations == EquationsOption::Routh {
         return Some((
             "Routh's equations are available in coordinates, not in declared speeds",
             "the reduction replaces the rates of cyclic coordinates by their momenta, but declared speeds \
@@ -46,8 +46,8 @@ impl<'g> Derivation<'_, 'g> {
     /// they do not change.
     pub(super) fn outputs_in_speeds(
         &self,
-        speeds: &InSpeeds<'g>,
-        declared: &Declared,
+        speeds: &SpeedTransformation<'g>,
+        declared: &DeclaredFunction,
     ) -> Option<Vec<Expr<'g>>> {
         let (native, joints) = (&speeds.native, self.joints);
         let scalars_in_speeds = |e: Vec<Expr<'g>>| Some(speeds.express_in_speeds(&e));
@@ -55,7 +55,7 @@ impl<'g> Derivation<'_, 'g> {
             Id::RatesOfSpeeds => Some(speeds.rates.clone()),
             Id::SpeedsOfRates => Some(speeds.speeds_of_velocities(&mechanics::velocity_symbols(native))),
             Id::RateMatrix => Some(entries_by_column(speeds.velocity_transformation())),
-            Id::SpeedMatrix => Some(entries_by_column(speeds.of_rates())),
+            Id::SpeedMatrix => Some(entries_by_column(speeds.velocity_to_speed_matrix())),
             Id::RateChanges => Some(entries_by_column(&speeds.rate_changes())),
             Id::RateAccelerations => Some(speeds.accelerations.clone()),
             Id::GeneralizedForces => Some(self.input_forces(speeds)),
@@ -64,7 +64,7 @@ impl<'g> Derivation<'_, 'g> {
             Id::DisturbancePower => scalars_in_speeds(vec![power::disturbance_power(native)]),
             Id::TotalMass => Some(vec![energy::mass_and_moment(native, joints).0]),
             Id::Hamiltonian | Id::CanonicalVelocity | Id::CanonicalMomentumRate => {
-                self.canonical_in_speeds(speeds, declared.id)
+                self.hamiltons_form_in_speeds(speeds, declared.id)
             }
             Id::Reaction => {
                 let name = declared.name.strip_prefix(crate::catalogue::REACTION)?;
@@ -88,10 +88,11 @@ impl<'g> Derivation<'_, 'g> {
         }
     }
 
-    fn derivatives_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
+    fn derivatives_in_speeds(&self, speeds: &SpeedTransformation<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let (native, model, joints) = (&speeds.native, &speeds.model, self.joints);
         let v = mechanics::velocity_symbols(native);
-        let forces_by_columns = |e: &[Expr<'g>]| force_columns(&symbolic::force_derivatives(model, e));
+        let force_derivative_columns =
+            |e: &[Expr<'g>]| force_derivative_entries(&symbolic::force_derivatives(model, e));
         match id {
             Id::MassMatrixInverse => Some(self.inverse_mass_matrix(speeds, false)),
             Id::CoriolisMatrix => {
@@ -99,7 +100,7 @@ impl<'g> Derivation<'_, 'g> {
                     (analytic::coriolis_matrix(native, joints, &v, 1), crba::mass_matrix(native, joints));
                 Some(entries_by_column(&speeds.coriolis_matrix(&coriolis, &mass)))
             }
-            Id::InverseDynamicsDerivatives => Some(forces_by_columns(&self.inverse(speeds))),
+            Id::InverseDynamicsDerivatives => Some(force_derivative_columns(&self.inverse(speeds))),
             Id::GeneralizedMomentumDerivatives => {
                 let p = speeds.transform_forces(&momentum::generalized_momentum(native, joints, &v));
                 Some(entries_by_column(&symbolic::configuration_derivatives(model, &p)))
@@ -109,53 +110,53 @@ impl<'g> Derivation<'_, 'g> {
                     momentum::momentum_rate(native, joints, &v),
                     momentum::generalized_momentum(native, joints, &v),
                 );
-                Some(forces_by_columns(&speeds.momentum_rate(&rate, &p)))
+                Some(force_derivative_columns(&speeds.momentum_rate(&rate, &p)))
             }
             Id::ForwardDynamicsDerivatives => {
                 let forces = symbolic::force_derivatives(model, &self.inverse(speeds));
                 let accelerations = self.free_accelerations(speeds);
-                let forces = self.substitute_accelerations(force_columns(&forces), &accelerations);
+                let forces = self.substitute_accelerations(force_derivative_entries(&forces), &accelerations);
                 Some([forces, self.inverse_mass_matrix(speeds, true), accelerations].concat())
             }
-            Id::Linearize => Some(self.linearized_outputs(speeds)),
+            Id::Linearize => Some(self.linearization_in_speeds(speeds)),
             Id::InputDerivatives => {
                 let tau = self.input_forces(speeds);
-                let by_inputs = entries_by_column(&symbolic::by_input(model, &tau));
-                Some([tau.clone(), forces_by_columns(&tau), by_inputs].concat())
+                let by_inputs = entries_by_column(&symbolic::input_derivatives_of_expressions(model, &tau));
+                Some([tau.clone(), force_derivative_columns(&tau), by_inputs].concat())
             }
             Id::Turning => Some(entries_by_column(&speeds.variational_matrix())),
             Id::InverseDynamicsSecondDerivatives
             | Id::GeneralizedForcesSecondDerivatives
-            | Id::ConstraintCurvature => Some(self.second_in_speeds(speeds, id)),
-            Id::MotionDerivatives => Some(self.constrained_motion(speeds)),
+            | Id::ConstraintCurvature => Some(self.second_derivatives_in_speeds(speeds, id)),
+            Id::MotionDerivatives => Some(self.constrained_motion_derivative_terms(speeds)),
             _ => None,
         }
     }
 
     /// Returns `τ` as a function of the rates of the speeds.
-    fn inverse(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+    fn inverse(&self, speeds: &SpeedTransformation<'g>) -> Vec<Expr<'g>> {
         let (v, a) =
             (mechanics::velocity_symbols(&speeds.native), mechanics::acceleration_symbols(&speeds.native));
         speeds.transform_forces(&rnea::inverse_dynamics(&speeds.native, self.joints, &v, Some(&a)))
     }
 
-    fn input_forces(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+    fn input_forces(&self, speeds: &SpeedTransformation<'g>) -> Vec<Expr<'g>> {
         speeds.transform_forces(&forces::generalized_forces(&speeds.native, self.joints))
     }
 
-    fn mass_factor(&self, speeds: &InSpeeds<'g>, effective: bool) -> Factor<'g> {
+    fn mass_matrix_factor(&self, speeds: &SpeedTransformation<'g>, effective: bool) -> Factor<'g> {
         let mass = crba::mass_matrix(&speeds.native, self.joints);
         let mass = if effective { added_mass::effective_mass_matrix(&speeds.native, &mass) } else { mass };
         Factor::new(&mass, self.joints)
     }
 
     /// Returns the inverse of the mass matrix, or of the effective mass matrix, column by column.
-    fn inverse_mass_matrix(&self, speeds: &InSpeeds<'g>, effective: bool) -> Vec<Expr<'g>> {
-        entries_by_column(&speeds.inverse_mass_matrix(&self.mass_factor(speeds, effective).inverse()))
+    fn inverse_mass_matrix(&self, speeds: &SpeedTransformation<'g>, effective: bool) -> Vec<Expr<'g>> {
+        entries_by_column(&speeds.inverse_mass_matrix(&self.mass_matrix_factor(speeds, effective).inverse()))
     }
 
     /// Returns the accelerations under symbolic forces, without constraints.
-    fn free_accelerations(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+    fn free_accelerations(&self, speeds: &SpeedTransformation<'g>) -> Vec<Expr<'g>> {
         let native = &speeds.native;
         let bias = rnea::inverse_dynamics(native, self.joints, &mechanics::velocity_symbols(native), None);
         let lacking = mechanics::generalized_force_symbols(native)
@@ -163,9 +164,9 @@ impl<'g> Derivation<'_, 'g> {
             .zip(bias)
             .map(|(tau, h)| tau - h)
             .collect();
-        speeds.transform_results(
+        speeds.results_in_generalized_speeds(
             ResultKind::Accelerations(0),
-            &self.mass_factor(speeds, true).solve_factored(lacking),
+            &self.mass_matrix_factor(speeds, true).solve_factored(lacking),
         )
     }
 
@@ -177,7 +178,7 @@ impl<'g> Derivation<'_, 'g> {
         })
     }
 
-    fn linearized_outputs(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+    fn linearization_in_speeds(&self, speeds: &SpeedTransformation<'g>) -> Vec<Expr<'g>> {
         let (model, tau) = (&speeds.model, self.input_forces(speeds));
         let accelerations =
             replace_all(&self.free_accelerations(speeds), &|s| match Quantity::from_symbol(s) {
@@ -188,9 +189,9 @@ impl<'g> Derivation<'_, 'g> {
         let by_state = symbolic::force_derivatives(model, &tau);
         subtract_matrix(&mut forces.by_q, &by_state.by_q);
         subtract_matrix(&mut forces.by_v, &by_state.by_v);
-        let mut outputs = self.substitute_accelerations(force_columns(&forces), &accelerations);
+        let mut outputs = self.substitute_accelerations(force_derivative_entries(&forces), &accelerations);
         outputs.extend(self.inverse_mass_matrix(speeds, true));
-        outputs.extend(entries_by_column(&symbolic::by_input(model, &tau)));
+        outputs.extend(entries_by_column(&symbolic::input_derivatives_of_expressions(model, &tau)));
         outputs.extend(entries_by_column(&speeds.variational_matrix()));
         outputs
     }
@@ -198,18 +199,18 @@ impl<'g> Derivation<'_, 'g> {
     /// Returns, at constant accelerations and multipliers, the derivatives of `M u̇ + h − Jᵀ λ`, of
     /// `J u̇ + b` and of the constraint velocities, followed by the matrix of the variational equation of
     /// displacements.
-    fn constrained_motion(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+    fn constrained_motion_derivative_terms(&self, speeds: &SpeedTransformation<'g>) -> Vec<Expr<'g>> {
         let (native, model) = (&speeds.native, &speeds.model);
         let held = speeds.transform_forces(&constraints::constraint_forces(
             native,
-            &constraints::multiplier_symbols(native),
+            &constraints::multiplier_argument_symbols(native),
         ));
         let lacking: Vec<Expr<'g>> =
             self.inverse(speeds).iter().zip(held).map(|(f, held)| *f - held).collect();
         let a = mechanics::acceleration_symbols(model);
-        let first = constraints::first_order(model, &a);
-        let mut outputs = force_columns(&symbolic::force_derivatives(model, &lacking));
-        outputs.extend(force_columns(&first.accelerations));
+        let first = constraints::constraint_first_derivatives(model, &a);
+        let mut outputs = force_derivative_entries(&symbolic::force_derivatives(model, &lacking));
+        outputs.extend(force_derivative_entries(&first.accelerations));
         outputs.extend(entries_by_column(&first.rates));
         outputs.extend(entries_by_column(&speeds.variational_matrix()));
         outputs
@@ -217,9 +218,9 @@ impl<'g> Derivation<'_, 'g> {
 
     /// Returns the second derivatives in speeds. Along `q ⊕ ε dv` the joints move by `ε Z(q) dv`, so the
     /// second derivatives with respect to joint displacements are multiplied by `Z` at `q`.
-    fn second_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Vec<Expr<'g>> {
+    fn second_derivatives_in_speeds(&self, speeds: &SpeedTransformation<'g>, id: Id) -> Vec<Expr<'g>> {
         let native = &speeds.native;
-        let project_hessian = |found: Hessian<'g>| Hessian {
+        let hessian_in_speeds = |found: Hessian<'g>| Hessian {
             qq: speeds.transform_mass_matrix(&found.qq),
             qv: speeds.project(&found.qv),
             qa: speeds.project(&found.qa),
@@ -231,14 +232,14 @@ impl<'g> Derivation<'_, 'g> {
                 // displacements.
                 let constraints = speeds.model.constraints.clone();
                 let found = hessian::hessian_of_constraints(&Model { constraints, ..native.clone() });
-                let mut outputs = second::state_hessian_blocks(&project_hessian(found.state)).concat();
+                let mut outputs = second::state_hessian_blocks(&hessian_in_speeds(found.state)).concat();
                 outputs.extend(entries_by_column(&speeds.project(&found.q_lambda)));
                 outputs
             }
             Id::GeneralizedForcesSecondDerivatives => {
                 let InputHessian { state, qu, vu, uu } =
                     hessian::of_inputs(native, &self.input_forces(speeds));
-                let [qq, qv, vv, _] = second::state_hessian_blocks(&project_hessian(state));
+                let [qq, qv, vv, _] = second::state_hessian_blocks(&hessian_in_speeds(state));
                 [
                     qq,
                     qv,
@@ -253,9 +254,9 @@ impl<'g> Derivation<'_, 'g> {
                 let found = hessian::hessian_of_power(
                     native,
                     &self.inverse(speeds),
-                    &hessian::factor_symbols(native),
+                    &hessian::force_factor_symbols(native),
                 );
-                second::state_hessian_blocks(&project_hessian(found)).concat()
+                second::state_hessian_blocks(&hessian_in_speeds(found)).concat()
             }
         }
     }
@@ -264,14 +265,14 @@ impl<'g> Derivation<'_, 'g> {
     fn parameter_derivatives(&self, e: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
         let (graph, count) = (self.model.graph, self.model.parameters.len());
         let derivative_column = |k| {
-            let mut by = Derivative::with_respect_to(Quantity::Parameter(k).symbol(), graph);
+            let mut by = DirectionalDerivative::with_respect_to(Quantity::Parameter(k).symbol(), graph);
             e.iter().map(|e| by.differentiate(*e)).collect()
         };
         (0..count).map(derivative_column).collect()
     }
 
     /// Returns `∂u̇/∂p = −M⁻¹ ∂τ/∂p` at the accelerations under the forces.
-    fn accelerations_by_parameters(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+    fn accelerations_by_parameters(&self, speeds: &SpeedTransformation<'g>) -> Vec<Expr<'g>> {
         let (n, a) = (self.model.nv(), self.free_accelerations(speeds));
         let inverse = self.inverse_mass_matrix(speeds, true);
         let accelerations_from_forces = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
@@ -288,7 +289,7 @@ impl<'g> Derivation<'_, 'g> {
             .collect()
     }
 
-    fn regressor_in_speeds(&self, speeds: &InSpeeds<'g>, standard: bool) -> Option<Vec<Expr<'g>>> {
+    fn regressor_in_speeds(&self, speeds: &SpeedTransformation<'g>, standard: bool) -> Option<Vec<Expr<'g>>> {
         let joints = self.joints;
         let of_joints = self.regressor_outputs(|i| match standard {
             true => i.joint_torque_regressor(joints),
@@ -300,13 +301,13 @@ impl<'g> Derivation<'_, 'g> {
 
     /// Returns Hamilton's form in speeds. With the momenta `p` of the speeds, the momenta of the joints are
     /// `Yᵀ p`.
-    fn canonical_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
+    fn hamiltons_form_in_speeds(&self, speeds: &SpeedTransformation<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
         let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
-        let of_joints = speeds.replace_momenta(&momenta);
+        let of_joints = speeds.momenta_in_generalized_speeds(&momenta);
         let replace_velocities_by_momenta = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
             let velocity = speeds.speeds_of_velocities(
-                &speeds.replace_momenta(&self.hamilton_outputs(|h| h.velocity.clone())),
+                &speeds.momenta_in_generalized_speeds(&self.hamilton_outputs(|h| h.velocity.clone())),
             );
             replace_all(&e, &|s| match Quantity::from_symbol(s) {
                 Quantity::Velocity(k) => velocity.get(k).copied(),
@@ -314,16 +315,19 @@ impl<'g> Derivation<'_, 'g> {
             })
         };
         Some(match id {
-            Id::Hamiltonian => speeds.replace_momenta(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
+            Id::Hamiltonian => {
+                speeds.momenta_in_generalized_speeds(&self.hamilton_outputs(|h| vec![h.hamiltonian]))
+            }
             Id::CanonicalVelocity => replace_velocities_by_momenta(mechanics::velocity_symbols(self.model)),
             _ => {
-                let rate = speeds.replace_momenta(&self.hamilton_outputs(|h| h.momentum_rate.clone()));
-                replace_velocities_by_momenta(speeds.momentum_rate_of_written(&rate, &of_joints))
+                let rate =
+                    speeds.momenta_in_generalized_speeds(&self.hamilton_outputs(|h| h.momentum_rate.clone()));
+                replace_velocities_by_momenta(speeds.momentum_rate_in_speeds(&rate, &of_joints))
             }
         })
     }
 }
 
-fn force_columns<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
+fn force_derivative_entries<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
     [&d.by_q, &d.by_v].into_iter().flat_map(entries_by_column).collect()
 }

@@ -1,32 +1,36 @@
 //! Functions that a mechanism does not have, declared with bounds that never hold. The error message of a
 //! call then states the missing option or property.
 
-use super::interface::{ALLOW, Absent, Head, Interface};
+use super::interface::{ALLOW, AbsentFunctions, ImplGenerics, Interface};
 use super::signature::Signature;
-use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Facts, JACOBIAN, Need, Row};
+use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Facts, FunctionNeed, JACOBIAN, Row};
 use crate::derive::Function;
-use crate::syntax::Word;
+use crate::syntax::RequestOption;
 use std::fmt::Write;
 
 /// Returns all functions, constants and traits that a mechanism with these functions and outputs lacks.
-pub fn absent_items(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {
+pub fn items_that_mechanism_lacks(
+    facts: &Facts,
+    functions: &[Function],
+    outputs: &[String],
+) -> Vec<AbsentFunctions> {
     let in_lanes = |name: &str| format!("{name}_lanes");
-    let absent_for_need = |(need, rows): (Need, Vec<&Row>)| {
+    let absent_for_need = |(need, rows): (FunctionNeed, Vec<&Row>)| {
         let mut names: Vec<String> = rows.iter().map(|row| row.name.to_string()).collect();
-        if need == Need::Asks(Word::Derivatives) && !facts.requests.derivatives {
+        if need == FunctionNeed::Asks(RequestOption::Derivatives) && !facts.requests.derivatives {
             names.extend(OF_TRAITS.map(ToString::to_string));
         }
         if facts.requests.batch {
             names.extend(rows.iter().filter(|row| row.batched).map(|row| in_lanes(row.name)));
-        } else if need == Need::Asks(Word::Batch) {
+        } else if need == FunctionNeed::Asks(RequestOption::Batch) {
             let of_state = functions.iter().filter(|f| !f.is_hidden() && !f.arguments.is_empty());
             names.extend(of_state.map(|f| in_lanes(&f.name)));
-            names.extend(catalogue::written_in_lanes(facts).map(in_lanes));
+            names.extend(catalogue::handwritten_batched_functions(facts).map(in_lanes));
         }
         let constants = catalogue::absent_constants(need, facts);
-        Some(Absent { reason: need.trait_of_need()?, functions: names, constants })
+        Some(AbsentFunctions { reason: need.trait_name_of_need()?, functions: names, constants })
     };
-    let mut all: Vec<Absent> =
+    let mut all: Vec<AbsentFunctions> =
         catalogue::absent_functions(facts).into_iter().filter_map(absent_for_need).collect();
     let of_outputs =
         |suffix: &str| -> Vec<String> { outputs.iter().map(|name| format!("{name}{suffix}")).collect() };
@@ -40,7 +44,7 @@ pub fn absent_items(facts: &Facts, functions: &[Function], outputs: &[String]) -
         if facts.requests.batch {
             functions.extend(of_outputs(&format!("{suffix}_lanes")));
         }
-        all.push(Absent { reason, functions, constants: Vec::new() });
+        all.push(AbsentFunctions { reason, functions, constants: Vec::new() });
     }
     // An output may have the name of a missing function.
     for absent in &mut all {
@@ -65,10 +69,10 @@ const OF_FRAMES: [&str; 6] = [
 /// Functions of parameters, which only the unprepared mechanism has.
 const OF_FIGURES: [&str; 5] = ["from_file", "inertials", "set_base_parameters", "set_inertials", "validate"];
 
-impl Absent {
+impl AbsentFunctions {
     /// Returns the functions and constants of frames, which a prepared mechanism lacks.
-    fn of_prepared() -> Absent {
-        Absent {
+    fn frame_items_of_prepared_struct() -> AbsentFunctions {
+        AbsentFunctions {
             reason: "HasFrames",
             functions: OF_FRAMES.map(ToString::to_string).to_vec(),
             constants: vec!["FRAMES"],
@@ -76,12 +80,12 @@ impl Absent {
     }
 
     /// Returns the functions and constants of parameters, which a prepared mechanism lacks.
-    fn of_figures(facts: &Facts) -> Absent {
-        let rows = catalogue::catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
+    fn absent_parameter_functions(facts: &Facts) -> AbsentFunctions {
+        let rows = catalogue::function_catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
         let functions = rows.filter(|row| OF_FIGURES.contains(&row.name)).map(|row| row.name.to_string());
-        let constants = [("FILE", Need::FileParameters), ("LINKS", Need::FileInertials)];
+        let constants = [("FILE", FunctionNeed::FileParameters), ("LINKS", FunctionNeed::FileInertials)];
         let present = constants.into_iter().filter(|(_, need)| facts.meets_need(*need));
-        Absent {
+        AbsentFunctions {
             reason: "HoldsParameters",
             functions: functions.collect(),
             constants: present.map(|(name, _)| name).collect(),
@@ -90,27 +94,30 @@ impl Absent {
 }
 
 /// Writes declarations of all functions and traits that the struct lacks, so that calls get an explanation.
-pub fn write_absent(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_missing_item_declarations(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let name = i.shell.ident.to_string();
     for absent in &i.absent {
-        write_one(out, &name, absent, &Head::new(i, s));
+        write_absent_declarations(out, &name, absent, &ImplGenerics::new(i, s));
     }
 }
 
 /// Writes declarations of everything that the prepared struct `name` lacks.
-pub fn write_absent_of_prepared(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
-    for absent in i.absent.iter().chain([&Absent::of_prepared(), &Absent::of_figures(&i.facts)]) {
-        write_one(out, name, absent, &Head::new(i, s));
+pub fn write_items_prepared_struct_lacks(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+    for absent in i.absent.iter().chain([
+        &AbsentFunctions::frame_items_of_prepared_struct(),
+        &AbsentFunctions::absent_parameter_functions(&i.facts),
+    ]) {
+        write_absent_declarations(out, name, absent, &ImplGenerics::new(i, s));
     }
 }
 
 /// Writes declarations of missing functions and constants. Their unsatisfied trait bounds prevent conflicts
 /// with other functions of the same names.
-fn write_one(out: &mut String, name: &str, absent: &Absent, head: &Head) {
+fn write_absent_declarations(out: &mut String, name: &str, absent: &AbsentFunctions, head: &ImplGenerics) {
     if absent.functions.is_empty() && absent.constants.is_empty() {
         return;
     }
-    let Head { generics, arguments, bounds } = head;
+    let ImplGenerics { generics, arguments, bounds } = head;
     let start = if bounds.is_empty() { "where" } else { bounds.trim_end_matches(',') };
     let comma = if bounds.is_empty() { "" } else { "," };
     let _ = writeln!(

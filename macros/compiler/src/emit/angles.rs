@@ -44,19 +44,19 @@ impl Calls {
         self.bound += texts.len();
         for (value, letter) in [(angle.sine, 's'), (angle.cosine, 'c')] {
             let Some(value) = value else { continue };
-            self.results.push(bundle_names(letter, &(first..self.bound).collect::<Vec<_>>()));
+            self.results.push(pattern_of_names(letter, &(first..self.bound).collect::<Vec<_>>()));
             self.names.push(value);
         }
         for (k, text) in texts.into_iter().enumerate() {
             match is_vector || !self.in_vectors {
                 true => self.arguments.push((text, vec![first])),
-                false => self.push_loose(text, first + k),
+                false => self.push_scalar_into_vector(text, first + k),
             }
         }
     }
 
     /// Adds a scalar to the incomplete vector, and completes the vector with its last lane.
-    fn push_loose(&mut self, text: String, number: usize) {
+    fn push_scalar_into_vector(&mut self, text: String, number: usize) {
         self.loose.push((text, number));
         if self.loose.len() == WIDTH {
             let (texts, numbers): (Vec<String>, Vec<usize>) = self.loose.drain(..).unzip();
@@ -65,25 +65,25 @@ impl Calls {
     }
 
     /// Returns the numbers of all values and the text of the tuple of their expressions.
-    pub fn tuple_of_expressions(mut self, zero: &str) -> (Vec<usize>, String) {
+    pub fn value_numbers_and_tuple_text(mut self, zero: &str) -> (Vec<usize>, String) {
         let mut text = String::from("{ ");
         if self.in_vectors {
-            self.write_vectors(&mut text, zero);
+            self.write_sine_cosine_vector_calls(&mut text, zero);
         } else if self.bound == 1 {
             let angles = self.arguments.iter().map(|(angle, _)| angle.as_str());
             let _ = write!(text, "let (s0, c0) = Ops::sin_cos({}); ", angles.collect::<String>());
         } else {
-            self.write_numbers(&mut text);
+            self.write_scalar_angle_calls(&mut text);
         }
         let _ = write!(text, "({},) }}", self.results.join(", "));
         (self.names, text)
     }
 
     /// Writes a call of sine and cosine for every [`TOGETHER`] vectors.
-    fn write_vectors(&mut self, text: &mut String, zero: &str) {
+    fn write_sine_cosine_vector_calls(&mut self, text: &mut String, zero: &str) {
         while !self.loose.is_empty() {
             self.bound += 1;
-            self.push_loose(zero.to_string(), self.bound - 1);
+            self.push_scalar_into_vector(zero.to_string(), self.bound - 1);
         }
         for group in self.arguments.chunks(TOGETHER) {
             let list_vector_names = |letter| {
@@ -105,17 +105,18 @@ impl Calls {
 
     /// Writes one call for scalar angles, padded to full registers; for several states, one call for every
     /// [`TOGETHER`] angles.
-    fn write_numbers(&mut self, text: &mut String) {
+    fn write_scalar_angle_calls(&mut self, text: &mut String) {
         if self.arguments.is_empty() {
             return;
         }
         if self.padded {
-            self.pad_to_registers();
+            self.pad_angles_to_registers();
         }
         let together = if self.padded { self.arguments.len() } else { TOGETHER };
         for group in self.arguments.chunks(together) {
-            let list_bundled_names =
-                |letter| group.iter().map(|(_, n)| bundle_names(letter, n)).collect::<Vec<_>>().join(", ");
+            let list_bundled_names = |letter| {
+                group.iter().map(|(_, n)| pattern_of_names(letter, n)).collect::<Vec<_>>().join(", ")
+            };
             let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
             let (sines, cosines, angles) =
                 (list_bundled_names('s'), list_bundled_names('c'), angles.join(", "));
@@ -125,7 +126,7 @@ impl Calls {
 
     /// Pads the angles to full registers by repeating some of them, so that each register is one load from
     /// memory if the angles are adjacent.
-    fn pad_to_registers(&mut self) {
+    fn pad_angles_to_registers(&mut self) {
         let count = self.arguments.len();
         let repeated_argument = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
         match count % WIDTH {
@@ -148,7 +149,7 @@ impl Calls {
 }
 
 /// Returns one name, an array of several names, or `_` for no name.
-fn bundle_names(letter: char, numbers: &[usize]) -> String {
+fn pattern_of_names(letter: char, numbers: &[usize]) -> String {
     let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
     match names.as_slice() {
         [] => "_".to_string(),

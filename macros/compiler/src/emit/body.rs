@@ -3,10 +3,10 @@
 //! block.
 
 use super::angles::{Calls, WIDTH};
-use super::instruction::{BodyWriter, Build};
+use super::instruction::{BodyWriter, BuildKind};
 use super::pieces::{Outputs, Piece, Statement, storage_constructor};
-use super::signature::{Signature, filled_matrix_count, matrix_arguments};
-use super::statements::{BLOCK, write_let, write_statements};
+use super::signature::{Signature, matrix_argument_names, variant_matrix_argument_count};
+use super::statements::{BLOCK, write_body_statement, write_statements};
 use super::{matrices, stores};
 use crate::catalogue::{Argument, Called, Shape};
 use crate::derive::Function;
@@ -21,13 +21,14 @@ const LINE: usize = 72;
 
 /// Writes the function body without its braces. If `is_parameter` is true, the arithmetic `Ops` is a type
 /// parameter of the function; otherwise `Ops` is the arithmetic of the compilation target.
-pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: Build) {
-    if let Some(count) = filled_matrix_count(f) {
-        out.push_str(&matrices::call_filling_variant(f, count, s));
+pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: BuildKind) {
+    if let Some(count) = variant_matrix_argument_count(f) {
+        out.push_str(&matrices::body_calling_filling_variant(f, count, s));
         return;
     }
     // Functions of several states already fill the lanes.
-    let in_lanes = f.program.simd.as_deref().filter(|_| build == Build::Optimised && !s.scalar.is_in_lanes());
+    let in_lanes =
+        f.program.simd.as_deref().filter(|_| build == BuildKind::Optimised && !s.scalar.uses_batch_lanes());
     let program = in_lanes.unwrap_or(&f.program);
     let mut w = BodyWriter {
         build,
@@ -43,31 +44,31 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     };
     w.write_instructions();
     let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.output_text(*o)).collect();
-    let mut helpers: Vec<&str> = s.scalar.helper_names().collect();
+    let mut helpers: Vec<&str> = s.scalar.runtime_functions_of_constants().collect();
     if !is_parameter {
         helpers.extend(["Arithmetic", "Compiled as Ops"]);
     }
     let is_empty =
         program.instructions.is_empty() && program.outputs.is_empty() && !f.shape.is_assembled_from_calls();
-    if !helpers.is_empty() && (!is_empty || s.scalar.is_in_lanes()) {
+    if !helpers.is_empty() && (!is_empty || s.scalar.uses_batch_lanes()) {
         let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", helpers.join(", "));
     }
-    w.write_named(out);
+    w.write_named_operations(out);
     // Arguments on which no angle depends are read after the sines and cosines: before them, they would be
     // spilled to memory.
     let head = if w.head <= BLOCK { w.head } else { 0 };
     let (early, late): (Vec<Argument>, Vec<Argument>) =
         w.arguments.iter().partition(|a| head == 0 || **a == Argument::T || w.early.contains(a));
-    write_inputs(out, &early, s, &w);
-    w.statements[..head].iter().for_each(|statement| write_let(out, statement));
-    write_inputs(out, &late, s, &w);
+    write_input_bindings(out, &early, s, &w);
+    w.statements[..head].iter().for_each(|statement| write_body_statement(out, statement));
+    write_input_bindings(out, &late, s, &w);
     let rest = w.statements.split_off(head);
     let is_zero_output = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
     let results = Outputs { pieces: &outputs, is_zero: &is_zero_output };
-    if !matrix_arguments(f).is_empty() {
-        let (statements, left) = stores::with_stores(f, program, rest, &results);
+    if !matrix_argument_names(f).is_empty() {
+        let (statements, left) = stores::insert_result_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
-        out.push_str(&matrices::finishing_code(f, s, &results));
+        out.push_str(&matrices::matrix_function_epilogue(f, s, &results));
         return;
     }
     write_statements(out, &rest, &outputs);
@@ -85,7 +86,7 @@ impl BodyWriter<'_> {
         self.write_angles(&angles);
         if !angles.list.is_empty() {
             self.head = self.statements.len();
-            self.early = self.arguments_of(&angles);
+            self.early = self.arguments_of_angles(&angles);
         }
         for k in 0..self.program.instructions.len() {
             if !angles.before[k] && !angles.covered[k] {
@@ -113,7 +114,7 @@ impl BodyWriter<'_> {
     }
 
     /// Returns the arguments of the function on which the angles depend.
-    fn arguments_of(&self, angles: &Angles) -> Vec<Argument> {
+    fn arguments_of_angles(&self, angles: &Angles) -> Vec<Argument> {
         let mut symbols = Vec::new();
         let mut note = |o: Operand| match o {
             Operand::Symbol(s) => symbols.push(s),
@@ -126,8 +127,9 @@ impl BodyWriter<'_> {
                 op.visit_operands(&mut note);
             }
         }
-        let is_needed = |a: &Argument| symbols.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
-        self.arguments.iter().copied().filter(is_needed).collect()
+        let is_argument_used =
+            |a: &Argument| symbols.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
+        self.arguments.iter().copied().filter(is_argument_used).collect()
     }
 
     /// Writes the statement that computes the sines and cosines of all angles known from the start.
@@ -145,19 +147,19 @@ impl BodyWriter<'_> {
             }
             inputs > 1
         };
-        let of_state = !self.scalar.is_in_lanes();
+        let of_state = !self.scalar.uses_batch_lanes();
         let in_vectors =
             !self.program.gathers.is_empty() || (of_state && angles.list.iter().any(is_angle_sum));
         let mut calls = Calls::new(in_vectors, of_state);
         let mut needs = Vec::new();
-        for angle in angles.widest_first(self.program, |o| self.lane_count(o)) {
+        for angle in angles.angles_by_descending_width(self.program, |o| self.lane_count(o)) {
             let texts = self.texts_of_angle_lanes(angle.angle, &mut needs);
             calls.add(angle, texts, self.lane_count(angle.angle) == WIDTH);
         }
         if calls.names.is_empty() {
             return;
         }
-        let (names, text) = calls.tuple_of_expressions(&self.constant_text(0.0));
+        let (names, text) = calls.value_numbers_and_tuple_text(&self.constant_text(0.0));
         let list: Vec<String> = names.iter().map(|k| format!("t{k}")).collect();
         self.statements.push(Statement { pattern: format!("({},)", list.join(", ")), names, text, needs });
     }
@@ -168,7 +170,7 @@ impl BodyWriter<'_> {
         if let Operand::Gather(g) = angle
             && lanes != WIDTH
         {
-            return self.program.gathers[g].iter().map(|s| self.symbol_text(*s)).collect();
+            return self.program.gathers[g].iter().map(|s| self.input_symbol_text(*s)).collect();
         }
         if let Operand::Value(k) = angle
             && !(lanes == 1 || lanes == WIDTH)
@@ -187,8 +189,8 @@ impl BodyWriter<'_> {
 
 /// Writes the bindings of the used entries of arguments and of results of called functions, and of their
 /// gathers.
-fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &BodyWriter<'_>) {
-    let in_lanes = s.scalar.is_in_lanes();
+fn write_input_bindings(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &BodyWriter<'_>) {
+    let in_lanes = s.scalar.uses_batch_lanes();
     let used = w.program.used_symbols();
     for argument in arguments {
         let (n, given) = match argument {
@@ -257,10 +259,10 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
             );
         }
         Shape::Square(n) => {
-            let _ = writeln!(out, "{}", outputs.matrix_of_outputs(0, n, n));
+            let _ = writeln!(out, "{}", outputs.output_matrix_constructor_text(0, n, n));
         }
         Shape::Matrix(rows, columns) => {
-            let _ = writeln!(out, "{}", outputs.matrix_of_outputs(0, rows, columns));
+            let _ = writeln!(out, "{}", outputs.output_matrix_constructor_text(0, rows, columns));
         }
         Shape::Record(record) => out.push_str(&outputs.record_of_outputs(record)),
         Shape::Symmetric(_) => {}
@@ -273,6 +275,6 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
         | Shape::Linear(..)
         | Shape::Accelerated(_)
         | Shape::CalledForward(_)
-        | Shape::CalledLinear(..) => out.push_str(&matrices::compose_result(f, s, outputs)),
+        | Shape::CalledLinear(..) => out.push_str(&matrices::result_expression_text(f, s, outputs)),
     }
 }

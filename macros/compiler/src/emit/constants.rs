@@ -1,13 +1,13 @@
 //! Code of the associated constants of a mechanism.
 
 use super::interface::Interface;
-use crate::derive::Constant;
-use crate::equations::Written;
-use crate::syntax::Printed;
+use crate::derive::AssociatedConstant;
+use crate::equations::PrintedEquations;
+use crate::syntax::EquationsOption;
 use std::fmt::Write;
 
 /// Writes the sizes of configuration, velocity and inputs, and the names of their entries.
-pub fn write_sizes(out: &mut String, i: &Interface<'_>) {
+pub fn write_sizes_and_names(out: &mut String, i: &Interface<'_>) {
     let numbers = [
         ("NQ", i.configuration.len(), "configuration numbers"),
         ("NV", i.velocities.len(), "velocities"),
@@ -33,14 +33,19 @@ fn write_names(out: &mut String, name: &str, names: &[String], what: &str) {
 }
 
 /// Writes all constants: sizes, names, additional lists and equations.
-pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written, constants: &[Constant]) {
-    write_sizes(out, i);
+pub fn write_constants(
+    out: &mut String,
+    i: &Interface<'_>,
+    equations: &PrintedEquations,
+    constants: &[AssociatedConstant],
+) {
+    write_sizes_and_names(out, i);
     write_names(out, "FRAMES", &i.frames, "every frame");
-    for Constant { name, docs, item, list } in constants {
+    for AssociatedConstant { name, docs, item, list } in constants {
         let (n, list) = (list.len(), list.join(", "));
         let _ = writeln!(out, "/// {docs}\npub const {name}: [{item}; {n}] = [{list}];");
     }
-    let structure = structure_of_equations(i);
+    let structure = unexpanded_motion_equations(i);
     let (is_short, equations) =
         match equations.plain.is_empty() && !i.velocities.is_empty() && !i.facts.kinematic {
             true => (true, &structure),
@@ -81,7 +86,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
 
 /// Writes the function that returns the index of a frame by name. For a mechanism that failed to compile it
 /// accepts every name: the names of its frames are unknown, and its own errors are already reported.
-pub fn write_frame_index(out: &mut String, failed: bool) {
+pub fn write_frame_index_function(out: &mut String, failed: bool) {
     let found = "::linkwork::index_of(&Self::FRAMES, name)";
     let value = match failed {
         true => format!("match {found} {{ None => ::core::option::Option::Some(0), found => found }}"),
@@ -96,7 +101,7 @@ pub fn write_frame_index(out: &mut String, failed: bool) {
 }
 
 /// Returns the structure of the equations of motion, for mechanisms whose terms are not printed.
-fn structure_of_equations(i: &Interface<'_>) -> Written {
+fn unexpanded_motion_equations(i: &Interface<'_>) -> PrintedEquations {
     let time = if i.facts.time { "t, " } else { "" };
     let constrained = i.facts.constraints.is_some();
     let (held, held_latex) = if constrained { (" + J^T lambda", " + J^T \\lambda") } else { ("", "") };
@@ -108,12 +113,12 @@ fn structure_of_equations(i: &Interface<'_>) -> Written {
         let _ = write!(latex, " \\\\\n& J({time}q)\\, \\dot v + b({time}q, v) = 0");
     }
     plain.push_str(match i.facts.requests.equations {
-        Printed::Structure => "\nThe option `equations = structure` omits the terms.\n",
+        EquationsOption::Structure => "\nThe option `equations = structure` omits the terms.\n",
         _ => {
             "\nThere are too many terms to be readable. The option `equations = lagrange` of `#[mechanism]` \
              prints\nup to some thousand; `kane`, `hamilton` and `routh` print other forms, if available.\n"
         }
     });
     latex.push_str("\n\\end{aligned}\n");
-    Written { plain, latex, mathml: String::new() }
+    PrintedEquations { plain, latex, mathml: String::new() }
 }

@@ -34,7 +34,7 @@ pub struct Constraints {
 impl Constraints {
     /// Returns one unnamed constraint for a mechanism whose constraints are unknown because of an error; with
     /// `slips`, a constraint of a sliding contact.
-    pub fn unknown_constraints(slips: bool) -> Constraints {
+    pub fn placeholder_constraints(slips: bool) -> Constraints {
         Constraints {
             names: vec![String::new()],
             holonomic: 1,

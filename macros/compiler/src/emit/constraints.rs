@@ -10,7 +10,7 @@ use std::fmt::Write;
 pub use super::constraint_data::Constraints;
 
 /// Source text of the types and arguments of constrained functions.
-struct Words {
+struct ConstraintSourceTexts {
     /// Rust type of a configuration.
     q: String,
     /// Rust type of a velocity.
@@ -27,10 +27,10 @@ struct Words {
     any: String,
 }
 
-impl Words {
-    fn new(c: &Constraints, s: &Signature<'_>) -> Words {
+impl ConstraintSourceTexts {
+    fn new(c: &Constraints, s: &Signature<'_>) -> ConstraintSourceTexts {
         let scalar = s.scalar.scalar_name();
-        Words {
+        ConstraintSourceTexts {
             q: s.vector_type(s.nq),
             v: s.vector_type(s.nv),
             residuals: s.vector_type(c.holonomic),
@@ -69,11 +69,11 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
 
 /// Writes the assembly functions of a mechanism without inertia, which does not implement the trait
 /// `Constrained`.
-pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_kinematic_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let Words { q, v, pass, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, pass, .. } = ConstraintSourceTexts::new(c, s);
     let loops = format!(
         "let loops = ::linkwork::__private::Loops {{
             names: Self::CONSTRAINTS,
@@ -101,7 +101,7 @@ pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
 
 /// Writes `assemble`, `assemble_in_mode` and `assembly_mode` with the given bodies.
 fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>, bodies: &[String; 3]) {
-    let Words { q, t, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, t, .. } = ConstraintSourceTexts::new(c, s);
     let [any, one, mode] = bodies;
     let _ = writeln!(
         out,
@@ -135,7 +135,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     if c.names.is_empty() {
         return;
     }
-    let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, multipliers, t, pass, any, .. } = ConstraintSourceTexts::new(c, s);
     let (nv, nc) = (s.nv, c.names.len());
     let scalar = s.scalar.scalar_name();
     let format_constrained_call = |function: &str, more: &str| {
@@ -225,16 +225,19 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         groups = c.groups,
         determining = c.determining,
         rank = s.nv.saturating_sub(c.freedom.velocities),
-        solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
+        solve = match c.slipping.is_empty() {
+            true => constrained_dynamics_source(c, s),
+            false => slipping_dynamics_source(c, s),
+        },
     );
     if functions.iter().any(|f| f.id == Id::MotionDerivatives) {
-        write_derivatives(out, c, s);
+        write_constrained_derivatives(out, c, s);
     }
 }
 
 /// Writes the function `constrained_inverse_dynamics`.
 fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let Words { q, v, multipliers, t, any, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, multipliers, t, any, .. } = ConstraintSourceTexts::new(c, s);
     let _ = writeln!(
         out,
         "/// Inverse dynamics under the constraints: returns the generalized forces `τ` at the velocities \
@@ -262,7 +265,7 @@ fn constrained_solution_expression(c: &Constraints, independent: bool, careful: 
     let quick = if c.overdetermined {
         "least_solution(&Self::__STRUCTURE.groups, Self::__STRUCTURE.rank, &found)"
     } else if independent {
-        "independent_solution(&found)"
+        "solution_with_predetermined_pivots(&found)"
     } else {
         "regular_solution(&Self::__STRUCTURE.groups, &found)"
     };
@@ -275,9 +278,9 @@ fn constrained_solution_expression(c: &Constraints, independent: bool, careful: 
 }
 
 /// Returns the function `constrained_dynamics` of a mechanism without sliding contacts.
-fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
-    let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
-    let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
+fn constrained_dynamics_source(c: &Constraints, s: &Signature<'_>) -> String {
+    let ConstraintSourceTexts { q, v, multipliers, t, pass, any, .. } = ConstraintSourceTexts::new(c, s);
+    let careful = format!("rank_revealing_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
     let solution = constrained_solution_expression(c, c.independent, &careful);
     format!(
         "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table \
@@ -291,8 +294,8 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
 }
 
 /// Returns the functions of constrained dynamics of a mechanism with sliding contacts.
-fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
-    let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
+fn slipping_dynamics_source(c: &Constraints, s: &Signature<'_>) -> String {
+    let ConstraintSourceTexts { q, v, multipliers, t, pass, .. } = ConstraintSourceTexts::new(c, s);
     let (scalar, slipping) = (s.scalar.scalar_name(), &c.slipping);
     format!(
         "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table \
@@ -319,8 +322,8 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
 }
 
 /// Writes the functions for derivatives of constrained motion and for its linearisation.
-fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let Words { q, v, t, pass, .. } = Words::new(c, s);
+fn write_constrained_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    let ConstraintSourceTexts { q, v, t, pass, .. } = ConstraintSourceTexts::new(c, s);
     let (scalar, nv, nc, nu, nh) = (s.scalar.scalar_name(), s.nv, c.names.len(), s.nu, c.holonomic);
     let Freedom { coordinates: np, velocities: ns } = c.freedom;
     let square = s.shape_type(Shape::Square(nv));
@@ -393,10 +396,10 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
 
 /// Returns the generated function for derivatives of multipliers, or an empty text if it is not available.
 fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
-    if !are_differentiable(c) {
+    if !are_constraints_differentiable(c) {
         return String::new();
     }
-    let Words { q, v, t, any, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, t, any, .. } = ConstraintSourceTexts::new(c, s);
     let rows = s.shape_type(Shape::Matrix(c.names.len(), s.nv));
     format!(
         "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers of [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
@@ -412,11 +415,11 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
 }
 
 /// Writes the integrator hooks that make states satisfy the constraints.
-pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_projection_hooks(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let Words { q, v, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, .. } = ConstraintSourceTexts::new(c, s);
     let _ = writeln!(
         out,
         "const CONSTRAINED: bool = true;
@@ -442,7 +445,7 @@ pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'
     if c.slipping.is_empty() {
         return;
     }
-    let Words { q, v, pass, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, pass, .. } = ConstraintSourceTexts::new(c, s);
     let _ = writeln!(
         out,
         "#[inline]\nfn try_forward_dynamics(&self, t: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> \
@@ -455,7 +458,7 @@ pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'
 
 /// Writes the functions of the trait `Constrained`, which call the inherent functions.
 pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let Words { q, v, residuals, multipliers, pass, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, residuals, multipliers, pass, .. } = ConstraintSourceTexts::new(c, s);
     let (scalar, nv, nc) = (s.scalar.scalar_name(), s.nv, c.names.len());
     let t = Argument::T.argument_name();
     let _ = writeln!(
@@ -482,7 +485,7 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
 
 /// Writes the derivatives of the stabilised motion, in which constraint violations decay. Integration methods
 /// call them through the trait `Constrained`.
-pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
+pub fn write_stabilized_motion_derivatives(out: &mut String, s: &Signature<'_>) {
     let (scalar, q, v, u) =
         (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.vector_type(s.nu));
     let _ = writeln!(
@@ -498,14 +501,14 @@ pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
 
 /// Returns true if the derivatives of the equations determine those of accelerations and multipliers. They do
 /// not for sliding contacts, whose friction depends on multipliers.
-pub fn are_differentiable(c: &Constraints) -> bool {
+pub fn are_constraints_differentiable(c: &Constraints) -> bool {
     !c.names.is_empty() && c.slipping.is_empty()
 }
 
 /// Writes the function with which generic code gets from the trait `Derivatives` to the trait
 /// `ConstrainedDerivatives`.
-pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    if are_differentiable(c) {
+pub fn write_visit_constraints(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    if are_constraints_differentiable(c) {
         let _ = writeln!(
             out,
             "#[inline]\nfn visit_constraints<V: ::linkwork::constraint::Visitor<{}, {}, {}, {}>>(&self, \
@@ -522,7 +525,7 @@ pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
 
 /// Writes `equation_derivatives`, the function of the trait `ConstrainedDerivatives` without a default.
 pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
-    let Words { q, v, multipliers, pass, .. } = Words::new(c, s);
+    let ConstraintSourceTexts { q, v, multipliers, pass, .. } = ConstraintSourceTexts::new(c, s);
     let (scalar, nv, nc) = (s.scalar.scalar_name(), s.nv, c.names.len());
     let t = Argument::T.argument_name();
     let _ = writeln!(

@@ -2,7 +2,7 @@
 
 use super::interface::Interface;
 use super::signature::Signature;
-use crate::catalogue::{ContactSizes, Need, Shape};
+use crate::catalogue::{ContactCounts, FunctionNeed, Shape};
 use crate::expr::Symbol;
 use crate::expr::replace::{replace_all, symbols_in};
 use crate::mechanism::{Contact, Model, Quantity};
@@ -69,7 +69,7 @@ impl UnilateralContact {
     }
 
     /// Returns one unnamed contact for a mechanism whose contacts are unknown because of an error.
-    pub fn unknown_contact() -> UnilateralContact {
+    pub fn placeholder_contact() -> UnilateralContact {
         UnilateralContact {
             name: String::new(),
             rates: 1,
@@ -108,7 +108,7 @@ pub fn write_constants(out: &mut String, contacts: &[UnilateralContact]) {
 
 /// Writes the functions of the trait `Contacts`.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    let ContactSizes { count, rates: rows } = i.facts.contacts;
+    let ContactCounts { count, rates: rows } = i.facts.contacts;
     let (scalar, q, v, nv) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.nv);
     let pass = if s.time { "t, " } else { "" };
     let (gaps, rates) = (s.vector_type(count), s.vector_type(rows));
@@ -125,7 +125,8 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             )
         })
         .collect();
-    let is_written = i.facts.meets_need(Need::Inertia) && i.facts.meets_need(Need::FewContacts);
+    let is_written =
+        i.facts.meets_need(FunctionNeed::Inertia) && i.facts.meets_need(FunctionNeed::FewContacts);
     let responses = if is_written {
         format!(
             "#[inline]\nfn contact_responses(&self, t: {scalar}, q: &{q}, _: &[bool; {count}]) \
@@ -257,7 +258,7 @@ fn velocity_transport_hooks(i: &Interface<'_>, s: &Signature<'_>) -> String {
 }
 
 /// Adds a table of the contacts to the documentation of the struct.
-pub fn write_docs(text: &mut String, contacts: &[UnilateralContact]) {
+pub fn write_documentation_table(text: &mut String, contacts: &[UnilateralContact]) {
     if contacts.is_empty() {
         return;
     }

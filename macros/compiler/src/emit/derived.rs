@@ -11,7 +11,7 @@ use quote::{format_ident, quote};
 /// them, hence no struct suits both. If a robot's file is missing, no sizes suit the code that uses the
 /// robot. For a type with an error in its arguments, however, rustc reports no further errors about fields
 /// and methods.
-pub fn error_type(shell: &Shell, error: &TokenStream) -> TokenStream {
+pub fn struct_alias_with_error(shell: &Shell, error: &TokenStream) -> TokenStream {
     let Shell { attributes, visibility, ident, parameters, tables, generics, .. } = shell;
     let hidden = format_ident!("__{}Mistaken", ident.to_string().trim_start_matches("r#"));
     let (bounds, condition) = (generics.params.iter(), &generics.where_clause);

@@ -21,7 +21,10 @@ pub fn write_methods(
     if !i.facts.requests.derivatives {
         return;
     }
-    let direct = functions.iter().find(|f| f.id == Id::InputDerivatives).and_then(|f| direct_inputs(f, s));
+    let direct = functions
+        .iter()
+        .find(|f| f.id == Id::InputDerivatives)
+        .and_then(|f| velocity_driven_by_each_input(f, s));
     let _ = writeln!(
         out,
         "#[doc(hidden)]\npub const __DIRECT_INPUTS: ::core::option::Option<[usize; {}]> = {};",
@@ -71,7 +74,7 @@ pub fn write_methods(
                     "let (mut first, mut second) = (<{square}>::{first}(), <{square}>::identity());"
                 );
                 let of: &[&str] = if name == "integrate" { &["dv"] } else { &["dv", "v"] };
-                write_blocks(out, name, of, charts);
+                write_joint_derivative_blocks(out, name, of, charts);
             }
         }
         out.push_str("}\n");
@@ -103,7 +106,7 @@ pub fn write_methods(
 /// Returns the index of the velocity along which each input acts, if every input is exactly one entry of the
 /// generalized forces. Without inputs these forces are zero; if their derivatives by the inputs are constant,
 /// the derivatives do not depend on the state.
-fn direct_inputs(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
+fn velocity_driven_by_each_input(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
     let by_inputs = f.program.outputs.get(s.nv + 2 * s.nv * s.nv..)?;
     let is_constant = |o: &Operand, x: f64| *o == Operand::Const(x);
     let columns = (0..s.nu).map(|k| {
@@ -118,12 +121,17 @@ fn direct_inputs(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
 /// Writes the second derivatives of forward dynamics. They combine the second derivatives of inverse dynamics
 /// with the first derivatives of the accelerations, and for mechanisms with constraints with those of the
 /// multipliers.
-pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_>, s: &Signature<'_>) {
-    if !has_second(i) {
+pub fn write_forward_second_derivatives(
+    out: &mut String,
+    charts: Option<&[Chart]>,
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+) {
+    if !has_dynamics_second_derivatives(i) {
         return;
     }
     if has_curved_configurations(i, s) {
-        write_rate_curvature(out, charts, s);
+        write_rate_second_derivatives(out, charts, s);
     }
     let (square, pass) = (s.shape_type(Shape::Square(s.nv)), if s.time { "t, " } else { "" });
     let arguments = s.with_time_argument(&[Argument::Q, Argument::V, Argument::Tau, Argument::Factors(s.nv)]);
@@ -166,7 +174,7 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
 
 /// Returns true if second derivatives of forward dynamics are available: they are requested and no contact
 /// slides.
-pub fn has_second(i: &Interface<'_>) -> bool {
+pub fn has_dynamics_second_derivatives(i: &Interface<'_>) -> bool {
     let slips = i.facts.constraints.is_some_and(|c| c.slipping > 0);
     i.facts.requests.second_derivatives && !slips
 }
@@ -178,7 +186,7 @@ fn has_curved_configurations(i: &Interface<'_>, s: &Signature<'_>) -> bool {
 }
 
 /// Writes the second derivatives of the rate of displacements.
-fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+fn write_rate_second_derivatives(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
     let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let _ = writeln!(
         out,
@@ -189,7 +197,7 @@ fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signatur
         Some(charts) => {
             let _ =
                 writeln!(out, "let (mut first, mut second) = (<{square}>::zeros(), <{square}>::zeros());");
-            write_blocks(out, "tangent_rate_second", &["dv", "v", "lambda"], charts);
+            write_joint_derivative_blocks(out, "tangent_rate_second", &["dv", "v", "lambda"], charts);
         }
     }
     out.push_str("}\n");
@@ -226,7 +234,7 @@ fn rotational_range(charts: &[Chart]) -> (usize, usize) {
 
 /// Writes the statements that compute the diagonal blocks of ball and free joints and put them into the
 /// result.
-fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
+fn write_joint_derivative_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
     for chart in charts {
         let (kind, v, n) = match *chart {
             Chart::Plain(..) => continue,
@@ -234,7 +242,7 @@ fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
             Chart::Free(_, v) => ("free", v, 6),
         };
         let format_block_entries = |of: &&str| {
-            let list: Vec<String> = v.and_next(n).map(|k| format!("{of}.data.0[0][{k}]")).collect();
+            let list: Vec<String> = v.range_of_entries(n).map(|k| format!("{of}.data.0[0][{k}]")).collect();
             format!("[{}]", list.join(", "))
         };
         let arguments: Vec<String> = of.iter().map(format_block_entries).collect();
@@ -274,7 +282,7 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
         );
     }
     if i.facts.speeds {
-        super::speeds::write_second_derivatives(out, s);
+        super::speeds::write_manifold_second_derivatives(out, s);
     }
     let n = s.nv;
     for (name, third, shape) in [
@@ -344,7 +352,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 }
 
 /// Writes the hook with the derivatives of accelerations under inputs, for implicit integration methods.
-pub fn write_accelerations(out: &mut String, s: &Signature<'_>) {
+pub fn write_acceleration_derivative_hook(out: &mut String, s: &Signature<'_>) {
     use Argument::{Q, U, V};
     let _ = writeln!(
         out,

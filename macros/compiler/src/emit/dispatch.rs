@@ -2,11 +2,11 @@
 //! trait, generic over the arithmetic. The functions themselves call the instance that suits the processor.
 
 use super::body::write_body;
-use super::function::{write_function, write_head};
-use super::instruction::Build;
-use super::interface::{ALLOW, Head};
+use super::function::{write_function, write_function_head};
+use super::instruction::BuildKind;
+use super::interface::{ALLOW, ImplGenerics};
 use super::lanes;
-use super::signature::{Signature, filled_matrix_count};
+use super::signature::{Signature, variant_matrix_argument_count};
 use crate::derive::Function;
 use crate::machine::DISPATCHED_OPERATIONS;
 use std::fmt::Write;
@@ -16,7 +16,7 @@ use std::fmt::Write;
 const LARGEST: usize = 5000;
 
 /// Bodies of the functions of a type that select their arithmetic at run time.
-pub struct Bodies {
+pub struct DispatchedBodies {
     /// True if functions may select their arithmetic at run time.
     wanted: bool,
     /// Function bodies that have been added so far.
@@ -41,22 +41,22 @@ struct GenericBody {
 
 /// Returns true for a function that selects its arithmetic at run time. A function that calls other functions
 /// multiplies their matrices and counts as large.
-fn is_large(f: &Function) -> bool {
+fn dispatches_at_run_time(f: &Function) -> bool {
     // A function that only calls its variant with matrix arguments has no arithmetic of its own.
-    filled_matrix_count(f).is_none()
+    variant_matrix_argument_count(f).is_none()
         && (f.shape.is_assembled_from_calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS)
 }
 
-impl Bodies {
+impl DispatchedBodies {
     /// Returns an empty list of function bodies, which stays empty if `wanted` is false.
-    pub fn new(wanted: bool) -> Bodies {
-        Bodies { wanted, list: Vec::new() }
+    pub fn new(wanted: bool) -> DispatchedBodies {
+        DispatchedBodies { wanted, list: Vec::new() }
     }
 
     /// Writes a function. The body of a large function is added to the list instead.
     pub fn write_function(&mut self, out: &mut String, f: &Function, s: &Signature<'_>) {
         // The functions of one state and of several states are equally large.
-        if !self.wanted || !is_large(f) {
+        if !self.wanted || !dispatches_at_run_time(f) {
             return write_function(out, f, s, false);
         }
         let types: Vec<String> = f.arguments.iter().map(|a| s.argument_type(*a)).collect();
@@ -64,7 +64,7 @@ impl Bodies {
         let format_tuple =
             |list: String| if list.is_empty() { "()".to_string() } else { format!("({list},)") };
         let (types, names) = (format_tuple(types.join(", ")), format_tuple(names.join(", ")));
-        write_head(out, f, s);
+        write_function_head(out, f, s);
         let _ = writeln!(
             out,
             "::linkwork::__private::dispatch::<{}, {}, _, _>(self, {names})\n}}",
@@ -72,14 +72,14 @@ impl Bodies {
             s.scalar.one()
         );
         let mut text = String::new();
-        write_body(&mut text, f, s, true, Build::Optimised);
-        let debug = match s.scalar.is_in_lanes() {
-            true => lanes::one_by_one(f),
+        write_body(&mut text, f, s, true, BuildKind::Optimised);
+        let debug = match s.scalar.uses_batch_lanes() {
+            true => lanes::sequential_debug_body(f),
             // Calls of other functions are followed by products of their matrices, which are large.
             false if f.shape.is_assembled_from_calls() || f.program.instructions.len() > LARGEST => None,
             false => {
                 let mut text = String::new();
-                write_body(&mut text, f, s, true, Build::Debug);
+                write_body(&mut text, f, s, true, BuildKind::Debug);
                 Some(text)
             }
         };
@@ -87,15 +87,15 @@ impl Bodies {
             types,
             names,
             result: s.result_type(f),
-            simd: s.scalar.is_in_lanes(),
+            simd: s.scalar.uses_batch_lanes(),
             text,
             debug,
         });
     }
 
     /// Writes the bodies of the functions of the type `name`.
-    pub fn write_function_bodies(&self, out: &mut String, name: &str, head: &Head) {
-        let Head { generics, arguments, bounds } = head;
+    pub fn write_function_bodies(&self, out: &mut String, name: &str, head: &ImplGenerics) {
+        let ImplGenerics { generics, arguments, bounds } = head;
         for (k, body) in self.list.iter().enumerate() {
             let GenericBody { types, names, result, text, debug, .. } = body;
             let own =

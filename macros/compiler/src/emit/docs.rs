@@ -5,15 +5,15 @@ use super::interface::Interface;
 use super::{contacts, limits};
 use crate::catalogue::Id;
 use crate::derive::{Function, Output};
-use crate::equations::Written;
+use crate::equations::PrintedEquations;
 use crate::expr::Symbol;
 use crate::lower::Program;
 use crate::mechanism::{Freedom, Quantity};
-use crate::syntax::Printed;
+use crate::syntax::EquationsOption;
 use std::fmt::Write;
 
 /// Part of the struct's documentation, with the medium that shows it.
-pub enum Part {
+pub enum DocumentationPart {
     /// Text shown on rustdoc pages and in editors.
     Everywhere(String),
     /// HTML shown on rustdoc pages only.
@@ -23,7 +23,7 @@ pub enum Part {
 }
 
 /// Returns the documentation of the struct.
-pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
+pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<DocumentationPart> {
     let mut parts = Vec::new();
     let mut text = String::from("\n\n");
     add_declaration(&mut text, interface);
@@ -54,9 +54,9 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
         }
     }
     add_unit_table(&mut text, interface);
-    limits::write_docs(&mut text, &interface.limits);
+    limits::write_documentation_table(&mut text, &interface.limits);
     add_constraint_section(&mut text, interface);
-    contacts::write_docs(&mut text, &interface.contacts);
+    contacts::write_documentation_table(&mut text, &interface.contacts);
     if !interface.snapped.is_empty() {
         text.push_str("\n# Rounded numbers\n\nNumbers of the file that `snap` has rounded:\n\n");
         for number in interface.snapped {
@@ -76,7 +76,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
                  omitted, and so is the trait `Mechanism`."
             }
             false if interface.velocities.is_empty() => "Nothing moves.",
-            false if interface.facts.requests.equations == Printed::Structure => {
+            false if interface.facts.requests.equations == EquationsOption::Structure => {
                 "`M(q) v̇ + h(q, v) = τ`, whose terms are omitted by `equations = structure`."
             }
             false => {
@@ -105,26 +105,26 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     }
     text.push_str(&operation_count_table(&output.functions));
     add_lane_section(&mut text, interface, output);
-    parts.push(Part::Everywhere(text));
+    parts.push(DocumentationPart::Everywhere(text));
     parts
 }
 
 /// Adds a section with equations: typeset on pages, with the text folded below; in editors the text alone.
 fn add_equation_section(
-    parts: &mut Vec<Part>,
+    parts: &mut Vec<DocumentationPart>,
     text: &mut String,
     title: &str,
-    equations: &Written,
+    equations: &PrintedEquations,
     details: &str,
 ) {
     let _ = writeln!(text, "\n# {title}");
-    parts.push(Part::Everywhere(std::mem::take(text)));
+    parts.push(DocumentationPart::Everywhere(std::mem::take(text)));
     let plain = format!("\n```text\n{}\n```\n", equations.plain.trim_end());
     let page = &equations.mathml;
-    parts.push(Part::Pages(format!(
+    parts.push(DocumentationPart::Pages(format!(
         "\n{page}\n\n{details}<summary>As text</summary>\n{plain}\n</details>\n\n"
     )));
-    parts.push(Part::Editors(plain));
+    parts.push(DocumentationPart::Editors(plain));
     // An HTML block ends at an empty line, and rustdoc drops one empty line.
     text.push('\n');
 }
@@ -237,7 +237,8 @@ fn add_lane_section(text: &mut String, i: &Interface<'_>, output: &Output) {
 /// Adds the table of the units of parameters, coordinates, inputs, tables and outputs.
 fn add_unit_table(text: &mut String, i: &Interface<'_>) {
     let strip_raw_prefix = |name: String| name.trim_start_matches("r#").to_string();
-    let parameters: Vec<String> = i.shell.parameter_accesses().into_iter().map(strip_raw_prefix).collect();
+    let parameters: Vec<String> =
+        i.shell.parameter_access_paths().into_iter().map(strip_raw_prefix).collect();
     let lists: [(&str, &[String], &[String]); 4] = [
         ("", &parameters, &i.units.parameters),
         ("q", &i.configuration, &i.units.configuration),
@@ -283,7 +284,7 @@ pub fn doc_comment_of_field<'a>(i: &'a Interface<'_>, name: &str) -> Option<&'a 
 }
 
 /// Returns the documentation of an output's function: the user's doc comment, then the description `what`.
-pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
+pub fn output_function_documentation(i: &Interface<'_>, name: &str, what: &str) -> String {
     match doc_comment_of_field(i, name) {
         Some(note) => format!(" {note}\n\n The output `{name}`, {what}"),
         None => format!(" The output `{name}`, {what}"),

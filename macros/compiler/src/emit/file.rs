@@ -1,11 +1,11 @@
 //! Struct fields with inertial parameters and placements of an imported file, and the functions that get and
 //! set them.
 
-use super::interface::{ALLOW, Head, Interface};
+use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::item::runtime_path;
 use super::scalar::ScalarSpelling;
-use crate::catalogue::Need;
-use crate::syntax::Word;
+use crate::catalogue::FunctionNeed;
+use crate::syntax::RequestOption;
 use crate::syntax::file_parameters::{FileField, FileFieldKind};
 use proc_macro2::{Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -13,9 +13,9 @@ use std::fmt::Write;
 use syn::Ident;
 
 /// Returns the fields of the struct for values of the file.
-pub fn struct_fields(i: &Interface<'_>) -> Vec<TokenStream> {
+pub fn struct_fields_for_file_values(i: &Interface<'_>) -> Vec<TokenStream> {
     let runtime = runtime_path(i.shell);
-    let scalar = scalar_type(i);
+    let scalar = file_field_scalar_type(i);
     let field_tokens = |field: &FileField| {
         let (name, about) = (Ident::new(&field.ident, Span::call_site()), &field.about);
         let kind = match field.kind {
@@ -29,7 +29,7 @@ pub fn struct_fields(i: &Interface<'_>) -> Vec<TokenStream> {
 }
 
 /// Returns the scalar type of the fields.
-fn scalar_type(i: &Interface<'_>) -> Ident {
+fn file_field_scalar_type(i: &Interface<'_>) -> Ident {
     let name = ScalarSpelling::new(i.scalar.clone(), Vec::new(), Vec::new());
     format_ident!("{}", name.one())
 }
@@ -37,7 +37,7 @@ fn scalar_type(i: &Interface<'_>) -> Ident {
 /// Writes the constructors from the values of the file, and the functions that get and set the inertial
 /// parameters of all links.
 pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
-    if !i.facts.meets_need(Need::FileParameters) {
+    if !i.facts.meets_need(FunctionNeed::FileParameters) {
         return;
     }
     let own: Vec<String> =
@@ -80,7 +80,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
         #[inline]\n#[must_use]\npub {constant}fn from_file({}) -> Self {{\n{before}Self {{ {all} }}\n}}",
         arguments.join(", ")
     );
-    if !i.facts.meets_need(Need::FileInertials) {
+    if !i.facts.meets_need(FunctionNeed::FileInertials) {
         return;
     }
     let links = inertial_fields(i);
@@ -100,7 +100,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
         get.join(", "),
         set.join("\n")
     );
-    if i.facts.meets_need(Need::Asks(Word::Regressor)) {
+    if i.facts.meets_need(FunctionNeed::Asks(RequestOption::Regressor)) {
         let _ = writeln!(
             out,
             "/// Sets the mass properties of all `LINKS` to the physically consistent values that have these \
@@ -123,11 +123,14 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
 }
 
 /// Writes the trait `Identifiable`, which sets inertial parameters from base parameters.
-pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarSpelling) {
-    if ![Need::FileInertials, Need::Asks(Word::Regressor)].iter().all(|need| i.facts.meets_need(*need)) {
+pub fn write_trait(out: &mut String, head: &ImplGenerics, i: &Interface<'_>, s: &ScalarSpelling) {
+    if ![FunctionNeed::FileInertials, FunctionNeed::Asks(RequestOption::Regressor)]
+        .iter()
+        .all(|need| i.facts.meets_need(*need))
+    {
         return;
     }
-    let Head { generics, arguments, bounds } = head;
+    let ImplGenerics { generics, arguments, bounds } = head;
     let (n, base, one) = (inertial_fields(i).len(), i.facts.base, s.one());
     let _ = writeln!(
         out,

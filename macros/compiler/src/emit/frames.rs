@@ -2,16 +2,16 @@
 //! from the ground.
 
 use super::body::write_body;
-use super::instruction::Build;
-use super::interface::{ALLOW, Head};
+use super::instruction::BuildKind;
+use super::interface::{ALLOW, ImplGenerics};
 use super::signature::Signature;
 use crate::catalogue::Argument;
-use crate::derive::{FrameSteps, Function, LinkSteps};
+use crate::derive::{FrameSteps, Function, LinkRecursionPrograms};
 use crate::lower::Program;
-use crate::mechanism::Supplied;
+use crate::mechanism::SuppliedQuantity;
 use std::fmt::Write;
 
-const PARENT: Argument = Argument::Given("p", Supplied::Parent, 12);
+const PARENT: Argument = Argument::Given("p", SuppliedQuantity::Parent, 12);
 
 /// Writes the kinematic steps and the functions that call them, for a type of this name: the placements of
 /// all frames and the implementations of `NamedFrame`. The steps are methods of a private trait inside this
@@ -19,12 +19,12 @@ const PARENT: Argument = Argument::Given("p", Supplied::Parent, 12);
 pub fn write_frames(
     out: &mut String,
     name: &str,
-    head: &Head,
-    (links, frames): (&[LinkSteps], &[FrameSteps]),
+    head: &ImplGenerics,
+    (links, frames): (&[LinkRecursionPrograms], &[FrameSteps]),
     speeds: bool,
     s: &Signature<'_>,
 ) {
-    let Head { generics, arguments, bounds } = head;
+    let ImplGenerics { generics, arguments, bounds } = head;
     let steps = write_steps(links, frames, s);
     let _ = writeln!(
         out,
@@ -60,14 +60,14 @@ pub fn write_frames(
 
 /// Methods of the private trait for the kinematic steps of frames.
 #[derive(Default)]
-struct StepMethods {
+struct FrameStepMethods {
     /// Declarations of the methods, for the trait's definition.
     declarations: String,
     /// Definitions of the methods, for the implementation of the trait.
     methods: String,
 }
 
-impl StepMethods {
+impl FrameStepMethods {
     /// Adds a method to both lists. `attribute` follows `inline` in its attribute, such as `(always)`.
     fn add(&mut self, attribute: &str, signature: &str, body: &str) {
         let _ = writeln!(self.declarations, "{signature};");
@@ -76,35 +76,55 @@ impl StepMethods {
 }
 
 /// Returns the kinematic steps of all links and frames as private methods.
-fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) -> StepMethods {
-    let mut steps = StepMethods::default();
+fn write_steps(
+    links: &[LinkRecursionPrograms],
+    frames: &[FrameSteps],
+    s: &Signature<'_>,
+) -> FrameStepMethods {
+    let mut steps = FrameStepMethods::default();
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
         let f = Function::hidden_part_function(name, arguments, n, program.clone());
         let mut body = String::new();
-        write_body(&mut body, &f, s, false, Build::Optimised);
+        write_body(&mut body, &f, s, false, BuildKind::Optimised);
         let signature = format!("fn {}({}) -> {}", f.name, s.parameter_list(&f.arguments), s.result_type(&f));
         steps.add("", &signature, &body);
     };
     for (k, link) in links.iter().enumerate() {
-        let from_parent = |arguments: &[Argument], given: Argument| {
+        let arguments_with_parent = |arguments: &[Argument], given: Argument| {
             let mut all = s.with_time_argument(arguments);
             all.extend(link.parent.map(|_| given));
             all
         };
-        step(format!("__link{k}_placement"), from_parent(&[Argument::Q], PARENT), 12, &link.placement);
-        let twist = from_parent(&[Argument::Q, Argument::V], Argument::Given("p", Supplied::Parent, 6));
+        step(
+            format!("__link{k}_placement"),
+            arguments_with_parent(&[Argument::Q], PARENT),
+            12,
+            &link.placement,
+        );
+        let twist = arguments_with_parent(
+            &[Argument::Q, Argument::V],
+            Argument::Given("p", SuppliedQuantity::Parent, 6),
+        );
         step(format!("__link{k}_twist"), twist, 6, &link.twist);
-        let acceleration =
-            from_parent(&[Argument::Q, Argument::V, Argument::A], Argument::Given("p", Supplied::Parent, 12));
+        let acceleration = arguments_with_parent(
+            &[Argument::Q, Argument::V, Argument::A],
+            Argument::Given("p", SuppliedQuantity::Parent, 12),
+        );
         step(format!("__link{k}_acceleration"), acceleration, 6, &link.acceleration);
         let mut columns = if link.driven { s.with_time_argument(&[Argument::Q]) } else { Vec::new() };
-        columns
-            .extend([Argument::Given("p", Supplied::Parent, 12), Argument::Given("o", Supplied::Origin, 3)]);
+        columns.extend([
+            Argument::Given("p", SuppliedQuantity::Parent, 12),
+            Argument::Given("o", SuppliedQuantity::Origin, 3),
+        ]);
         step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
     }
     for (k, frame) in frames.iter().enumerate() {
         let link_argument = |n: usize| {
-            frame.link.map(|_| Argument::Given("p", Supplied::Parent, n)).into_iter().collect::<Vec<_>>()
+            frame
+                .link
+                .map(|_| Argument::Given("p", SuppliedQuantity::Parent, n))
+                .into_iter()
+                .collect::<Vec<_>>()
         };
         if !frame.is_link {
             step(format!("__frame{k}_placement"), link_argument(12), 12, &frame.placement);
@@ -113,7 +133,7 @@ fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) ->
         step(format!("__frame{k}_acceleration"), link_argument(24), 6, &frame.acceleration);
     }
     for (k, link) in links.iter().enumerate() {
-        write_path(&mut steps, k, link, s);
+        add_path_kinematics_methods(&mut steps, k, link, s);
         write_path_columns(&mut steps, k, links, s);
     }
     steps
@@ -125,7 +145,7 @@ fn time_argument_prefix(s: &Signature<'_>) -> &'static str {
 }
 
 /// Returns the links from the ground to a link, that link included.
-fn path_from_ground(links: &[LinkSteps], mut link: Option<usize>) -> Vec<usize> {
+fn links_from_ground(links: &[LinkRecursionPrograms], mut link: Option<usize>) -> Vec<usize> {
     let mut path = Vec::new();
     while let Some(k) = link {
         path.push(k);
@@ -135,7 +155,7 @@ fn path_from_ground(links: &[LinkSteps], mut link: Option<usize>) -> Vec<usize> 
     path
 }
 
-fn write_link_placement(out: &mut String, k: usize, link: &LinkSteps, s: &Signature<'_>) {
+fn write_link_placement(out: &mut String, k: usize, link: &LinkRecursionPrograms, s: &Signature<'_>) {
     let t = time_argument_prefix(s);
     let parent = link.parent.map_or(String::new(), |p| format!(", &x{p}"));
     let _ = writeln!(out, "let x{k} = self.__link{k}_placement({t}q{parent});");
@@ -151,7 +171,12 @@ fn frame_placement(k: usize, frame: &FrameSteps) -> String {
 }
 
 /// Writes the body of `frame_placements`, which computes each link placement once.
-fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
+fn write_all_placements(
+    out: &mut String,
+    links: &[LinkRecursionPrograms],
+    frames: &[FrameSteps],
+    s: &Signature<'_>,
+) {
     for (k, link) in links.iter().enumerate() {
         write_link_placement(out, k, link, s);
     }
@@ -168,7 +193,7 @@ fn write_frame_impl(
     out: &mut String,
     k: usize,
     frame: &FrameSteps,
-    links: &[LinkSteps],
+    links: &[LinkRecursionPrograms],
     speeds: bool,
     s: &Signature<'_>,
 ) {
@@ -184,12 +209,12 @@ fn write_frame_impl(
     };
     let t = time_argument_prefix(s);
     write_frame_method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
-    write_path_placement(out, frame.link, s);
+    write_frame_link_binding(out, frame.link, s);
     let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
 
     write_frame_method(out, "twist", &[Argument::Q, Argument::V], &format!("[{scalar}; 6]"));
     out.push_str(rates);
-    write_path_placement(out, frame.link, s);
+    write_frame_link_binding(out, frame.link, s);
     let last = frame.link.map_or(String::new(), |l| {
         format!("&::linkwork::__private::join(&x{l}, &self.__link{l}_path_twist({t}q, v))")
     });
@@ -203,7 +228,7 @@ fn write_frame_impl(
     );
     out.push_str(accelerations);
     out.push_str(rates);
-    write_path_placement(out, frame.link, s);
+    write_frame_link_binding(out, frame.link, s);
     let last = frame.link.map_or(String::new(), |l| {
         format!("&::linkwork::__private::join(&x{l}, &self.__link{l}_path_motion({t}q, v, a))")
     });
@@ -212,7 +237,7 @@ fn write_frame_impl(
 }
 
 /// Writes the statement that binds the placement of the frame's link.
-fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>) {
+fn write_frame_link_binding(out: &mut String, link: Option<usize>, s: &Signature<'_>) {
     if let Some(k) = link {
         let _ = writeln!(out, "let x{k} = self.__link{k}_path_placement({}q);", time_argument_prefix(s));
     }
@@ -220,19 +245,24 @@ fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>
 
 /// Adds the methods that compute kinematics of a link along its path from the ground: the placement, the
 /// twist, and twist and acceleration together.
-fn write_path(steps: &mut StepMethods, k: usize, link: &LinkSteps, s: &Signature<'_>) {
+fn add_path_kinematics_methods(
+    steps: &mut FrameStepMethods,
+    k: usize,
+    link: &LinkRecursionPrograms,
+    s: &Signature<'_>,
+) {
     use Argument::{A, Q, V};
     let (scalar, t) = (s.scalar.scalar_name(), time_argument_prefix(s));
     let mut method = |name: &str, arguments: &[Argument], n: usize, body: &str| {
         let parameters = s.parameter_list(&s.with_time_argument(arguments));
         steps.add("(always)", &format!("fn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}]"), body);
     };
-    let of_parent = |name: &str, state: &str| {
+    let parent_path_argument = |name: &str, state: &str| {
         link.parent.map_or(String::new(), |p| format!(", &self.__link{p}_path_{name}({t}{state})"))
     };
-    let placement = format!("self.__link{k}_placement({t}q{})", of_parent("placement", "q"));
+    let placement = format!("self.__link{k}_placement({t}q{})", parent_path_argument("placement", "q"));
     method("placement", &[Q], 12, &placement);
-    let twist = format!("self.__link{k}_twist({t}q, v{})", of_parent("twist", "q, v"));
+    let twist = format!("self.__link{k}_twist({t}q, v{})", parent_path_argument("twist", "q, v"));
     method("twist", &[Q, V], 6, &twist);
     let motion = match link.parent {
         Some(p) => format!(
@@ -289,7 +319,12 @@ fn write_jacobian(
 /// Adds the methods for frame Jacobians along the path of a link: the placements of the links from the ground
 /// to it, and its columns for a point at `o`. Each method calls that of the parent link, so that the code of
 /// a chain does not grow quadratically with its length.
-fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
+fn write_path_columns(
+    steps: &mut FrameStepMethods,
+    k: usize,
+    links: &[LinkRecursionPrograms],
+    s: &Signature<'_>,
+) {
     let (scalar, t, link, count) = (s.scalar.scalar_name(), time_argument_prefix(s), &links[k], links.len());
     let state = s.parameter_list(&s.with_time_argument(&[Argument::Q]));
     let (before, parent) = match link.parent {
@@ -306,10 +341,10 @@ fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s:
         let _ = writeln!(body, "self.__link{p}_path_columns({t}q, x, o, columns);");
     }
     let mut written = vec![false; s.nv];
-    for &before in path_from_ground(links, link.parent).iter().flat_map(|l| &links[*l].velocities) {
+    for &before in links_from_ground(links, link.parent).iter().flat_map(|l| &links[*l].velocities) {
         written[before] = true;
     }
-    write_columns(&mut body, k, link, &mut written, s);
+    write_jacobian_columns(&mut body, k, link, &mut written, s);
     let signature = format!(
         "fn __link{k}_path_columns({state}, x: &[[{scalar}; 12]; {count}], o: &[{scalar}; 3], columns: &mut \
          [[{scalar}; 6]; {}])",
@@ -319,7 +354,13 @@ fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s:
 }
 
 /// Writes the columns of a link. Coupled coordinates share a column: their contributions are added.
-fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bool], s: &Signature<'_>) {
+fn write_jacobian_columns(
+    out: &mut String,
+    k: usize,
+    link: &LinkRecursionPrograms,
+    written: &mut [bool],
+    s: &Signature<'_>,
+) {
     let state = if link.driven { format!("{}q, ", time_argument_prefix(s)) } else { String::new() };
     let call = format!("self.__link{k}_columns({state}&x[{k}], o)");
     let mut write = |column: usize, value: &str, out: &mut String| {
@@ -333,8 +374,9 @@ fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bo
         write(column, &call, out);
         return;
     }
-    let names_of_column = |c: usize| (0..6).map(|row| format!("j{c}_{row}")).collect::<Vec<_>>().join(", ");
-    let all: Vec<String> = (0..link.velocities.len()).map(names_of_column).collect();
+    let variable_names_of_column =
+        |c: usize| (0..6).map(|row| format!("j{c}_{row}")).collect::<Vec<_>>().join(", ");
+    let all: Vec<String> = (0..link.velocities.len()).map(variable_names_of_column).collect();
     let _ = writeln!(out, "let [{}] = {call};", all.join(", "));
     for (column, entries) in link.velocities.iter().zip(&all) {
         write(*column, &format!("[{entries}]"), out);

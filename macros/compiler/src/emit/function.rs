@@ -1,13 +1,13 @@
 //! Definitions of generated functions: attributes, signature and body.
 
 use super::body::write_body;
-use super::instruction::Build;
-use super::signature::{Signature, matrix_arguments};
+use super::instruction::BuildKind;
+use super::signature::{Signature, matrix_argument_names};
 use crate::derive::Function;
 use std::fmt::Write;
 
 /// Writes a function's attributes and its signature up to the opening brace.
-pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
+pub fn write_function_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if f.docs.is_empty() {
         out.push_str("#[doc(hidden)]\n");
     }
@@ -16,23 +16,23 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     }
     let result = s.result_type(f);
     // The caller may need only the matrix arguments and ignore the result.
-    let must_use = if matrix_arguments(f).is_empty() { "#[must_use]\n" } else { "" };
+    let must_use = if matrix_argument_names(f).is_empty() { "#[must_use]\n" } else { "" };
     let _ = writeln!(
         out,
         "#[inline]\n{must_use}pub fn {}{}({}) -> {result} {{",
         f.name,
-        s.generics_text(),
+        s.lanes_suffix_and_generics(),
         s.parameter_list(&f.arguments),
     );
 }
 
 /// Writes a function. The body of a stub, for a mechanism that failed to compile, never returns.
 pub fn write_function(out: &mut String, f: &Function, s: &Signature<'_>, stub: bool) {
-    write_head(out, f, s);
+    write_function_head(out, f, s);
     if stub {
         out.push_str("loop {}\n");
     } else {
-        write_body(out, f, s, false, Build::Optimised);
+        write_body(out, f, s, false, BuildKind::Optimised);
     }
     out.push_str("}\n");
 }

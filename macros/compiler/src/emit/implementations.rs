@@ -1,22 +1,22 @@
 //! Implementations of a type: its inherent functions and the runtime's traits.
 
-use super::interface::{ALLOW, Head, Interface, inherent_arguments};
+use super::interface::{ALLOW, ImplGenerics, Interface, inherent_function_arguments};
 use super::signature::Signature;
 use super::{constraints, contacts, differentiable, lanes, limits};
-use crate::catalogue::{self, Argument, ContactSizes};
+use crate::catalogue::{self, Argument, ContactCounts};
 use std::fmt::Write;
 
 /// Writes the inherent functions `methods` of the type `name` and the implementations of the runtime's
 /// traits.
 pub fn write_impls(
-    head: &Head,
+    head: &ImplGenerics,
     out: &mut String,
     name: &str,
     methods: &str,
     i: &Interface<'_>,
     s: &Signature<'_>,
 ) {
-    let Head { generics, arguments, bounds } = head;
+    let ImplGenerics { generics, arguments, bounds } = head;
     let _ = writeln!(out, "{ALLOW}impl{generics} {name}{arguments} {bounds} {{\n{methods}}}");
     let _ = writeln!(
         out,
@@ -47,7 +47,7 @@ pub fn write_impls(
         s.nv,
         s.nu
     );
-    write_hooks(out, i, s);
+    write_integrator_hooks(out, i, s);
     out.push_str("}\n");
     if !s.time {
         let _ = writeln!(out, "impl{generics} ::linkwork::Scleronomic for {name}{arguments} {bounds} {{}}");
@@ -55,10 +55,10 @@ pub fn write_impls(
     if i.facts.requests.derivatives {
         begin_impl_block(out, "Derivatives");
         differentiable::write_trait(out, i, s);
-        constraints::write_visit(out, &i.constraints, s);
+        constraints::write_visit_constraints(out, &i.constraints, s);
         out.push_str("}\n");
     }
-    if differentiable::has_second(i) {
+    if differentiable::has_dynamics_second_derivatives(i) {
         begin_impl_block(out, "SecondDerivatives");
         differentiable::write_second_trait(out, i, s);
         out.push_str("}\n");
@@ -69,17 +69,17 @@ pub fn write_impls(
         out.push_str("}\n");
     }
     if !i.contacts.is_empty() {
-        write_contacts(head, out, name, i, s);
+        write_contact_trait_impls(head, out, name, i, s);
     }
     if !i.constraints.names.is_empty() {
-        write_constraints(head, out, name, i, s);
+        write_constraint_trait_impls(head, out, name, i, s);
     }
 }
 
 /// Writes the head of the implementation of the trait `of`. Its const arguments are the sizes of state and
 /// inputs and the two numbers `more`.
-fn begin_with(
-    Head { generics, arguments, bounds }: &Head,
+fn write_trait_impl_head(
+    ImplGenerics { generics, arguments, bounds }: &ImplGenerics,
     out: &mut String,
     name: &str,
     of: &str,
@@ -92,35 +92,48 @@ fn begin_with(
 }
 
 /// Writes the implementations of the traits for contacts.
-fn write_contacts(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
-    let ContactSizes { count, rates } = i.facts.contacts;
-    begin_with(head, out, name, "Contacts", s, [count, rates]);
+fn write_contact_trait_impls(
+    head: &ImplGenerics,
+    out: &mut String,
+    name: &str,
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+) {
+    let ContactCounts { count, rates } = i.facts.contacts;
+    write_trait_impl_head(head, out, name, "Contacts", s, [count, rates]);
     contacts::write_trait(out, i, s);
     out.push_str("}\n");
     if i.facts.requests.derivatives {
-        begin_with(head, out, name, "contact::ContactDerivatives", s, [count, rates]);
+        write_trait_impl_head(head, out, name, "contact::ContactDerivatives", s, [count, rates]);
         contacts::write_derivatives(out, i, s);
         out.push_str("}\n");
     }
 }
 
 /// Writes the implementations of the traits for constraints.
-fn write_constraints(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+fn write_constraint_trait_impls(
+    head: &ImplGenerics,
+    out: &mut String,
+    name: &str,
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+) {
     let counts = [i.constraints.holonomic, i.constraints.names.len()];
-    begin_with(head, out, name, "Constrained", s, counts);
+    write_trait_impl_head(head, out, name, "Constrained", s, counts);
     constraints::write_trait(out, &i.constraints, s);
-    let is_differentiable = constraints::are_differentiable(&i.constraints) && i.facts.requests.derivatives;
+    let is_differentiable =
+        constraints::are_constraints_differentiable(&i.constraints) && i.facts.requests.derivatives;
     if is_differentiable {
-        constraints::write_stabilized(out, s);
+        constraints::write_stabilized_motion_derivatives(out, s);
     }
     out.push_str("}\n");
     if is_differentiable {
-        begin_with(head, out, name, "ConstrainedDerivatives", s, counts);
+        write_trait_impl_head(head, out, name, "ConstrainedDerivatives", s, counts);
         constraints::write_derivatives_trait(out, &i.constraints, s);
         out.push_str("}\n");
     }
-    if differentiable::has_second(i) {
-        begin_with(head, out, name, "ConstrainedSecondDerivatives", s, counts);
+    if differentiable::has_dynamics_second_derivatives(i) {
+        write_trait_impl_head(head, out, name, "ConstrainedSecondDerivatives", s, counts);
         differentiable::write_constrained_second_trait(out, i.constraints.names.len(), s);
         out.push_str("}\n");
     }
@@ -142,9 +155,9 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         }
     }
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
-    for (row, arguments) in catalogue::of_trait() {
+    for (row, arguments) in catalogue::mechanism_trait_rows() {
         let (name, result) = (row.name, s.shape_type((row.declare)(&i.facts).shape));
-        let needed = inherent_arguments(row, i);
+        let needed = inherent_function_arguments(row, i);
         let names: Vec<&str> = s.with_time_argument(&needed).iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,
@@ -172,16 +185,16 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 }
 
 /// Writes the trait items that integrators use.
-fn write_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+fn write_integrator_hooks(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.facts.speeds {
         out.push_str("const SPEEDS: bool = true;\n");
     }
     if i.facts.acceleration_forces {
         out.push_str("const FEEDBACK: bool = true;\n");
     }
-    constraints::write_projection(out, &i.constraints, s);
+    constraints::write_projection_hooks(out, &i.constraints, s);
     if i.facts.requests.derivatives && i.constraints.slipping.is_empty() {
-        differentiable::write_accelerations(out, s);
+        differentiable::write_acceleration_derivative_hook(out, s);
     }
     contacts::write_steps(out, i, s);
 }

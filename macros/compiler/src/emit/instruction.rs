@@ -11,7 +11,7 @@ use std::fmt::Write;
 
 /// Kind of build (optimised or debug) for which a function body is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Build {
+pub enum BuildKind {
     /// Body for optimised builds, and for all builds of a function without a separate debug body.
     Optimised,
     /// Builds with debug assertions. Without optimisation a call takes longer than the operation that it
@@ -23,7 +23,7 @@ pub enum Build {
 /// State of the writer of one function body.
 pub struct BodyWriter<'a> {
     /// Build (debug, release or both) for which the body is written.
-    pub build: Build,
+    pub build: BuildKind,
     /// Program whose instructions are written.
     pub program: &'a Program,
     /// Number of SIMD lanes of each value; one for a scalar.
@@ -48,7 +48,7 @@ pub struct BodyWriter<'a> {
 impl BodyWriter<'_> {
     /// Returns the expression of a SIMD vector that is gathered from inputs.
     pub fn gathered_vector(&self, gather: &[Symbol]) -> String {
-        let symbols: Vec<String> = gather.iter().map(|s| self.symbol_text(*s)).collect();
+        let symbols: Vec<String> = gather.iter().map(|s| self.input_symbol_text(*s)).collect();
         format!("Ops::lanes([{}])", symbols.join(", "))
     }
 
@@ -78,21 +78,21 @@ impl BodyWriter<'_> {
 
     /// Returns the text of an operand. The text of an unbound value is taken out of `pieces`.
     pub fn operand_text(&mut self, o: Operand) -> Piece {
-        let piece_without_needs = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
+        let piece_without_dependencies = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
         match o {
-            Operand::Const(c) => piece_without_needs(self.constant_text(c)),
-            Operand::Symbol(s) => piece_without_needs(self.symbol_text(s)),
+            Operand::Const(c) => piece_without_dependencies(self.constant_text(c)),
+            Operand::Symbol(s) => piece_without_dependencies(self.input_symbol_text(s)),
             Operand::Tuple(k) => {
                 let tuple: Vec<String> =
                     self.program.tuples[k].iter().map(|c| self.scalar.constant_expression(*c)).collect();
-                piece_without_needs(format!("Ops::lanes([{}])", tuple.join(", ")))
+                piece_without_dependencies(format!("Ops::lanes([{}])", tuple.join(", ")))
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];
                 let is_input =
                     |a: &Argument| gather.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
                 // Gathers of arguments are bound to names; gathers of parameters are not.
-                piece_without_needs(match self.arguments.iter().any(is_input) {
+                piece_without_dependencies(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
                     false => self.gathered_vector(gather),
                 })
@@ -108,7 +108,7 @@ impl BodyWriter<'_> {
     /// Returns the text of an output. For several states, a vector register is converted to lanes.
     pub fn output_text(&mut self, o: Operand) -> Piece {
         let piece = self.operand_text(o);
-        match self.scalar.is_in_lanes() {
+        match self.scalar.uses_batch_lanes() {
             true => Piece {
                 text: format!("{}.lanes()", wrap_in_parentheses(&piece, Level::Whole)),
                 level: Level::Whole,
@@ -125,10 +125,10 @@ impl BodyWriter<'_> {
     }
 
     /// Returns the text of an input: a parameter, a prepared value or an entry of an argument.
-    pub fn symbol_text(&self, s: Symbol) -> String {
+    pub fn input_symbol_text(&self, s: Symbol) -> String {
         let quantity = Quantity::from_symbol(s);
         if quantity == Quantity::Time {
-            return if self.scalar.is_in_lanes() { "time" } else { "t" }.to_string();
+            return if self.scalar.uses_batch_lanes() { "time" } else { "t" }.to_string();
         }
         match quantity {
             Quantity::Parameter(k) => return self.scalar.parameter_value(k),
@@ -153,9 +153,15 @@ impl BodyWriter<'_> {
             Op::Sub(a, b) => self.infix_operation([a, b], "-", lanes, [Level::Sum, Level::Product]),
             Op::Mul(a, b) => self.infix_operation([a, b], "*", lanes, [Level::Product, Level::Whole]),
             Op::Div(a, b) => self.infix_operation([a, b], "/", lanes, [Level::Product, Level::Whole]),
-            Op::MulAdd(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "+", c),
-            Op::MulSub(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "-", c),
-            Op::NegMulAdd(a, b, c) if self.build == Build::Debug => self.less_product(c, [a, b]),
+            Op::MulAdd(a, b, c) if self.build == BuildKind::Debug => {
+                self.product_plus_or_minus([a, b], "+", c)
+            }
+            Op::MulSub(a, b, c) if self.build == BuildKind::Debug => {
+                self.product_plus_or_minus([a, b], "-", c)
+            }
+            Op::NegMulAdd(a, b, c) if self.build == BuildKind::Debug => {
+                self.difference_with_product(c, [a, b])
+            }
             Op::MulAdd(a, b, c) => self.fused_operation(["mul_add", "scale_add"], [a, b, c], lanes),
             Op::MulSub(a, b, c) => self.fused_operation(["mul_sub", "scale_sub"], [a, b, c], lanes),
             Op::NegMulAdd(a, b, c) => {
@@ -200,7 +206,7 @@ impl BodyWriter<'_> {
             && let Some(scaled) = self.scalar_and_vector_factors([a, b], lanes)
         {
             let name = self.name_of_operation("scale", lanes).unwrap_or_else(|| "Ops::scale".to_string());
-            return self.call_with(&name, scaled);
+            return self.call_with_piece_arguments(&name, scaled);
         }
         let (a, b) = (self.broadcast_operand(a, lanes), self.broadcast_operand(b, lanes));
         let text = format!("{} {op} {}", wrap_in_parentheses(&a, level), wrap_in_parentheses(&b, right));
@@ -210,7 +216,7 @@ impl BodyWriter<'_> {
     }
 
     /// Returns `a * b + c` or `a * b - c`.
-    fn product_and(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
+    fn product_plus_or_minus(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
         let product = self.infix_operation(product, "*", 1, [Level::Product, Level::Whole]);
         let c = self.operand_text(c);
         let text = format!("{} {op} {}", product.text, wrap_in_parentheses(&c, Level::Product));
@@ -218,7 +224,7 @@ impl BodyWriter<'_> {
     }
 
     /// Returns the expression `c - a * b`.
-    fn less_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
+    fn difference_with_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
         let c = self.operand_text(c);
         let product = self.infix_operation(product, "*", 1, [Level::Product, Level::Whole]);
         let text = format!("{} - {}", wrap_in_parentheses(&c, Level::Sum), product.text);
@@ -235,11 +241,11 @@ impl BodyWriter<'_> {
     ) -> Piece {
         let Some(factors) = self.scalar_and_vector_factors([a, b], lanes) else {
             let name = self.name_of_operation(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
-            return self.call_by(&name, &[a, b, c], lanes);
+            return self.call_with_broadcast_arguments(&name, &[a, b, c], lanes);
         };
         let name = self.name_of_operation(scaled, lanes).unwrap_or_else(|| format!("Ops::{scaled}"));
         let c = self.broadcast_operand(c, lanes);
-        self.call_with(&name, factors.into_iter().chain([c]).collect())
+        self.call_with_piece_arguments(&name, factors.into_iter().chain([c]).collect())
     }
 
     /// Returns the factors of a product of a scalar and a vector, the scalar first; `None` for other
@@ -263,10 +269,10 @@ impl BodyWriter<'_> {
 
     /// Writes the bindings of named operations. With them rustc resolves the generic arguments and checks the
     /// bounds of an operation once instead of at every call.
-    pub fn write_named(&self, out: &mut String) {
+    pub fn write_named_operations(&self, out: &mut String) {
         let one = self.scalar.one();
         for (function, lanes) in self.named.iter().flatten() {
-            let (name, width) = match (lanes, self.scalar.is_in_lanes()) {
+            let (name, width) = match (lanes, self.scalar.uses_batch_lanes()) {
                 (1, false) => (function.to_string(), None),
                 (1, true) => (function.to_string(), Some("LANES".to_string())),
                 _ => (format!("{function}{lanes}"), Some(lanes.to_string())),
@@ -283,24 +289,33 @@ impl BodyWriter<'_> {
     }
 
     fn call_text(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
-        self.call_by(&format!("Ops::{function}"), arguments, lanes)
+        self.call_with_broadcast_arguments(&format!("Ops::{function}"), arguments, lanes)
     }
 
     /// Returns the expression of a table's value, or of one of its derivatives.
     fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> Piece {
         let (field, orders) =
-            (self.scalar.table_field(lookup.table_index()).to_string(), lookup.derivative_orders());
-        let list = self.call_by("", x.get(..lookup.variable_count()).unwrap_or_default(), lanes);
+            (self.scalar.table_field_name(lookup.table_index()).to_string(), lookup.derivative_orders());
+        let list = self.call_with_broadcast_arguments(
+            "",
+            x.get(..lookup.variable_count()).unwrap_or_default(),
+            lanes,
+        );
         let inner = list.text.strip_prefix('(').and_then(|text| text.strip_suffix(')')).unwrap_or_default();
         Piece { text: format!("Ops::tabulated(&self.{field}, [{inner}], {orders:?})"), ..list }
     }
 
-    fn call_by(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
+    fn call_with_broadcast_arguments(
+        &mut self,
+        function: &str,
+        arguments: &[Operand],
+        lanes: usize,
+    ) -> Piece {
         let list = arguments.iter().map(|a| self.broadcast_operand(*a, lanes)).collect();
-        self.call_with(function, list)
+        self.call_with_piece_arguments(function, list)
     }
 
-    fn call_with(&mut self, function: &str, arguments: Vec<Piece>) -> Piece {
+    fn call_with_piece_arguments(&mut self, function: &str, arguments: Vec<Piece>) -> Piece {
         let (mut needs, mut list) = (Vec::new(), Vec::new());
         for piece in arguments {
             needs.extend(piece.needs);

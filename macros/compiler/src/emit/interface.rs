@@ -2,7 +2,7 @@
 
 use super::constraints::Constraints;
 use super::contacts::UnilateralContact;
-use super::limits::CoordinateLimits;
+use super::limits::CoordinateLimitIndices;
 use super::polytopes::ContactPolytopes;
 use super::signature::Signature;
 use super::validate::ParameterCondition;
@@ -34,7 +34,7 @@ pub struct Interface<'a> {
     /// Polytopes whose features determine contacts.
     pub polytopes: ContactPolytopes,
     /// Limits of the coordinates.
-    pub limits: Vec<CoordinateLimits>,
+    pub limits: Vec<CoordinateLimitIndices>,
     /// Conditions that values of the parameters must satisfy.
     pub figures: Vec<ParameterCondition>,
     /// States of first order, each with its index among the parameters.
@@ -56,12 +56,12 @@ pub struct Interface<'a> {
     /// Descriptions of elements of the file that are omitted from the mechanism.
     pub left_out: &'a [String],
     /// Functions and constants that the mechanism does not have, by reason.
-    pub absent: Vec<Absent>,
+    pub absent: Vec<AbsentFunctions>,
 }
 
 /// Functions and constants that a mechanism lacks for one reason.
 #[derive(Clone, Debug)]
-pub struct Absent {
+pub struct AbsentFunctions {
     /// Trait of the runtime whose error message explains the reason.
     pub reason: &'static str,
     /// Names of the generated functions.
@@ -75,7 +75,7 @@ pub const ALLOW: &str = "#[automatically_derived]\n#[allow(unused, non_snake_cas
                          clippy::pedantic, clippy::nursery, reason = \"generated code\")]\n";
 
 /// Generics of the struct's implementations, as source text.
-pub struct Head {
+pub struct ImplGenerics {
     /// Generic parameters with their bounds: `<T: …>`.
     pub generics: String,
     /// Generic arguments: `<T>`.
@@ -84,9 +84,9 @@ pub struct Head {
     pub bounds: String,
 }
 
-impl Head {
+impl ImplGenerics {
     /// Returns the generics of the struct, with the bound of a generic scalar added.
-    pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> Head {
+    pub fn new(i: &Interface<'_>, s: &Signature<'_>) -> ImplGenerics {
         let (impl_generics, ty_generics, where_clause) = i.shell.generics.split_for_impl();
         let spell_tokens = |tokens: &dyn ToTokens| tokens.to_token_stream().to_string();
         let mut bounds = spell_tokens(&where_clause);
@@ -95,11 +95,11 @@ impl Head {
             let comma = if bounds.is_empty() { "" } else { "," };
             bounds = format!("{start}{comma} {}: ::linkwork::Real", s.scalar.one());
         }
-        Head { generics: spell_tokens(&impl_generics), arguments: spell_tokens(&ty_generics), bounds }
+        ImplGenerics { generics: spell_tokens(&impl_generics), arguments: spell_tokens(&ty_generics), bounds }
     }
 }
 
 /// Returns the arguments of the trait function that the inherent function takes.
-pub fn inherent_arguments(row: &Row, i: &Interface<'_>) -> Vec<Argument> {
+pub fn inherent_function_arguments(row: &Row, i: &Interface<'_>) -> Vec<Argument> {
     (row.declare)(&i.facts).arguments
 }

@@ -1,22 +1,22 @@
 //! The complete generated code: struct, inherent functions, trait implementations and frames.
 
-use super::absent::write_absent;
-use super::constants::{write_constants, write_frame_index};
+use super::absent::write_missing_item_declarations;
+use super::constants::{write_constants, write_frame_index_function};
 use super::differentiable;
-use super::dispatch::Bodies;
-use super::docs::{Part, struct_docs};
+use super::dispatch::DispatchedBodies;
+use super::docs::{DocumentationPart, struct_docs};
 use super::frames::{write_frames, write_trait as write_frames_by_number};
 use super::function::write_function;
 use super::implementations::write_impls;
-use super::interface::{ALLOW, Head, Interface};
+use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::manifold::{write_manifold, write_transport};
-use super::prepared::{Content, write_prepared};
+use super::prepared::{PreparedProgram, write_prepared_struct_and_functions};
 use super::scalar::ScalarSpelling;
 use super::signature::Signature;
 use super::{constraints, contacts};
 use super::{file, lanes, measurements, reactions, sensitivities, states, validate};
-use crate::derive::{Constant, Function, Output};
-use crate::equations::Written;
+use crate::derive::{AssociatedConstant, Function, Output};
+use crate::equations::PrintedEquations;
 use crate::syntax::Shell;
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
@@ -26,14 +26,14 @@ use std::fmt::Write;
 /// else is text, because the lexer of the Rust compiler is much faster than tokens that are made
 /// individually.
 #[derive(Debug, Default)]
-pub struct Emitted {
+pub struct GeneratedCode {
     /// Tokens of the struct, with its documentation and its dependencies on imported files.
     pub tokens: TokenStream,
     /// Implementations of the struct's functions and of the runtime's traits.
     pub text: String,
 }
 
-impl Emitted {
+impl GeneratedCode {
     /// Returns the struct and the implementations as tokens.
     pub fn into_tokens(self) -> Result<TokenStream, proc_macro2::LexError> {
         let mut tokens = self.tokens;
@@ -50,13 +50,13 @@ const REPRODUCIBLE: &str = "const _: () = {
 ";
 
 /// Returns the generated code of a mechanism without errors.
-pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
+pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> GeneratedCode {
     let spelling = scalar_spelling(interface);
-    let s = function_signature(interface, &spelling);
+    let s = common_function_signature(interface, &spelling);
     let mut methods = String::new();
     write_constants(&mut methods, interface, &output.equations, &output.constants);
-    write_frame_index(&mut methods, false);
-    let mut bodies = Bodies::new(interface.detect);
+    write_frame_index_function(&mut methods, false);
+    let mut bodies = DispatchedBodies::new(interface.detect);
     for f in &output.functions {
         bodies.write_function(&mut methods, f, &s);
     }
@@ -66,19 +66,19 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, &output.functions, &s);
         reactions::write_methods(&mut methods, interface, &output.functions, &s);
-        reactions::write_touched(&mut methods, interface, &output.functions, &s);
+        reactions::write_contact_force_outputs(&mut methods, interface, &output.functions, &s);
     } else {
-        constraints::write_assembly(&mut methods, &interface.constraints, &s);
+        constraints::write_kinematic_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
         write_transport(&mut methods, Some(&output.charts), interface.facts.speeds, &s);
     }
     differentiable::write_methods(&mut methods, Some(&output.charts), &output.functions, interface, &s);
-    differentiable::write_second(&mut methods, Some(&output.charts), interface, &s);
+    differentiable::write_forward_second_derivatives(&mut methods, Some(&output.charts), interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations must not cause a warning about an unused field.
-    let fields: Vec<String> = (0..interface.shell.parameter_accesses().len())
+    let fields: Vec<String> = (0..interface.shell.parameter_access_paths().len())
         .map(|k| format!("&self.{}", spelling.parameter_field(k)))
         .collect();
     let fields: Vec<String> = fields
@@ -87,14 +87,14 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         .collect();
     let _ =
         writeln!(methods, "#[doc(hidden)]\nfn __parameters(&self) {{ let _ = ({}); }}", fields.join(", "));
-    validate::write_method(&mut methods, interface, false);
+    validate::write_validate_method(&mut methods, interface, false);
     file::write_methods(&mut methods, interface, &spelling);
-    write_frame_access(&mut methods, &s);
+    write_frame_selection_functions(&mut methods, &s);
     let mut emitted = assemble(interface, &s, &methods, output.frames.len(), &struct_docs(interface, output));
     write_frames(
         &mut emitted.text,
         &interface.shell.ident.to_string(),
-        &Head::new(interface, &s),
+        &ImplGenerics::new(interface, &s),
         (&output.links, &output.frames),
         interface.facts.speeds,
         &s,
@@ -102,9 +102,9 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     bodies.write_function_bodies(
         &mut emitted.text,
         &interface.shell.ident.to_string(),
-        &Head::new(interface, &s),
+        &ImplGenerics::new(interface, &s),
     );
-    write_absent(&mut emitted.text, interface, &s);
+    write_missing_item_declarations(&mut emitted.text, interface, &s);
     if interface.facts.requests.reproducible {
         emitted.text.push_str(REPRODUCIBLE);
     }
@@ -115,43 +115,52 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         interface,
         &s,
     );
-    sensitivities::write_impl(&mut emitted.text, &interface.shell.ident.to_string(), interface, &s);
+    sensitivities::write_sensitivities_impl(
+        &mut emitted.text,
+        &interface.shell.ident.to_string(),
+        interface,
+        &s,
+    );
     states::write_impls(&mut emitted.text, &output.functions, interface, &s);
     if let Some(prepared) = &output.prepared {
-        let content = Content { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
-        write_prepared(&mut emitted.text, interface, &s, &prepared.functions, &content);
+        let content = PreparedProgram { numbers: Some(&prepared.numbers), charts: Some(&output.charts) };
+        write_prepared_struct_and_functions(&mut emitted.text, interface, &s, &prepared.functions, &content);
     }
-    emitted.text = with_runtime(emitted.text, interface.shell);
+    emitted.text = replace_runtime_path(emitted.text, interface.shell);
     emitted
 }
 
 /// Returns stubs for the interface of a mechanism with an error, so that the error is not reported again at
 /// every use of the mechanism.
-pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants: &[Constant]) -> Emitted {
+pub fn emit_error_stubs(
+    interface: &Interface<'_>,
+    functions: &[Function],
+    constants: &[AssociatedConstant],
+) -> GeneratedCode {
     let spelling = scalar_spelling(interface);
-    let s = function_signature(interface, &spelling);
+    let s = common_function_signature(interface, &spelling);
     let mut methods = String::new();
-    write_constants(&mut methods, interface, &Written::default(), constants);
-    write_frame_index(&mut methods, true);
+    write_constants(&mut methods, interface, &PrintedEquations::default(), constants);
+    write_frame_index_function(&mut methods, true);
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }
-    reactions::write_unknown(&mut methods, interface, functions, &s);
+    reactions::write_contact_output_stubs(&mut methods, interface, functions, &s);
     constraints::write_constants(&mut methods, &interface.constraints);
     contacts::write_constants(&mut methods, &interface.contacts);
     if !interface.facts.kinematic {
         constraints::write_methods(&mut methods, &interface.constraints, functions, &s);
     } else {
-        constraints::write_assembly(&mut methods, &interface.constraints, &s);
+        constraints::write_kinematic_assembly(&mut methods, &interface.constraints, &s);
     }
     write_manifold(&mut methods, None, interface.facts.speeds, &s);
     if !interface.contacts.is_empty() {
         write_transport(&mut methods, None, interface.facts.speeds, &s);
     }
     differentiable::write_methods(&mut methods, None, functions, interface, &s);
-    differentiable::write_second(&mut methods, None, interface, &s);
-    lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
-    validate::write_method(&mut methods, interface, true);
+    differentiable::write_forward_second_derivatives(&mut methods, None, interface, &s);
+    lanes::write_methods(&mut methods, &mut DispatchedBodies::new(false), interface, functions, None, &s);
+    validate::write_validate_method(&mut methods, interface, true);
     file::write_methods(&mut methods, interface, &spelling);
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let (scalar, nv) = (spelling.scalar_name(), s.nv);
@@ -170,7 +179,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         interface.frames.len()
     );
     let mut emitted = assemble(interface, &s, &methods, 0, &[]);
-    write_absent(&mut emitted.text, interface, &s);
+    write_missing_item_declarations(&mut emitted.text, interface, &s);
     measurements::write_impls(
         &mut emitted.text,
         &interface.shell.ident.to_string(),
@@ -178,24 +187,35 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         interface,
         &s,
     );
-    sensitivities::write_impl(&mut emitted.text, &interface.shell.ident.to_string(), interface, &s);
+    sensitivities::write_sensitivities_impl(
+        &mut emitted.text,
+        &interface.shell.ident.to_string(),
+        interface,
+        &s,
+    );
     states::write_impls(&mut emitted.text, functions, interface, &s);
     if interface.facts.requests.prepare {
-        write_prepared(&mut emitted.text, interface, &s, functions, &Content::default());
+        write_prepared_struct_and_functions(
+            &mut emitted.text,
+            interface,
+            &s,
+            functions,
+            &PreparedProgram::default(),
+        );
     }
-    emitted.text = with_runtime(emitted.text, interface.shell);
+    emitted.text = replace_runtime_path(emitted.text, interface.shell);
     emitted
 }
 
 fn scalar_spelling(interface: &Interface<'_>) -> ScalarSpelling {
     ScalarSpelling::new(
         interface.scalar.clone(),
-        interface.shell.parameter_accesses(),
+        interface.shell.parameter_access_paths(),
         interface.shell.table_names(),
     )
 }
 
-fn function_signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signature<'a> {
+fn common_function_signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signature<'a> {
     Signature {
         scalar,
         nq: interface.configuration.len(),
@@ -207,7 +227,7 @@ fn function_signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling)
 
 /// Writes the functions for one frame, which `frame!(Robot, "tool")` selects by name; the compiler checks the
 /// name.
-fn write_frame_access(out: &mut String, s: &Signature<'_>) {
+fn write_frame_selection_functions(out: &mut String, s: &Signature<'_>) {
     let scalar = s.scalar.scalar_name();
     let frame = format!("impl ::linkwork::FrameName<Self, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
@@ -249,7 +269,7 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
 
 /// Returns the alias of the runtime in generated code, for an attribute that contains the path of the
 /// runtime.
-fn alias_of(ident: &syn::Ident) -> String {
+fn runtime_alias_name(ident: &syn::Ident) -> String {
     format!("__linkwork_of_{}", ident.to_string().trim_start_matches("r#"))
 }
 
@@ -257,25 +277,31 @@ fn alias_of(ident: &syn::Ident) -> String {
 pub(super) fn runtime_path(shell: &Shell) -> TokenStream {
     match shell.runtime {
         None => quote!(::linkwork),
-        Some(_) => quote::format_ident!("{}", alias_of(&shell.ident)).to_token_stream(),
+        Some(_) => quote::format_ident!("{}", runtime_alias_name(&shell.ident)).to_token_stream(),
     }
 }
 
 /// Returns the text with the path of the runtime replaced by its alias, if the attribute contains a path.
-fn with_runtime(text: String, shell: &Shell) -> String {
+fn replace_runtime_path(text: String, shell: &Shell) -> String {
     match shell.runtime {
         None => text,
-        Some(_) => text.replace("::linkwork::", &format!("{}::", alias_of(&shell.ident))),
+        Some(_) => text.replace("::linkwork::", &format!("{}::", runtime_alias_name(&shell.ident))),
     }
 }
 
 /// Returns the code of the struct with its implementations, without frames.
-fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, docs: &[Part]) -> Emitted {
+fn assemble(
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+    methods: &str,
+    frames: usize,
+    docs: &[DocumentationPart],
+) -> GeneratedCode {
     let Shell { attributes, visibility, ident, parameters, tables, elements, runtime: path, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
     let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
-    let of_file = file::struct_fields(i);
+    let of_file = file::struct_fields_for_file_values(i);
     let fields = if parameters.is_empty() && tables.is_empty() && of_file.is_empty() {
         quote!(#struct_where;)
     } else {
@@ -284,15 +310,15 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
         quote!(#struct_where { #(#all),* })
     };
     let docs = docs.iter().map(|part| match part {
-        Part::Everywhere(text) => quote!(#[doc = #text]),
-        Part::Pages(text) => quote!(#[cfg_attr(doc, doc = #text)]),
-        Part::Editors(text) => quote!(#[cfg_attr(not(doc), doc = #text)]),
+        DocumentationPart::Everywhere(text) => quote!(#[doc = #text]),
+        DocumentationPart::Pages(text) => quote!(#[cfg_attr(doc, doc = #text)]),
+        DocumentationPart::Editors(text) => quote!(#[cfg_attr(not(doc), doc = #text)]),
     });
     // Types of the elements: an editor shows their documentation at the user's keywords.
     let words = elements.iter().map(|(_, kind)| kind);
     // The alias is needed because the path may be valid only in the user's source.
     let alias = path.as_ref().map(|path| {
-        let alias = quote::format_ident!("{}", alias_of(ident));
+        let alias = quote::format_ident!("{}", runtime_alias_name(ident));
         quote!(#[doc(hidden)] #[allow(unused_imports, non_snake_case, reason = "generated code")] use #path as #alias;)
     });
     let runtime = runtime_path(i.shell);
@@ -314,7 +340,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
         #known
         #alias
     };
-    let head = Head::new(i, s);
+    let head = ImplGenerics::new(i, s);
     let mut text = String::new();
     write_impls(&head, &mut text, &i.shell.ident.to_string(), methods, i, s);
     file::write_trait(&mut text, &head, i, s.scalar);
@@ -343,5 +369,5 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
             head.generics, s.nq, s.nv, i.shell.ident, head.arguments, head.bounds
         );
     }
-    Emitted { tokens, text }
+    GeneratedCode { tokens, text }
 }

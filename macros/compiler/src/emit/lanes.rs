@@ -1,11 +1,11 @@
 //! Code of functions of several states at once, which the option `batch` requests. Their bodies equal those
 //! of single states, with SIMD lanes in place of scalars.
 
-use super::dispatch::Bodies;
+use super::dispatch::DispatchedBodies;
 use super::function::write_function;
-use super::interface::{Interface, inherent_arguments};
+use super::interface::{Interface, inherent_function_arguments};
 use super::manifold::write_manifold;
-use super::signature::{Signature, matrix_arguments};
+use super::signature::{Signature, matrix_argument_names};
 use crate::catalogue::{self, Argument, Id, Shape};
 use crate::derive::Function;
 use crate::mechanism::Chart;
@@ -15,7 +15,7 @@ use std::fmt::Write;
 /// the option `batch` is set. Without `charts`, for a mechanism that failed to compile, these are stubs.
 pub fn write_methods(
     out: &mut String,
-    bodies: &mut Bodies,
+    bodies: &mut DispatchedBodies,
     i: &Interface<'_>,
     functions: &[Function],
     charts: Option<&[Chart]>,
@@ -48,7 +48,7 @@ pub fn write_methods(
         }
     }
     if !i.constraints.names.is_empty() {
-        write_constrained(out, i, &lanes);
+        write_constrained_dynamics_lanes(out, i, &lanes);
     }
     write_manifold(out, charts, i.facts.speeds, &lanes);
 }
@@ -56,7 +56,7 @@ pub fn write_methods(
 /// Returns the body of a function of several states for debug builds, which computes one state after another:
 /// lanes would need more stack than a thread has. Returns `None` for hidden functions that are called only
 /// from such bodies.
-pub fn one_by_one(f: &Function) -> Option<String> {
+pub fn sequential_debug_body(f: &Function) -> Option<String> {
     let lane_argument = |a: &Argument| match a {
         Argument::T => Some("t.0[k]".to_string()),
         Argument::Into(name, _) => Some(format!("&mut one_{name}")),
@@ -65,7 +65,7 @@ pub fn one_by_one(f: &Function) -> Option<String> {
     };
     let arguments: Option<Vec<String>> = f.arguments.iter().map(lane_argument).collect();
     let call = format!("self.{}({})", f.name, arguments?.join(", "));
-    let given = matrix_arguments(f);
+    let given = matrix_argument_names(f);
     if !given.is_empty() {
         let concatenate_for_arguments =
             |form: &dyn Fn(&str) -> String| given.iter().map(|name| form(name)).collect::<String>();
@@ -114,7 +114,7 @@ pub fn one_by_one(f: &Function) -> Option<String> {
 
 /// Writes forward dynamics with constraints. If the elimination fails in a lane, all lanes use the function
 /// of a single state.
-fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+fn write_constrained_dynamics_lanes(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let nv = s.nv;
     let arguments = s.with_time_argument(&[Argument::Q, Argument::V, Argument::Tau]);
     let names: Vec<&str> = arguments.iter().map(|a| a.argument_name()).collect();
@@ -147,7 +147,7 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         k => format!(", &[::linkwork::__private::constant::<{}>(1.0); {k}]", s.scalar.scalar_name()),
     };
     let quick = match i.constraints.independent {
-        true => "independent_solution(&found)".to_string(),
+        true => "solution_with_predetermined_pivots(&found)".to_string(),
         false => format!("pressing_solution(&{slipping:?}, &Self::__STRUCTURE.groups, &found)"),
     };
     let _ = writeln!(
@@ -173,10 +173,10 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let in_lanes = s.scalar.in_lanes();
     let s = &Signature { scalar: &in_lanes, ..*s };
-    for (row, arguments) in catalogue::of_trait() {
+    for (row, arguments) in catalogue::mechanism_trait_rows() {
         let name = row.name;
         let all: Vec<Argument> = [&[Argument::T], arguments].concat();
-        let needed = s.with_time_argument(&inherent_arguments(row, i));
+        let needed = s.with_time_argument(&inherent_function_arguments(row, i));
         let names: Vec<&str> = needed.iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,

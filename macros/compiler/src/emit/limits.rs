@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// Limits of an entry of `v` and its coordinate, as indices of the values of the hidden function `__limits`.
 #[derive(Clone, Debug)]
-pub struct CoordinateLimits {
+pub struct CoordinateLimitIndices {
     /// Index in `q` of the limited coordinate.
     q: usize,
     /// Index in `v` of the coordinate's velocity.
@@ -19,9 +19,9 @@ pub struct CoordinateLimits {
     bounds: [Option<(usize, Option<f64>)>; 4],
 }
 
-impl CoordinateLimits {
+impl CoordinateLimitIndices {
     /// Returns all limits of a model, in the order of the values.
-    pub fn from_model(model: &Model<'_>) -> Vec<CoordinateLimits> {
+    pub fn from_model(model: &Model<'_>) -> Vec<CoordinateLimitIndices> {
         let mut next = 0;
         let mut place = |limit: &Limit<'_>| {
             let bounds = limit.bounds().map(|bound| {
@@ -31,7 +31,7 @@ impl CoordinateLimits {
             });
             let names = model.speeds.as_ref().map_or(&model.velocities, |speeds| &speeds.velocities);
             let name = names.get(limit.v.0).map_or(String::new(), |(name, _)| name.clone());
-            CoordinateLimits { q: limit.q.0, v: limit.v.0, name, bounds }
+            CoordinateLimitIndices { q: limit.q.0, v: limit.v.0, name, bounds }
         };
         model.limits.iter().map(&mut place).collect()
     }
@@ -51,7 +51,7 @@ const FUNCTIONS: [(&str, &str); 4] = [
 ];
 
 /// Writes the functions of the trait `Limits`. Omitted functions have defaults, which return no limits.
-pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool, s: &Signature<'_>) {
+pub fn write_trait(out: &mut String, limited: &[CoordinateLimitIndices], speeds: bool, s: &Signature<'_>) {
     let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
     for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {
@@ -110,7 +110,7 @@ pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool,
 }
 
 /// Adds a table of the limits to the documentation of the struct.
-pub fn write_docs(text: &mut String, limited: &[CoordinateLimits]) {
+pub fn write_documentation_table(text: &mut String, limited: &[CoordinateLimitIndices]) {
     if limited.is_empty() {
         return;
     }

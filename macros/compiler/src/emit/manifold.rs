@@ -10,11 +10,15 @@ use std::fmt::Write;
 /// With generalized speeds these functions are hidden, and the public functions call them.
 pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
     let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
-    let on_manifold = |kind, about, signature: String, arguments: [(&'static str, usize); 2], result| {
+    let new_manifold_function = |kind,
+                                 about,
+                                 signature: String,
+                                 arguments: [(&'static str, usize); 2],
+                                 result| {
         ManifoldFunction { kind, about, signature, arguments, result }
     };
     let functions = [
-        on_manifold(
+        new_manifold_function(
             ManifoldFunctionKind::Integrate,
             "Returns `q ⊕ dv`: the configuration reached from `q` with the constant velocity `dv` in one \
              unit of time, with normalised quaternions.",
@@ -22,7 +26,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
             [("q", s.nq), ("dv", s.nv)],
             s.nq,
         ),
-        on_manifold(
+        new_manifold_function(
             ManifoldFunctionKind::Difference,
             "Returns `to ⊖ from`: the constant velocity that leads from one configuration to another in one \
              unit of time, so that `integrate(from, difference(from, to))` is `to`.",
@@ -30,7 +34,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
             [("from", s.nq), ("to", s.nq)],
             s.nv,
         ),
-        on_manifold(
+        new_manifold_function(
             ManifoldFunctionKind::TangentRate,
             "Returns the rate of `dv` for which `q ⊕ dv` moves with velocity `v` (inverse of the derivative \
              of the exponential map).",
@@ -72,26 +76,29 @@ pub fn write_transport(out: &mut String, charts: Option<&[Chart]>, speeds: bool,
             "The rate of the components of a velocity that is `v`, and constant in space, during a motion \
              with velocity `dv`.",
         );
-        write_translation(out, charts, s);
+        write_linear_velocity_selection(out, charts, s);
     }
 }
 
 /// Writes the hidden function that selects the linear velocities of free joints.
-fn write_translation(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+fn write_linear_velocity_selection(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
     let v = s.vector_type(s.nv);
     let _ = writeln!(
         out,
         "#[doc(hidden)]\n/// The part of the displacement `dv` that is linear velocities of free joints.\n\
          #[inline]\n#[must_use]\npub fn __translation{}(&self, dv: &{v}) -> {v} {{",
-        s.generics_text()
+        s.lanes_suffix_and_generics()
     );
     match charts {
         Some(charts) => {
-            let is_linear = |k: usize| {
+            let is_linear_velocity_of_free_joint = |k: usize| {
                 charts.iter().any(|chart| matches!(chart, Chart::Free(_, v) if (v.0..v.0 + 3).contains(&k)))
             };
-            let entry = |k: usize| if is_linear(k) { format!("r{k}") } else { "0.0".to_owned() };
-            let name = |k: usize| if is_linear(k) { format!("r{k}") } else { "_".to_owned() };
+            let entry = |k: usize| {
+                if is_linear_velocity_of_free_joint(k) { format!("r{k}") } else { "0.0".to_owned() }
+            };
+            let name =
+                |k: usize| if is_linear_velocity_of_free_joint(k) { format!("r{k}") } else { "_".to_owned() };
             let list = |of: &dyn Fn(usize) -> String| (0..s.nv).map(of).collect::<Vec<_>>().join(", ");
             let _ = writeln!(
                 out,
@@ -156,7 +163,7 @@ impl ManifoldFunction {
             "{hidden}/// {}\n#[inline]\n#[must_use]\npub fn {prefix}{}{}(&self, {} {{",
             self.about,
             self.kind.name(),
-            s.generics_text(),
+            s.lanes_suffix_and_generics(),
             self.signature
         );
         match charts {

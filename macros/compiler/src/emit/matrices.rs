@@ -1,7 +1,7 @@
 //! Results that consist of several matrices, and products and inverses that are completed at run time.
 
 use super::pieces::Outputs;
-use super::signature::{Signature, matrix_arguments};
+use super::signature::{Signature, matrix_argument_names};
 use crate::catalogue::{InverseForm, Shape, Structure};
 use crate::derive::Function;
 use crate::machine::FILLED_ZEROS;
@@ -15,14 +15,14 @@ const NOTHING: &str = "&mut []";
 
 /// Returns the end of a function with matrix arguments: the code after the outputs are stored in the
 /// matrices.
-pub fn finishing_code(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let given: Vec<String> = matrix_arguments(f).iter().map(|name| format!("*{name}")).collect();
+pub fn matrix_function_epilogue(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    let given: Vec<String> = matrix_argument_names(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}{}\n",
-            inverse_completion([inverse, NOTHING], f, n, 2 * n * n, s, outputs),
-            acceleration_conversion([by_q, by_v], inverse, n, s, &f.structure),
-            outputs.matrix_of_outputs(f.shape.output_count(&f.structure) - n, n, 1)
+            inverse_completion_statement([inverse, NOTHING], f, n, 2 * n * n, s, outputs),
+            acceleration_conversion_statement([by_q, by_v], inverse, n, s, &f.structure),
+            outputs.output_matrix_constructor_text(f.shape.output_count(&f.structure) - n, n, 1)
         ),
         (Shape::CalledForward(n), [by_q, by_v, inverse]) => {
             let (t, lanes) = (if s.time { "t, " } else { "" }, s.call_suffix());
@@ -30,21 +30,21 @@ pub fn finishing_code(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) ->
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
                 self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut \
                     {by_v});\n{}{}a\n",
-                acceleration_conversion([by_q, by_v], inverse, n, s, &f.structure),
-                store_known_columns(f, outputs, n)
+                acceleration_conversion_statement([by_q, by_v], inverse, n, s, &f.structure),
+                known_column_store_statements(f, outputs, n)
             )
         }
         (Shape::Accelerated(n), [inverse]) => match &f.structure.inverse {
             InverseForm::BlockArrow { .. } => format!(
                 "let mut solved = [{}];\n{}{STORAGE}(solved))\n",
                 outputs.array_of_outputs(0..n),
-                inverse_completion([inverse, "&mut solved"], f, n, n, s, outputs)
+                inverse_completion_statement([inverse, "&mut solved"], f, n, n, s, outputs)
             ),
             _ => {
                 format!(
                     "{}{}\n",
-                    inverse_completion([inverse, NOTHING], f, n, n, s, outputs),
-                    outputs.matrix_of_outputs(0, n, 1)
+                    inverse_completion_statement([inverse, NOTHING], f, n, n, s, outputs),
+                    outputs.output_matrix_constructor_text(0, n, 1)
                 )
             }
         },
@@ -53,13 +53,13 @@ pub fn finishing_code(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) ->
 }
 
 /// Returns the expression of the result, composed of the outputs.
-pub fn compose_result(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let format_square_matrix = |k: usize, n: usize| outputs.matrix_of_outputs(k * n * n, n, n);
+pub fn result_expression_text(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    let format_square_matrix = |k: usize, n: usize| outputs.output_matrix_constructor_text(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", format_square_matrix(0, n), format_square_matrix(1, n)),
         Shape::Jacobians(rows, n, m) => {
-            let format_jacobian = |k: usize| outputs.matrix_of_outputs(k * rows * n, rows, n);
-            let by_u = outputs.matrix_of_outputs(3 * rows * n, rows, m);
+            let format_jacobian = |k: usize| outputs.output_matrix_constructor_text(k * rows * n, rows, n);
+            let by_u = outputs.output_matrix_constructor_text(3 * rows * n, rows, m);
             format!(
                 "::linkwork::OutputJacobians {{ by_q: {}, by_v: {}, by_a: {}, by_u: {by_u} }}\n",
                 format_jacobian(0),
@@ -77,9 +77,10 @@ pub fn compose_result(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) ->
             )
         }
         Shape::InputHessian(n, m) => {
-            let format_mixed_matrix = |k: usize| outputs.matrix_of_outputs(3 * n * n + k * n * m, n, m);
+            let format_mixed_matrix =
+                |k: usize| outputs.output_matrix_constructor_text(3 * n * n + k * n * m, n, m);
             let state = [0, 1, 2].map(|k| format_square_matrix(k, n)).join(", ");
-            let inputs = outputs.matrix_of_outputs(3 * n * n + 2 * n * m, m, m);
+            let inputs = outputs.output_matrix_constructor_text(3 * n * n + 2 * n * m, m, m);
             format!("({state}, {}, {}, {inputs})\n", format_mixed_matrix(0), format_mixed_matrix(1))
         }
         // The matrices are composed in the returned tuple, so that each of them is moved at most once.
@@ -89,12 +90,16 @@ pub fn compose_result(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) ->
             format_square_matrix(0, n),
             format_square_matrix(1, n),
             format_square_matrix(2, n),
-            inverse_completion(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
-            acceleration_conversion(["all.0", "all.1"], "all.2", n, s, &f.structure),
+            inverse_completion_statement(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
+            acceleration_conversion_statement(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
         // The mechanism has no velocities.
         Shape::Linear(0, m) => {
-            format!("({}, {})\n", outputs.matrix_of_outputs(0, 0, 0), outputs.matrix_of_outputs(0, 0, m))
+            format!(
+                "({}, {})\n",
+                outputs.output_matrix_constructor_text(0, 0, 0),
+                outputs.output_matrix_constructor_text(0, 0, m)
+            )
         }
         Shape::Linear(n, m) => {
             format!(
@@ -102,25 +107,25 @@ pub fn compose_result(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) ->
                 format_square_matrix(2, n),
                 format_square_matrix(0, n),
                 format_square_matrix(1, n),
-                acceleration_conversion(["by_q", "by_v"], "inverse", n, s, &f.structure),
+                acceleration_conversion_statement(["by_q", "by_v"], "inverse", n, s, &f.structure),
                 linear_system_expression(n, m, 3 * n * n, s, outputs)
             )
         }
         Shape::CalledLinear(n, m) => {
-            let of_inputs = |k: usize| n + k * n * n;
-            let depend = (n..of_inputs(2)).any(|k| !outputs.is_zero(k));
+            let input_block_start = |k: usize| n + k * n * n;
+            let depend = (n..input_block_start(2)).any(|k| !outputs.is_zero(k));
             let by_state = format!(
                 "let (mut more_by_q, mut more_by_v) = ({}, {});\n{}by_q -= more_by_q;\nby_v -= more_by_v;\n",
-                outputs.matrix_of_outputs(of_inputs(0), n, n),
-                outputs.matrix_of_outputs(of_inputs(1), n, n),
-                acceleration_conversion(["more_by_q", "more_by_v"], "inverse", n, s, &f.structure)
+                outputs.output_matrix_constructor_text(input_block_start(0), n, n),
+                outputs.output_matrix_constructor_text(input_block_start(1), n, n),
+                acceleration_conversion_statement(["more_by_q", "more_by_v"], "inverse", n, s, &f.structure)
             );
             format!(
                 "let tau = &{};\n{}{}{}",
-                outputs.matrix_of_outputs(0, n, 1),
+                outputs.output_matrix_constructor_text(0, n, 1),
                 acceleration_derivative_call(depend, s),
                 if depend { by_state.as_str() } else { "" },
-                linear_system_expression(n, m, of_inputs(2), s, outputs)
+                linear_system_expression(n, m, input_block_start(2), s, outputs)
             )
         }
         _ => String::new(),
@@ -129,14 +134,14 @@ pub fn compose_result(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) ->
 
 /// Returns the statements that bind `inverse` to `M⁻¹`, from the outputs from index `first` on.
 fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let rest = inverse_completion(["inverse", NOTHING], f, n, first, s, outputs);
-    format!("let mut inverse = {};\n{rest}", outputs.matrix_of_outputs(first, n, n))
+    let rest = inverse_completion_statement(["inverse", NOTHING], f, n, first, s, outputs);
+    format!("let mut inverse = {};\n{rest}", outputs.output_matrix_constructor_text(first, n, n))
 }
 
 /// Returns the statement that completes `M⁻¹` from a factored form whose columns are in the matrix `place`
 /// and start at output `first`; empty for an explicit inverse. With a block arrow form, the columns `solved`
 /// are multiplied by the inverse, too.
-fn inverse_completion(
+fn inverse_completion_statement(
     [place, solved]: [&str; 2],
     f: &Function,
     n: usize,
@@ -144,21 +149,24 @@ fn inverse_completion(
     s: &Signature<'_>,
     outputs: &Outputs<'_>,
 ) -> String {
-    let additional_values = |width: usize| TrailingRows { first: first + n * n, rows: n, width, outputs };
+    let trailing_rows_of_width =
+        |width: usize| OutputsAfterMatrix { first: first + n * n, rows: n, width, outputs };
     match &f.structure.inverse {
         InverseForm::Explicit => String::new(),
-        InverseForm::LowRankUpdate(trunk) => additional_values(trunk.len()).trunk_completion(place, trunk, s),
+        InverseForm::LowRankUpdate(trunk) => {
+            trailing_rows_of_width(trunk.len()).trunk_completion(place, trunk, s)
+        }
         InverseForm::BlockArrow { trunk, limbs } => {
-            additional_values(trunk.len()).inversion_statement([place, solved], trunk, limbs, s)
+            trailing_rows_of_width(trunk.len()).inversion_statement([place, solved], trunk, limbs, s)
         }
     }
 }
 
 /// Half-open range of rows or columns.
-type Span = (usize, usize);
+type IndexRange = (usize, usize);
 
 /// Outputs that follow a matrix: a row of additional values for each velocity.
-struct TrailingRows<'a> {
+struct OutputsAfterMatrix<'a> {
     /// Index of the first output that belongs to the factored form.
     first: usize,
     /// Number of rows of the matrix.
@@ -168,15 +176,15 @@ struct TrailingRows<'a> {
     outputs: &'a Outputs<'a>,
 }
 
-impl TrailingRows<'_> {
+impl OutputsAfterMatrix<'_> {
     /// Returns the indices of the outputs in a row of the matrix.
-    fn range_of_row(&self, row: usize) -> std::ops::Range<usize> {
+    fn output_indices_of_row(&self, row: usize) -> std::ops::Range<usize> {
         self.first + row * self.width..self.first + (row + 1) * self.width
     }
 
     /// Returns the range of the values of a row outside which all are constant zeros; `None` if all are.
-    fn nonzero_range(&self, row: usize) -> Option<Span> {
-        let first = self.range_of_row(row).start;
+    fn nonzero_range(&self, row: usize) -> Option<IndexRange> {
+        let first = self.output_indices_of_row(row).start;
         let is_nonzero_entry = |t: &usize| !self.outputs.is_zero(first + t);
         Some(((0..self.width).find(is_nonzero_entry)?, (0..self.width).rfind(is_nonzero_entry)? + 1))
     }
@@ -184,15 +192,14 @@ impl TrailingRows<'_> {
     /// Returns the statement that adds the product of the trunk's columns and these factors to the matrix
     /// `place`; empty if all factors are zero.
     fn trunk_completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
-        let used: Vec<(usize, Span)> =
+        let used: Vec<(usize, IndexRange)> =
             (0..self.rows).filter_map(|k| Some((k, self.nonzero_range(k)?))).collect();
-        let runs =
-            column_runs_of_factors(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
+        let runs = group_factor_columns(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
         if runs.is_empty() {
             return String::new();
         }
         let factors: Vec<String> =
-            used.iter().map(|(k, _)| self.outputs.array_of_outputs(self.range_of_row(*k))).collect();
+            used.iter().map(|(k, _)| self.outputs.array_of_outputs(self.output_indices_of_row(*k))).collect();
         format!(
             "{RUNTIME}::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
             s.scalar.scalar_name(),
@@ -214,7 +221,7 @@ impl TrailingRows<'_> {
         let padding = vec![constant_conversion_call("0.0", s); length - self.width];
         let format_border_row = |k: usize| {
             let entries =
-                self.outputs.pieces.get(self.range_of_row(k)).unwrap_or(&[]).iter().map(|p| &p.text);
+                self.outputs.pieces.get(self.output_indices_of_row(k)).unwrap_or(&[]).iter().map(|p| &p.text);
             let all: Vec<&str> = entries.chain(&padding).map(String::as_str).collect();
             format!("[{}]", all.join(", "))
         };
@@ -225,10 +232,10 @@ impl TrailingRows<'_> {
             limb.iter().for_each(|k| used[*k] = all);
         }
         let runs =
-            column_runs_of_factors(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
+            group_factor_columns(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
         let format_runs_of_limb = |limb: &Vec<usize>| {
-            let runs = column_runs_of_factors(limb.iter().map(|k| (*k, Span::default(), *k)));
-            format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
+            let runs = group_factor_columns(limb.iter().map(|k| (*k, IndexRange::default(), *k)));
+            format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<IndexRange>>())
         };
         let limbs: Vec<String> = limbs.iter().map(format_runs_of_limb).collect();
         format!(
@@ -248,8 +255,10 @@ impl TrailingRows<'_> {
 
 /// Groups neighbouring columns whose factors have the same range of trunk rows and consecutive indices.
 /// `columns` holds, in ascending order, the index of each column, the range and the index of the factors.
-fn column_runs_of_factors(columns: impl Iterator<Item = (usize, Span, usize)>) -> Vec<(Span, Span, usize)> {
-    let mut runs: Vec<(Span, Span, usize)> = Vec::new();
+fn group_factor_columns(
+    columns: impl Iterator<Item = (usize, IndexRange, usize)>,
+) -> Vec<(IndexRange, IndexRange, usize)> {
+    let mut runs: Vec<(IndexRange, IndexRange, usize)> = Vec::new();
     for (k, used, place) in columns {
         match runs.last_mut() {
             Some(((first, end), known, from))
@@ -264,8 +273,8 @@ fn column_runs_of_factors(columns: impl Iterator<Item = (usize, Span, usize)>) -
 }
 
 /// Returns the statements that store the columns that are already computed in the matrix arguments.
-fn store_known_columns(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
-    let columns = matrix_arguments(f).into_iter().zip(&f.structure.known);
+fn known_column_store_statements(f: &Function, outputs: &Outputs<'_>, n: usize) -> String {
+    let columns = matrix_argument_names(f).into_iter().zip(&f.structure.known);
     let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
     let texts = columns.enumerate().map(|(k, (matrix, column))| {
         format!("{matrix}.data.0[{column}] = {};\n", outputs.array_of_outputs(k * n..(k + 1) * n))
@@ -274,17 +283,18 @@ fn store_known_columns(f: &Function, outputs: &Outputs<'_>, n: usize) -> String 
 }
 
 /// Returns the statement that replaces derivatives of forces by derivatives of accelerations, `−M⁻¹ ∂τ/∂x`.
-fn acceleration_conversion(
+fn acceleration_conversion_statement(
     forces: [&str; 2],
     inverse: &str,
     n: usize,
     s: &Signature<'_>,
     structure: &Structure,
 ) -> String {
-    let is_known = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
-    let is_known_or_zero = |k: usize| is_known(k) || structure.zeros.get(k).is_some_and(|zero| *zero);
+    let is_known_factor_entry = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
+    let is_known_or_zero =
+        |k: usize| is_known_factor_entry(k) || structure.zeros.get(k).is_some_and(|zero| *zero);
     let format_factor_groups = |k: usize| {
-        format!("(&mut {}, {})", forces[k], column_runs_source(n, n, k * n * n, &is_known_or_zero))
+        format!("(&mut {}, {})", forces[k], column_groups_source(n, n, k * n * n, &is_known_or_zero))
     };
     inverse_product_statement(inverse, n, n, &[format_factor_groups(0), format_factor_groups(1)], s)
 }
@@ -302,7 +312,8 @@ fn inverse_product_statement(
         return String::new();
     }
     format!(
-        "::linkwork::__private::minus_products::<Ops, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
+        "::linkwork::__private::replace_by_negative_products::<Ops, {}, {}, {n}, {columns}, {}>(&{inverse}, \
+         [{}]);\n",
         s.scalar.scalar_name(),
         tiling_types(|wide| format!("::linkwork::__private::rows({n}, {wide})")),
         factors.len(),
@@ -335,7 +346,7 @@ struct Run {
 /// Groups neighbouring columns with zeros in nearly the same rows, for the matrix that starts at entry
 /// `first`. The first list holds column and row of each zero entry in a row where another column of its group
 /// is nonzero.
-fn column_runs(
+fn group_columns_by_zero_rows(
     n: usize,
     columns: usize,
     first: usize,
@@ -368,16 +379,16 @@ fn column_runs(
     (runs.iter().flat_map(zeros_filled_by_run).collect(), runs)
 }
 
-/// Returns the result of [`column_runs`] as source text.
-fn column_runs_source(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
-    let (filled, runs) = column_runs(n, columns, first, is_zero);
+/// Returns the result of [`group_columns_by_zero_rows`] as source text.
+fn column_groups_source(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
+    let (filled, runs) = group_columns_by_zero_rows(n, columns, first, is_zero);
     let texts: Vec<String> = runs.iter().map(|run| format!("({:?}, &{:?})", run.columns, run.rows)).collect();
     format!("&{filled:?}, &[{}]", texts.join(", "))
 }
 
 /// Returns the body of a function that calls its variant with `count` matrix arguments, so that no large
 /// value is moved.
-pub fn call_filling_variant(f: &Function, count: usize, s: &Signature<'_>) -> String {
+pub fn body_calling_filling_variant(f: &Function, count: usize, s: &Signature<'_>) -> String {
     let arguments: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
     let zeros = vec![format!("<{}>::zeros()", s.shape_type(Shape::Square(s.nv))); count];
     let given: Vec<String> = (0..count).map(|k| format!("&mut all.{k}")).collect();
@@ -417,7 +428,7 @@ fn linear_system_expression(
     s: &Signature<'_>,
     outputs: &Outputs<'_>,
 ) -> String {
-    let factor = format!("(&mut by_u, {})", column_runs_source(n, m, first, &|k| outputs.is_zero(k)));
+    let factor = format!("(&mut by_u, {})", column_groups_source(n, m, first, &|k| outputs.is_zero(k)));
     format!(
         "let mut by_u = {by_u};
         {product}        let turning = {turning};
@@ -435,9 +446,9 @@ fn linear_system_expression(
             for i in 0..{n} {{ b[j][{n} + i] = -by_u.data.0[j][i]; }}
         }}
         ({storage}(a)), {storage}(b)))\n",
-        by_u = outputs.matrix_of_outputs(first, n, m),
+        by_u = outputs.output_matrix_constructor_text(first, n, m),
         product = inverse_product_statement("inverse", n, m, &[factor], s),
-        turning = outputs.matrix_of_outputs(first + n * m, n, n),
+        turning = outputs.output_matrix_constructor_text(first + n * m, n, n),
         zero = constant_conversion_call("0.0", s),
         one = constant_conversion_call("1.0", s),
         twice = 2 * n,

@@ -1,6 +1,6 @@
 //! Implementations of the runtime's traits of outputs, which return all outputs of a mechanism in one vector.
 
-use super::interface::{ALLOW, Head, Interface};
+use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::signature::Signature;
 use super::states;
 use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Id, Shape};
@@ -17,7 +17,7 @@ struct Measurements<'a> {
     /// Total number of entries of all outputs together.
     count: usize,
     /// Generic parameters of the implementations.
-    head: Head,
+    head: ImplGenerics,
     /// Public interface of the mechanism.
     i: &'a Interface<'a>,
     /// Signature helper for the generated functions.
@@ -47,22 +47,22 @@ pub fn write_impls(
         return;
     }
     let parameters = s.parameter_list(&[Argument::T, Argument::Q, Argument::V, Argument::A, Argument::U]);
-    let measurements = Measurements { name, outputs, count, head: Head::new(i, s), i, s, parameters };
-    measurements.write_outputs(out);
+    let measurements = Measurements { name, outputs, count, head: ImplGenerics::new(i, s), i, s, parameters };
+    measurements.write_output_trait(out);
     if !i.facts.requests.derivatives {
         return;
     }
     measurements.write_derivatives(out);
     // Derivatives of the states themselves have the same requirement.
     if !i.states.is_empty() && i.facts.constraints.is_none() {
-        measurements.write_by_states(out);
+        measurements.write_state_derivative_trait(out);
     }
 }
 
 impl Measurements<'_> {
     /// Writes the head of the implementation of the trait `of` with these sizes.
     fn begin_trait_impl(&self, out: &mut String, of: &str, sizes: &[usize]) {
-        let Head { generics, arguments, bounds } = &self.head;
+        let ImplGenerics { generics, arguments, bounds } = &self.head;
         let sizes = sizes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let _ = writeln!(
             out,
@@ -78,7 +78,7 @@ impl Measurements<'_> {
 
     /// Writes a statement for each output, given the index of its first entry; then the end of function and
     /// implementation.
-    fn write_each(&self, out: &mut String, statement: impl Fn(usize, &Function) -> String) {
+    fn write_statement_per_output(&self, out: &mut String, statement: impl Fn(usize, &Function) -> String) {
         let mut first = 0;
         for f in &self.outputs {
             let _ = writeln!(out, "{}", statement(first, f));
@@ -88,7 +88,7 @@ impl Measurements<'_> {
     }
 
     /// Writes the trait of the values, with names and units.
-    fn write_outputs(&self, out: &mut String) {
+    fn write_output_trait(&self, out: &mut String) {
         let (count, vector) = (self.count, self.s.vector_type(self.count));
         let names: Vec<String> =
             self.outputs.iter().flat_map(|f| entry_names(f)).map(|name| format!("{name:?}")).collect();
@@ -111,7 +111,7 @@ impl Measurements<'_> {
             names.join(", "),
             self.parameters,
         );
-        self.write_each(out, |first, f| {
+        self.write_statement_per_output(out, |first, f| {
             let value = match f.shape {
                 Shape::Scalar => format!("::linkwork::nalgebra::SVector::from([{}])", output_call(f, "")),
                 _ => output_call(f, ""),
@@ -129,11 +129,13 @@ impl Measurements<'_> {
             "#[inline]\nfn output_derivatives({}) -> {of} {{\nlet mut all = <{of}>::zeros();",
             self.parameters
         );
-        self.write_each(out, |first, f| format!("all.put_rows({first}, &{});", output_call(f, DERIVATIVES)));
+        self.write_statement_per_output(out, |first, f| {
+            format!("all.put_rows({first}, &{});", output_call(f, DERIVATIVES))
+        });
     }
 
     /// Writes the trait of the derivatives by states of first order.
-    fn write_by_states(&self, out: &mut String) {
+    fn write_state_derivative_trait(&self, out: &mut String) {
         let [nq, nv, nu, count] = self.trait_sizes();
         let n = self.i.states.len();
         let of = self.s.shape_type(Shape::Matrix(count, n));
@@ -144,7 +146,7 @@ impl Measurements<'_> {
             "        #[inline]\nfn outputs_by_states({}) -> {of} {{\nlet mut all = <{of}>::zeros();",
             self.parameters
         );
-        self.write_each(out, |first, f| {
+        self.write_statement_per_output(out, |first, f| {
             format!(
                 "::linkwork::__private::put_rows(&mut all, {first}, &::linkwork::__private::columns(&{}, \
                  [{}]));",

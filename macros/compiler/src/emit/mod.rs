@@ -37,12 +37,12 @@ mod states;
 mod stores;
 mod validate;
 
-pub use absent::absent_items;
+pub use absent::items_that_mechanism_lacks;
 pub use constraints::Constraints;
 pub use contacts::UnilateralContact;
-pub use derived::error_type;
-pub use interface::{Absent, Interface};
-pub use item::{Emitted, emit_failed, emit_mechanism};
-pub use limits::CoordinateLimits;
+pub use derived::struct_alias_with_error;
+pub use interface::{AbsentFunctions, Interface};
+pub use item::{GeneratedCode, emit_error_stubs, emit_mechanism};
+pub use limits::CoordinateLimitIndices;
 pub use polytopes::ContactPolytopes;
 pub use validate::ParameterCondition;

@@ -60,7 +60,7 @@ impl Outputs<'_> {
     }
 
     /// Returns the matrix with these numbers of rows and columns, by columns, starting at output `first`.
-    pub fn matrix_of_outputs(&self, first: usize, rows: usize, columns: usize) -> String {
+    pub fn output_matrix_constructor_text(&self, first: usize, rows: usize, columns: usize) -> String {
         storage_constructor(&self.array_of_columns(first, rows, columns), "SMatrix")
     }
 

@@ -1,13 +1,13 @@
 //! The struct that the option `prepare` adds. It stores the values that depend only on parameters, and has
 //! the functions of the mechanism, which compute the remainder.
 
-use super::absent::write_absent_of_prepared;
-use super::constants::write_sizes;
-use super::dispatch::Bodies;
+use super::absent::write_items_prepared_struct_lacks;
+use super::constants::write_sizes_and_names;
+use super::dispatch::DispatchedBodies;
 use super::docs::operation_count_table;
 use super::function::write_function;
 use super::implementations::write_impls;
-use super::interface::{ALLOW, Head, Interface};
+use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::manifold::{write_manifold, write_transport};
 use super::signature::Signature;
 use super::{constraints, contacts, differentiable, lanes, measurements, reactions};
@@ -20,7 +20,7 @@ use std::fmt::Write;
 /// Program and charts from which the functions of a prepared mechanism are written; empty for a mechanism
 /// that failed to compile.
 #[derive(Default)]
-pub struct Content<'a> {
+pub struct PreparedProgram<'a> {
     /// Program of the precomputed values that the prepared struct stores.
     pub numbers: Option<&'a Program>,
     /// Coordinate charts of the configuration space.
@@ -28,20 +28,20 @@ pub struct Content<'a> {
 }
 
 /// Writes the prepared struct, its functions, and `prepare`.
-pub fn write_prepared(
+pub fn write_prepared_struct_and_functions(
     out: &mut String,
     i: &Interface<'_>,
     s: &Signature<'_>,
     functions: &[Function],
-    content: &Content<'_>,
+    content: &PreparedProgram<'_>,
 ) {
-    let (ident, head) = (&i.shell.ident, Head::new(i, s));
+    let (ident, head) = (&i.shell.ident, ImplGenerics::new(i, s));
     let name = format!("Prepared{}", ident.to_string().trim_start_matches("r#"));
     let count = content.numbers.map(|numbers| numbers.outputs.len()).unwrap_or_default();
-    write_struct(out, i, s, &name, count, functions);
+    write_prepared_struct(out, i, s, &name, count, functions);
     let mut methods = String::new();
-    write_sizes(&mut methods, i);
-    let mut bodies = Bodies::new(i.detect);
+    write_sizes_and_names(&mut methods, i);
+    let mut bodies = DispatchedBodies::new(i.detect);
     for f in functions {
         match content.numbers {
             Some(_) => bodies.write_function(&mut methods, f, s),
@@ -55,23 +55,23 @@ pub fn write_prepared(
     match content.numbers {
         Some(_) => {
             reactions::write_methods(&mut methods, i, functions, s);
-            reactions::write_touched(&mut methods, i, functions, s);
+            reactions::write_contact_force_outputs(&mut methods, i, functions, s);
         }
-        None => reactions::write_unknown(&mut methods, i, functions, s),
+        None => reactions::write_contact_output_stubs(&mut methods, i, functions, s),
     }
     write_manifold(&mut methods, content.charts, i.facts.speeds, s);
     if !i.contacts.is_empty() {
         write_transport(&mut methods, content.charts, i.facts.speeds, s);
     }
     differentiable::write_methods(&mut methods, content.charts, functions, i, s);
-    differentiable::write_second(&mut methods, content.charts, i, s);
+    differentiable::write_forward_second_derivatives(&mut methods, content.charts, i, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     write_impls(&head, out, &name, &methods, i, s);
     bodies.write_function_bodies(out, &name, &head);
-    write_absent_of_prepared(out, &name, i, s);
+    write_items_prepared_struct_lacks(out, &name, i, s);
     measurements::write_impls(out, &name, functions, i, s);
 
-    let Head { generics, arguments, bounds } = &head;
+    let ImplGenerics { generics, arguments, bounds } = &head;
     let tables: String =
         i.shell.table_names().iter().map(|table| format!(", {table}: self.{table}")).collect();
     let _ = writeln!(
@@ -91,7 +91,7 @@ pub fn write_prepared(
 }
 
 /// Writes the definition of the prepared struct with its documentation.
-fn write_struct(
+fn write_prepared_struct(
     out: &mut String,
     i: &Interface<'_>,
     s: &Signature<'_>,

@@ -1,7 +1,7 @@
 //! Outputs that contain joint reactions or contact forces. The generated functions first compute the motion,
 //! then the outputs from its accelerations, multipliers or contact forces.
 
-use super::docs::output_docs;
+use super::docs::output_function_documentation;
 use super::interface::Interface;
 use super::signature::Signature;
 use crate::catalogue::{Argument, REACTION, TOUCHED};
@@ -37,14 +37,16 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
         let diagram = i.diagrams.iter().find(|(known, _)| known == name).map(|(_, diagram)| diagram);
         if let Some(diagram) = diagram.filter(|_| !i.contacts.is_empty()) {
             let call = format!("self.{}({t}{pass}, &forces.data.0[0])", f.name);
-            write_touched_diagram(out, i, (name, diagram), (&arguments, &tau, &solve, &call), s);
+            write_contact_free_body_diagram(out, i, (name, diagram), (&arguments, &tau, &solve, &call), s);
             continue;
         }
         let call = format!("self.{}({t}{pass})", f.name);
         let (docs, shape, result) = match diagram {
-            Some(diagram) => {
-                (diagram_docs(diagram, s), diagram_type(diagram, s), diagram_expression(diagram, &call))
-            }
+            Some(diagram) => (
+                diagram_docs(diagram, s),
+                free_body_diagram_type(diagram, s),
+                diagram_expression(diagram, &call),
+            ),
             None => (reaction_docs(i, s), s.shape_type(f.shape), call),
         };
         let _ = writeln!(
@@ -56,7 +58,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
                 {solve}
                 {result}
             }}",
-            output_docs(i, name, &docs),
+            output_function_documentation(i, name, &docs),
             s.parameter_list(&s.with_time_argument(&arguments)),
         );
     }
@@ -64,14 +66,14 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
 
 /// Writes the two functions of a free-body diagram of a mechanism with contacts: under the forces that the
 /// contacts exert in the state, and under contact forces passed as an argument.
-fn write_touched_diagram(
+fn write_contact_free_body_diagram(
     out: &mut String,
     i: &Interface<'_>,
     (name, diagram): (&str, &Diagram),
     (arguments, tau, solve, call): (&[Argument], &str, &str, &str),
     s: &Signature<'_>,
 ) {
-    let (scalar, kind) = (s.scalar.scalar_name(), diagram_type(diagram, s));
+    let (scalar, kind) = (s.scalar.scalar_name(), free_body_diagram_type(diagram, s));
     let parameters = s.parameter_list(&s.with_time_argument(arguments));
     let (pass, t) = match s.time {
         true => ("t, ", "t".to_string()),
@@ -104,8 +106,8 @@ fn write_touched_diagram(
             {solve}
             {}
         }}",
-        output_docs(i, name, &acting),
-        output_docs(i, name, &under),
+        output_function_documentation(i, name, &acting),
+        output_function_documentation(i, name, &under),
         s.vector_type(i.facts.contacts.rates),
         diagram_expression(diagram, call)
     );
@@ -113,7 +115,12 @@ fn write_touched_diagram(
 
 /// Writes stubs of contact force outputs and free-body diagrams for a mechanism that failed to compile. Its
 /// contact forces are unknown.
-pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
+pub fn write_contact_output_stubs(
+    out: &mut String,
+    i: &Interface<'_>,
+    functions: &[Function],
+    s: &Signature<'_>,
+) {
     let mut arguments = vec![Argument::Q, Argument::V];
     arguments.extend((s.nu > 0).then_some(Argument::U));
     let parameters = s.parameter_list(&s.with_time_argument(&arguments));
@@ -127,7 +134,7 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
         );
     }
     for (name, diagram) in &i.diagrams {
-        let kind = diagram_type(diagram, s);
+        let kind = free_body_diagram_type(diagram, s);
         if i.contacts.is_empty() {
             let _ = writeln!(out, "pub fn {name}({parameters}) -> {kind} {{ loop {{}} }}");
         } else {
@@ -143,7 +150,7 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
 }
 
 /// Returns the Rust type of a free-body diagram.
-fn diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
+fn free_body_diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
     format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.scalar_name(), diagram.actions.len())
 }
 
@@ -195,7 +202,12 @@ fn reaction_docs(i: &Interface<'_>, s: &Signature<'_>) -> String {
 }
 
 /// Writes the functions of outputs that contain contact forces, which are computed from the motion first.
-pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
+pub fn write_contact_force_outputs(
+    out: &mut String,
+    i: &Interface<'_>,
+    functions: &[Function],
+    s: &Signature<'_>,
+) {
     let pass = if s.time { "t, " } else { "" };
     let scalar = s.scalar.scalar_name();
     let t =
@@ -215,7 +227,7 @@ pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function]
                 let forces = ::linkwork::contact::acting(self, {t}, q, v, {inputs})?;
                 ::core::result::Result::Ok(self.{}({pass}{own}, &forces.data.0[0]))
             }}",
-            output_docs(i, name, ABOUT_FORCES),
+            output_function_documentation(i, name, ABOUT_FORCES),
             s.parameter_list(&s.with_time_argument(&arguments)),
             s.shape_type(f.shape),
             f.name

@@ -45,12 +45,12 @@ impl ScalarSpelling {
     }
 
     /// Returns whether the functions have several states in SIMD lanes.
-    pub fn is_in_lanes(&self) -> bool {
+    pub fn uses_batch_lanes(&self) -> bool {
         self.lanes.is_some()
     }
 
     /// Returns the names of the runtime functions that constants may call.
-    pub fn helper_names(&self) -> impl Iterator<Item = &'static str> {
+    pub fn runtime_functions_of_constants(&self) -> impl Iterator<Item = &'static str> {
         self.is_generic().then_some("constant").into_iter()
     }
 
@@ -60,7 +60,7 @@ impl ScalarSpelling {
     }
 
     /// Returns the name of a table's field.
-    pub fn table_field(&self, k: usize) -> &str {
+    pub fn table_field_name(&self, k: usize) -> &str {
         self.tables.get(k).map_or("missing", String::as_str)
     }
 
@@ -80,7 +80,7 @@ impl ScalarSpelling {
 
     /// Returns the expression of a number, broadcast to all lanes for functions of several states.
     pub fn broadcast_number(&self, number: String) -> String {
-        match self.is_in_lanes() {
+        match self.uses_batch_lanes() {
             true => format!("Ops::splat::<{}, LANES>({number})", self.one()),
             false => number,
         }

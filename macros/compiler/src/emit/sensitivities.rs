@@ -1,18 +1,18 @@
 //! Implementation of the runtime's trait of derivatives with respect to parameters.
 
-use super::interface::{ALLOW, Head, Interface};
+use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::signature::Signature;
 use crate::catalogue::{Argument, Shape};
 use std::fmt::Write;
 
 /// Writes the trait implementation for the type `name`, if the mechanism has these derivatives.
-pub fn write_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_sensitivities_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let facts = &i.facts;
     if !facts.requests.sensitivities || facts.constraints.is_some() || facts.parameters == 0 {
         return;
     }
-    let Head { generics, arguments, bounds } = &Head::new(i, s);
+    let ImplGenerics { generics, arguments, bounds } = &ImplGenerics::new(i, s);
     let np = facts.parameters;
     let _ = writeln!(
         out,

@@ -8,17 +8,18 @@ use crate::machine::FILLING_INSTRUCTIONS;
 use std::fmt::Write;
 
 /// Returns the names of the matrix arguments to which a function writes its results.
-pub fn matrix_arguments(f: &Function) -> Vec<&'static str> {
-    let matrix_name = |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
-    f.arguments.iter().filter_map(matrix_name).collect()
+pub fn matrix_argument_names(f: &Function) -> Vec<&'static str> {
+    let matrix_argument_name =
+        |a: &Argument| if let Argument::Into(name, _) = a { Some(*name) } else { None };
+    f.arguments.iter().filter_map(matrix_argument_name).collect()
 }
 
 /// Returns the number of matrix arguments of the variant that the body of `f` calls, or `None` if `f` has a
 /// body of its own. The call avoids two copies of a long body, which rustc would have to process.
-pub fn filled_matrix_count(f: &Function) -> Option<usize> {
+pub fn variant_matrix_argument_count(f: &Function) -> Option<usize> {
     let has_variant = f.id == Id::InverseDynamicsDerivatives;
     match f.shape {
-        _ if !matrix_arguments(f).is_empty() => None,
+        _ if !matrix_argument_names(f).is_empty() => None,
         Shape::CalledForward(_) => Some(3),
         Shape::Pair(_) if has_variant && f.program.instructions.len() >= FILLING_INSTRUCTIONS => Some(2),
         _ => None,
@@ -45,10 +46,10 @@ impl Signature<'_> {
     pub fn result_type(&self, f: &Function) -> String {
         match f.shape {
             Shape::Accelerated(n) => self.vector_type(n),
-            Shape::Forward(n) | Shape::CalledForward(n) if !matrix_arguments(f).is_empty() => {
+            Shape::Forward(n) | Shape::CalledForward(n) if !matrix_argument_names(f).is_empty() => {
                 self.vector_type(n)
             }
-            shape if matrix_arguments(f).is_empty() => self.shape_type(shape),
+            shape if matrix_argument_names(f).is_empty() => self.shape_type(shape),
             _ => "()".to_string(),
         }
     }
@@ -97,7 +98,7 @@ impl Signature<'_> {
             | Shape::Accelerated(_)
             | Shape::CalledForward(_)
             | Shape::CalledLinear(..)
-            | Shape::Symmetric(_) => type_of_several_matrices(shape, self),
+            | Shape::Symmetric(_) => result_type_of_several_matrices(shape, self),
         }
     }
 
@@ -108,13 +109,13 @@ impl Signature<'_> {
 
     /// Returns the text after a function's name in its definition: for several states the suffix and the
     /// const parameter, otherwise nothing.
-    pub fn generics_text(&self) -> &'static str {
-        if self.scalar.is_in_lanes() { "_lanes<const LANES: usize>" } else { "" }
+    pub fn lanes_suffix_and_generics(&self) -> &'static str {
+        if self.scalar.uses_batch_lanes() { "_lanes<const LANES: usize>" } else { "" }
     }
 
     /// Returns the suffix of a function's name in calls.
     pub fn call_suffix(&self) -> &'static str {
-        if self.scalar.is_in_lanes() { "_lanes" } else { "" }
+        if self.scalar.uses_batch_lanes() { "_lanes" } else { "" }
     }
 
     /// Returns the parameter list `&self, q: …, v: …`.
@@ -128,7 +129,7 @@ impl Signature<'_> {
 }
 
 /// Returns the type of a result of several matrices.
-fn type_of_several_matrices(shape: Shape, s: &Signature<'_>) -> String {
+fn result_type_of_several_matrices(shape: Shape, s: &Signature<'_>) -> String {
     let square_matrix_type = |n| s.shape_type(Shape::Square(n));
     match shape {
         Shape::Pair(n) => format!("({0}, {0})", square_matrix_type(n)),

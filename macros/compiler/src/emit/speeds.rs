@@ -38,7 +38,7 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
     ];
     for (name, about, signature, body) in functions {
         let body = if stub { "loop {}" } else { &body };
-        let generics = s.generics_text();
+        let generics = s.lanes_suffix_and_generics();
         let _ = writeln!(
             out,
             "/// {about}\n#[inline]\n#[must_use]\npub fn {name}{generics}(&self, {signature} {{\n{body}\n}}"
@@ -128,7 +128,7 @@ pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
 }
 
 /// Writes the function of the trait `SecondDerivatives` on the configuration space.
-pub fn write_second_derivatives(out: &mut String, s: &Signature<'_>) {
+pub fn write_manifold_second_derivatives(out: &mut String, s: &Signature<'_>) {
     let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan_expression(s));
     let _ = writeln!(

@@ -12,7 +12,7 @@ pub const BLOCK: usize = 200;
 pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece]) {
     if statements.len() <= BLOCK {
         for statement in statements {
-            write_let(out, statement);
+            write_body_statement(out, statement);
         }
         return;
     }
@@ -46,7 +46,7 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
         for statement in *block {
             match is_used_after_block(&statement) {
                 true => _ = writeln!(out, "{} = {};", statement.pattern, statement.text),
-                false => write_let(out, statement),
+                false => write_body_statement(out, statement),
             }
         }
         out.push_str("}\n");
@@ -54,7 +54,7 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
 }
 
 /// Writes one statement of a function body.
-pub fn write_let(out: &mut String, statement: &Statement) {
+pub fn write_body_statement(out: &mut String, statement: &Statement) {
     if statement.pattern.is_empty() {
         let _ = writeln!(out, "{}", statement.text);
         return;

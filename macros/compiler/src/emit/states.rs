@@ -1,6 +1,6 @@
 //! Implementations of the runtime's traits for mechanisms with states of first order.
 
-use super::interface::{ALLOW, Head, Interface};
+use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::signature::Signature;
 use crate::catalogue::{Argument, BY_PARAMETERS, DERIVATIVES, Shape};
 use crate::derive::Function;
@@ -21,9 +21,9 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
         .map(|(name, _)| functions.iter().find(|f| f.name == rate_function_name(name)))
         .collect();
     let Some(rates) = rates.filter(|rates| !rates.is_empty() && !i.facts.kinematic) else { return };
-    let (head, name, n) = (Head::new(i, s), i.shell.ident.to_string(), rates.len());
+    let (head, name, n) = (ImplGenerics::new(i, s), i.shell.ident.to_string(), rates.len());
     let begin_impl_block = |out: &mut String, of: &str| {
-        let Head { generics, arguments, bounds } = &head;
+        let ImplGenerics { generics, arguments, bounds } = &head;
         let sizes = [s.nq, s.nv, s.nu, n, s.nv + n].map(|n| n.to_string()).join(", ");
         let _ = writeln!(
             out,
@@ -31,11 +31,11 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
         );
     };
     begin_impl_block(out, "FirstOrder");
-    write_values(out, &rates, i, s);
+    write_first_order_states(out, &rates, i, s);
     // Accelerations under constraints have no derivatives by parameters.
     let differentiable = i.facts.requests.derivatives && i.facts.constraints.is_none();
     if differentiable {
-        write_extended(out, n, s);
+        write_extended_motion_derivatives(out, n, s);
     }
     out.push_str("}\n");
     if differentiable {
@@ -55,7 +55,7 @@ fn output_call(f: &Function, suffix: &str) -> String {
 const TAKEN: [Argument; 4] = [Argument::T, Argument::Q, Argument::V, Argument::U];
 
 /// Writes names, units, values and rates of the states of first order.
-fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
+fn write_first_order_states(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
     let n = rates.len();
     let (vector, parameters) = (s.vector_type(n), s.parameter_list(&TAKEN));
     let names: Vec<String> = i.states.iter().map(|(name, _)| format!("{name:?}")).collect();
@@ -91,7 +91,7 @@ fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Si
 }
 
 /// Writes the derivatives of the rates of velocities and states, for implicit integration methods.
-fn write_extended(out: &mut String, n: usize, s: &Signature<'_>) {
+fn write_extended_motion_derivatives(out: &mut String, n: usize, s: &Signature<'_>) {
     let all = s.nv + n;
     let _ = writeln!(
         out,

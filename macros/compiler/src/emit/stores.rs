@@ -1,7 +1,7 @@
 //! Stores of results in matrix arguments, each immediately after the result is computed.
 
 use super::pieces::{Outputs, Piece, Statement};
-use super::signature::matrix_arguments;
+use super::signature::matrix_argument_names;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
@@ -27,7 +27,7 @@ impl fmt::Display for Entry {
 
 /// Returns the statements with stores of the results inserted, and the results that are not stored and not
 /// zero.
-pub fn with_stores(
+pub fn insert_result_stores(
     f: &Function,
     program: &Program,
     statements: Vec<Statement>,
@@ -35,8 +35,8 @@ pub fn with_stores(
 ) -> (Vec<Statement>, Vec<Piece>) {
     let places = stored_entries(f, outputs);
     let all = match !program.gathers.is_empty() && statements.len() <= TRANSPOSED_STATEMENTS {
-        true => at_the_end(statements, &places, outputs),
-        false => as_known(program, statements, &places, outputs),
+        true => append_all_stores(statements, &places, outputs),
+        false => insert_stores_after_dependencies(program, statements, &places, outputs),
     };
     let given = places.iter().map(Vec::len).chain(std::iter::repeat(0));
     let left = outputs.pieces.iter().zip(given).enumerate();
@@ -48,7 +48,7 @@ pub fn with_stores(
 /// an inverse are, because terms are added to it later. Trunk columns of a block arrow inverse are not
 /// stored, because they are computed later.
 fn stored_entries(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
-    let given = matrix_arguments(f);
+    let given = matrix_argument_names(f);
     let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {
@@ -80,7 +80,7 @@ fn stored_entries(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
 }
 
 /// Inserts the store of every result directly after the last statement on which the result depends.
-fn as_known(
+fn insert_stores_after_dependencies(
     program: &Program,
     statements: Vec<Statement>,
     places: &[Vec<Entry>],
@@ -93,11 +93,14 @@ fn as_known(
     }
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
     let mut left = places.to_vec();
-    let binding_statement = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
-    let all_known =
-        |needs: &[usize]| needs.iter().filter_map(|need| binding_statement(*need)).max().unwrap_or(0);
+    let index_of_binding_statement = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
+    let all_known = |needs: &[usize]| {
+        needs.iter().filter_map(|need| index_of_binding_statement(*need)).max().unwrap_or(0)
+    };
     let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
-    for [one, next] in adjacent_lane_pairs(lanes_by_entry(program, places, &binding_statement)) {
+    for [one, next] in
+        adjacent_lane_pairs(result_lanes_sorted_by_entry(program, places, &index_of_binding_statement))
+    {
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
         }
@@ -105,7 +108,7 @@ fn as_known(
     }
     let widths = program.lane_counts();
     for (pairs, ready) in pairs.iter().zip(&mut ready) {
-        ready.extend(store_pairs(pairs, &widths));
+        ready.extend(pair_store_statements(pairs, &widths));
     }
     for (piece, places) in outputs.pieces.iter().zip(&left).filter(|(_, places)| !places.is_empty()) {
         let text = match places.as_slice() {
@@ -140,7 +143,7 @@ struct Lane {
 }
 
 /// Returns all results that are SIMD lanes of named vectors, sorted by their matrix entries.
-fn lanes_by_entry(
+fn result_lanes_sorted_by_entry(
     program: &Program,
     places: &[Vec<Entry>],
     known: &dyn Fn(usize) -> Option<usize>,
@@ -176,7 +179,7 @@ fn adjacent_lane_pairs(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
 
 /// Returns the statements that store pairs of lanes. All lanes of a vector in adjacent rows are stored
 /// together, as are all lanes of two vectors in adjacent columns; remaining pairs are stored individually.
-fn store_pairs(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
+fn pair_store_statements(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
     let mut statements = Vec::new();
     let mut rest = pairs;
     while let [[one, next], ..] = rest {
@@ -207,7 +210,7 @@ fn store_pairs(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
         } else {
             let lanes = format!("{}, {}", one.lane, next.lane);
             let column = format!("{matrix}.data.0[{column}]");
-            (format!("Ops::store_two::<{lanes}, {row}, _, _, _, _>(&mut {column}, t{a}, t{b});"), 1)
+            (format!("Ops::store_two_lanes::<{lanes}, {row}, _, _, _, _>(&mut {column}, t{a}, t{b});"), 1)
         };
         statements.push(store_statement(text, vec![a, b]));
         rest = &rest[taken..];
@@ -216,7 +219,7 @@ fn store_pairs(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
 }
 
 /// Appends the stores of all results after the last statement, in the order of their entries.
-fn at_the_end(
+fn append_all_stores(
     mut statements: Vec<Statement>,
     places: &[Vec<Entry>],
     outputs: &Outputs<'_>,

@@ -20,7 +20,7 @@ impl ParameterCondition {
     pub fn from_model(model: &Model<'_>) -> Vec<ParameterCondition> {
         let parameter_name = |k: &usize| model.parameters.get(*k).cloned();
         let parameter_condition = |requirement: &Requirement<'_>| ParameterCondition {
-            rule: requirement.rule.rule_name(),
+            rule: requirement.rule.runtime_rule_name(),
             name: requirement.figure.clone(),
             parameters: requirement.parameters.iter().filter_map(parameter_name).collect(),
         };
@@ -29,7 +29,7 @@ impl ParameterCondition {
 }
 
 /// Writes `validate`. For a mechanism that failed to compile its body never returns.
-pub fn write_method(out: &mut String, i: &Interface<'_>, failed: bool) {
+pub fn write_validate_method(out: &mut String, i: &Interface<'_>, failed: bool) {
     if i.facts.parameters == 0 {
         return;
     }

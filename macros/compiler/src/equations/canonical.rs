@@ -1,7 +1,7 @@
 //! Printed form of Hamilton's equations: the Hamiltonian, and the rates of coordinates and momenta.
 
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::expr::replace::replace_all;
 use crate::expr::sample::always_equals;
@@ -12,7 +12,7 @@ use crate::mechanics::{energy, forces, momentum};
 use crate::mechanism::{Model, Quantity};
 
 /// Hamilton's canonical equations as polynomials of one ring, with the momenta as arguments.
-pub struct Canonical {
+pub struct CanonicalEquations {
     /// Ring of all polynomials.
     pub ring: Ring,
     /// Hamiltonian `H` as a polynomial.
@@ -41,14 +41,14 @@ pub fn canonical_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
-) -> Option<Canonical> {
+) -> Option<CanonicalEquations> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
     let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
     let driven = replace_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
     let relative: Vec<Expr<'g>> = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
-    let mut normal = Normal::new(g, rank_of_symbol);
-    normal.ring.raise_limits();
+    let mut normal = NormalFormCache::new(g, rank_of_symbol);
+    normal.ring.raise_term_limits();
     let (velocity, determinants) = velocities_of_momenta(mass, &relative, &mut normal)?;
     let potential = energy::potential_energy(model, joints);
     let power = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, v)| sum + *p * *v);
@@ -70,7 +70,13 @@ pub fn canonical_equations<'g>(
     let determinants = all.split_off(1 + 2 * model.nv());
     let momentum_rate = all.split_off(1 + model.nv());
     let velocity = all.split_off(1);
-    Some(Canonical { ring: short.ring, hamiltonian: all.pop()?, velocity, momentum_rate, determinants })
+    Some(CanonicalEquations {
+        ring: short.ring,
+        hamiltonian: all.pop()?,
+        velocity,
+        momentum_rate,
+        determinants,
+    })
 }
 
 fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
@@ -85,7 +91,7 @@ fn replace_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
 pub(super) fn velocities_of_momenta<'g>(
     mass: &Matrix<'g>,
     p: &[Expr<'g>],
-    normal: &mut Normal<'g>,
+    normal: &mut NormalFormCache<'g>,
 ) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
     let (mut out, mut determinants) = (p.to_vec(), Vec::new());
     let mut left: Vec<usize> = (0..p.len()).collect();

@@ -10,25 +10,26 @@
 //! quasi-velocities).
 
 use super::written::{
-    marks_of_coordinate_rates, name_and_derivative_order, rate_name, typeset_names_with, wrap_sentences,
+    marks_of_coordinate_rates, name_and_derivative_order, rate_name, typeset_names_with_extra_names,
+    wrap_at_page_width,
 };
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
-use crate::diag::{Diagnostics, all_of};
+use crate::diag::{Diagnostics, join_names_with_and};
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::name_with_primes;
-use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, PrintedEquations, Style, wrap_text};
 use crate::expr::eval::Tape;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::mobility::sample_configurations;
-use crate::kinematics::redundancy::Basis;
+use crate::kinematics::redundancy::OrthonormalRowBasis;
 use crate::kinematics::speeds::{inverse, shorten_expression};
-use crate::kinematics::{Joint, Rows, random_configuration, sampled_value, time_derivative};
+use crate::kinematics::{Joint, Rows, random_configuration, symbol_value_at_rest, time_derivative};
 use crate::mechanics::crba::Matrix;
-use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{acceleration_symbols, constraints, forces, rnea, velocity_symbols};
 use crate::mechanism::{Model, Quantity};
 
@@ -45,7 +46,7 @@ const SAME: f64 = 1e-9;
 const INDEPENDENT: f64 = 1e-7;
 
 /// Kane's equations as polynomials of one ring.
-pub struct Kane {
+pub struct KaneEquations {
     /// Ring of all polynomials.
     pub ring: Ring,
     /// Indices of the independent velocities.
@@ -76,8 +77,8 @@ pub enum KaneFailure {
 pub fn kane_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    speeds: Option<&InSpeeds<'g>>,
-) -> Result<Kane, KaneFailure> {
+    speeds: Option<&SpeedTransformation<'g>>,
+) -> Result<KaneEquations, KaneFailure> {
     let own = speeds.map_or(model, |speeds| &speeds.model);
     let rows = constraints::jacobian(own);
     let dependent = match &model.dependent {
@@ -94,19 +95,19 @@ pub fn kane_equations<'g>(
     if let Some(speeds) = speeds {
         (needed, inputs) = (speeds.transform_forces(&needed), speeds.transform_forces(&inputs));
         rates = speeds
-            .replaced_velocities()
+            .replaced_velocity_indices()
             .into_iter()
-            .map(|k| (k, solved.express_in_independent(&[speeds.rates[k]])[0]))
+            .map(|k| (k, solved.express_in_independent_speeds(&[speeds.rates[k]])[0]))
             .collect();
     }
     let [motion, forces] =
-        [needed, inputs].map(|all| solved.project_forces(&solved.express_in_independent(&all)));
+        [needed, inputs].map(|all| solved.project_forces(&solved.express_in_independent_speeds(&all)));
     let residuals: Vec<Expr<'g>> = own.constraints.iter().filter_map(|c| c.residual).collect();
     let (replaced, rates): (Vec<usize>, Vec<Expr<'g>>) = rates.into_iter().unzip();
     let lists = [motion, forces, solved.values, rates, residuals];
     let (ring, found) = simplified_polynomials(own, &lists).ok_or(KaneFailure::Length)?;
     let [motion, forces, values, rates, residuals] = found;
-    Ok(Kane {
+    Ok(KaneEquations {
         ring,
         independent: solved.independent,
         motion,
@@ -126,8 +127,8 @@ fn simplified_polynomials<'g, const N: usize>(
     if Tape::new(&all).node_count() > Limits::ASKED.operations[1] {
         return None;
     }
-    let mut normal = Normal::new(model.graph, rank_of_symbol);
-    normal.ring.raise_limits();
+    let mut normal = NormalFormCache::new(model.graph, rank_of_symbol);
+    normal.ring.raise_term_limits();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
     let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
     let mut all = all.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>()?.into_iter();
@@ -149,15 +150,18 @@ fn choose_dependent_velocities<'g>(
     let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::new(&rows.concat());
     let sampled_rows = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
-        tape.evaluate_at(&|s| sampled_value(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
+        tape.evaluate_at(&|s| symbol_value_at_rest(s, q, seed))
+            .chunks(nv.max(1))
+            .map(<[f64]>::to_vec)
+            .collect()
     };
     let samples: Vec<Vec<Vec<f64>>> =
         (0..SAMPLES).map(|seed| sampled_rows(&random_configuration(model, seed), seed)).collect();
     let closed = sample_configurations(model, &Rows::new(model), &mut Diagnostics::new());
     let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| sampled_rows(q, *seed)).collect();
-    let is_regular = |columns: &[usize]| {
+    let have_full_rank = |columns: &[usize]| {
         closed.iter().all(|rows| {
-            let mut basis = Basis::default();
+            let mut basis = OrthonormalRowBasis::default();
             rows.iter().for_each(|row| {
                 basis.add(&columns.iter().map(|k| row[*k]).collect::<Vec<f64>>(), INDEPENDENT);
             });
@@ -173,7 +177,7 @@ fn choose_dependent_velocities<'g>(
         let even = if even > 1.0 - SAME { 1.0 } else { even };
         let filled = columns.iter().map(|k| rows.iter().filter(|row| !row[*k].is_zero()).count()).sum();
         let better = best.as_ref().is_none_or(|((e, f), _)| even > *e || (even == *e && filled < *f));
-        if even > SAME && better && is_regular(&columns) {
+        if even > SAME && better && have_full_rank(&columns) {
             best = Some(((even, filled), columns.clone()));
         }
         // Next choice in lexicographic order.
@@ -233,13 +237,14 @@ impl<'g> EliminatedMotion<'g> {
             };
             inverse.iter().map(|row| shorten_expression(model, dot_row_with_column(row))).collect()
         };
-        let at_zero_velocity = |e: Expr<'g>| {
+        let with_velocities_set_to_zero = |e: Expr<'g>| {
             replace_all(&[e], &|s| {
                 matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero())
             })[0]
         };
         // Motion that is driven in time also moves dependent velocities.
-        let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| at_zero_velocity(c.rate)).collect();
+        let drift: Vec<Expr<'g>> =
+            model.constraints.iter().map(|c| with_velocities_set_to_zero(c.rate)).collect();
         let mut values = multiply_inverse_by_column(&|i| drift[i]);
         let mut partial: Matrix<'g> = vec![Vec::new(); dependent.len()];
         for k in &independent {
@@ -257,12 +262,12 @@ impl<'g> EliminatedMotion<'g> {
         };
         let changes: Vec<Expr<'g>> =
             found.values.iter().zip(&found.partial).map(rate_of_dependent_speed).collect();
-        found.changes = found.express_in_independent(&changes);
+        found.changes = found.express_in_independent_speeds(&changes);
         Some(found)
     }
 
     /// Expresses all velocities and accelerations in terms of the independent ones.
-    fn express_in_independent(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    fn express_in_independent_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let index_of_dependent_speed = |k: usize| self.dependent.iter().position(|d| *d == k);
         replace_all(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => Some(self.values[index_of_dependent_speed(k)?]),
@@ -282,33 +287,33 @@ impl<'g> EliminatedMotion<'g> {
 }
 
 /// Formats Kane's equations as plain text, LaTeX and MathML.
-pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
+pub fn format_kane_equations(model: &Model<'_>, kane: &KaneEquations) -> PrintedEquations {
     let rates = marks_of_coordinate_rates(model);
-    let names = typeset_names_with(model, &[]);
+    let names = typeset_names_with_extra_names(model, &[]);
     let name_of_symbol = |symbol: Symbol| name_and_derivative_order(model, &rates, symbol);
     let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
     let name_with_dots = |symbol| {
         let (name, dots) = name_of_symbol(symbol);
         (names.get(&name), dots)
     };
-    let rate_text = |k: usize| name_with_primes(rate_name(model, k));
-    let lines = KaneLines::new(kane, Plain { name: &primed_name }, &rate_text);
+    let primed_rate_name = |k: usize| name_with_primes(rate_name(model, k));
+    let lines = KaneLines::new(kane, Plain { name: &primed_name }, &primed_rate_name);
     let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(wrapped_line).collect();
     plain += "\n";
     plain.extend(lines.motion.iter().map(wrapped_line));
-    plain = plain + "\n" + &wrap_sentences(&legend_sentences(model, kane, &primed_name)) + "\n";
-    let rate_symbol = |k: usize| {
+    plain = plain + "\n" + &wrap_at_page_width(&legend_sentences(model, kane, &primed_name)) + "\n";
+    let rate_name_and_dots = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
     let latex_rate_symbol =
-        |k: usize| Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+        |k: usize| Latex { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
     let latex = KaneLines::new(kane, Latex { name: &name_with_dots }, &latex_rate_symbol);
     let mathml_rate_symbol =
-        |k: usize| MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+        |k: usize| MathMl { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
     let mathml = KaneLines::new(kane, MathMl { name: &name_with_dots }, &mathml_rate_symbol);
-    Written {
+    PrintedEquations {
         plain,
         latex: format_aligned(&[latex.velocities, latex.motion].concat()),
         mathml: format_equations_as_html(&[mathml.velocities, mathml.motion].concat()),
@@ -324,8 +329,8 @@ struct KaneLines {
 }
 
 impl KaneLines {
-    fn new<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> KaneLines {
-        let writer = PolynomialWriter::with_style(&kane.ring, style);
+    fn new<S: Style + Copy>(kane: &KaneEquations, style: S, left: &dyn Fn(usize) -> String) -> KaneLines {
+        let writer = PolynomialWriter::new_with_style(&kane.ring, style);
         let of_speeds =
             kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.format_polynomial(p)));
         let dependent = kane.dependent.iter().map(|(k, p)| {
@@ -340,7 +345,7 @@ impl KaneLines {
 }
 
 /// Returns the sentences of the legend that explain the printed equations.
-fn legend_sentences(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> String) -> String {
+fn legend_sentences(model: &Model<'_>, kane: &KaneEquations, marked: &dyn Fn(Symbol) -> String) -> String {
     let independent: Vec<String> =
         kane.independent.iter().map(|k| marked(Quantity::Velocity(*k).symbol())).collect();
     let names: Vec<&str> = model.constraints.iter().map(|c| c.name.split('.').next().unwrap_or("")).collect();
@@ -353,7 +358,7 @@ fn legend_sentences(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> S
     format!(
         "{} {are}; from them the others follow by {}. {equations}, without multipliers. A prime marks a \
          rate.",
-        all_of(&independent),
-        all_of(&held)
+        join_names_with_and(&independent),
+        join_names_with_and(&held)
     )
 }

@@ -8,11 +8,11 @@
 //! multipliers to `f_q` is their geometric stiffness.
 
 use super::{Limits, Simplifier, right_sides};
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::derivatives::symbolic;
@@ -25,15 +25,15 @@ mod rest;
 mod stability;
 mod written;
 
-use parts::{Coefficients, linear_equation_rows, multiplier_symbol, rank_of_symbol};
+use parts::{EquilibriumCoefficients, linear_equation_expressions, multiplier_symbol, rank_of_symbol};
 
-pub use characteristic::Characteristic;
+pub use characteristic::CharacteristicPolynomial;
 pub use parts::deviation_symbol;
-pub use stability::{Stability, Verdict};
-pub use written::written_linear;
+pub use stability::{Stability, StabilityVerdict};
+pub use written::format_linear_equations;
 
 /// The linear equations about an equilibrium as polynomials of one ring.
-pub struct Linear {
+pub struct LinearisedEquations {
     /// Ring of all polynomials.
     pub ring: Ring,
     /// Left sides of the linear equations, which contain the deviations: a row for each velocity, each
@@ -55,18 +55,18 @@ pub fn derive_linear_equations<'g>(
     mass: &Matrix<'g>,
     at: &Equilibrium<'g>,
     cx: &mut Diagnostics,
-) -> Option<Linear> {
+) -> Option<LinearisedEquations> {
     let balance = force_balance(model, joints);
-    let mut normal = Normal::new(model.graph, rank_of_symbol);
-    normal.ring.raise_limits();
+    let mut normal = NormalFormCache::new(model.graph, rank_of_symbol);
+    normal.ring.raise_term_limits();
     let rest = rest::check_equilibrium(model, at, &balance, &mut normal, cx)?;
-    let all = linear_coefficients(model, mass, at, &balance, &rest);
-    if let Some(what) = rest::reason_for_unbounded(&all) {
+    let all = linearised_equation_coefficients(model, mass, at, &balance, &rest);
+    if let Some(what) = rest::reason_for_infinite_coefficients(&all) {
         cx.report_error(at.place.clone(), format!("the forces of `{}` have no derivatives at rest", at.name))
             .add_help(what);
         return None;
     }
-    let found = expand_linear_rows(model, at, &all, &rest, normal);
+    let found = polynomials_of_linear_rows(model, at, &all, &rest, normal);
     if found.is_none() {
         cx.report_error(
             at.place.clone(),
@@ -78,7 +78,7 @@ pub fn derive_linear_equations<'g>(
         );
     }
     let found = found?;
-    if found.varies_in_time() {
+    if found.has_time_varying_coefficients() {
         cx.report_error(
             at.place.clone(),
             format!("`{}` does not stay at rest: its prescribed motion depends on time", at.name),
@@ -86,7 +86,7 @@ pub fn derive_linear_equations<'g>(
         .add_help("linear equations with constant coefficients need forces that stay the same");
         return None;
     }
-    Some(found.add_stability(model, &all))
+    Some(found.add_stability_conditions(model, &all))
 }
 
 /// Returns the force balance `h − τ − Jᵀ λ` for each velocity, with symbols for the multipliers.
@@ -95,27 +95,29 @@ fn force_balance<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     bias.into_iter().zip(right_sides(model, joints)).map(|(bias, right)| bias - right).collect()
 }
 
-fn linear_coefficients<'g>(
+fn linearised_equation_coefficients<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
-    rest: &rest::RestValues<'g>,
-) -> Coefficients<'g> {
+    rest: &rest::EquilibriumValues<'g>,
+) -> EquilibriumCoefficients<'g> {
     let (g, nv) = (model.graph, model.nv());
-    let rows = linear_equation_rows(model, balance, at);
+    let rows = linear_equation_expressions(model, balance, at);
     let derivatives = symbolic::force_derivatives(model, &rows);
     let (mut by_deviation, mut by_rate) = (derivatives.by_q, derivatives.by_v);
     for (s, state) in at.states.iter().enumerate() {
-        let mut by = Derivative::with_respect_to(Quantity::Parameter(state.parameter).symbol(), g);
+        let mut by = DirectionalDerivative::with_respect_to(Quantity::Parameter(state.parameter).symbol(), g);
         for (k, row) in rows.iter().enumerate() {
             by_deviation[k].push(by.differentiate(*row));
             let own = k == nv + model.constraints.len() + s;
             by_rate[k].push(if own { g.one() } else { g.zero() });
         }
     }
-    let mut by_acceleration = vec![vec![g.zero(); nv + at.states.len()]; rows.len()];
-    for (row, own) in by_acceleration.iter_mut().zip(added_mass::effective_mass_matrix(model, mass)) {
+    let mut acceleration_derivative_matrix = vec![vec![g.zero(); nv + at.states.len()]; rows.len()];
+    for (row, own) in
+        acceleration_derivative_matrix.iter_mut().zip(added_mass::effective_mass_matrix(model, mass))
+    {
         row[..nv].copy_from_slice(&own);
     }
     let jacobian = constraints::jacobian(model);
@@ -123,39 +125,39 @@ fn linear_coefficients<'g>(
     let multipliers: Matrix<'g> = (0..rows.len())
         .map(|k| if k < nv { jacobian.iter().map(|row| row[k]).collect() } else { zeros.clone() })
         .collect();
-    let inputs = symbolic::by_input(model, &rows);
-    let evaluate_at_rest =
-        |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.evaluate_at_rest(row)).collect() };
-    Coefficients {
+    let inputs = symbolic::input_derivatives_of_expressions(model, &rows);
+    let evaluate_at_equilibrium =
+        |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.evaluate_at_equilibrium(row)).collect() };
+    EquilibriumCoefficients {
         orders: [
-            evaluate_at_rest(by_deviation),
-            evaluate_at_rest(by_rate),
-            evaluate_at_rest(by_acceleration),
+            evaluate_at_equilibrium(by_deviation),
+            evaluate_at_equilibrium(by_rate),
+            evaluate_at_equilibrium(acceleration_derivative_matrix),
         ],
-        inputs: evaluate_at_rest(inputs),
-        multipliers: evaluate_at_rest(multipliers),
+        inputs: evaluate_at_equilibrium(inputs),
+        multipliers: evaluate_at_equilibrium(multipliers),
     }
 }
 
 /// Converts all rows of the linear equations to simplified polynomials. Returns `None` if they are too long.
-fn expand_linear_rows<'g>(
+fn polynomials_of_linear_rows<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
-    all: &Coefficients<'g>,
-    rest: &rest::RestValues<'g>,
-    mut normal: Normal<'g>,
-) -> Option<Linear> {
+    all: &EquilibriumCoefficients<'g>,
+    rest: &rest::EquilibriumValues<'g>,
+    mut normal: NormalFormCache<'g>,
+) -> Option<LinearisedEquations> {
     let symbols: [fn(usize) -> Quantity; 3] = [deviation_symbol, Quantity::Velocity, Quantity::Acceleration];
     let (mut motion, mut forces) = (Vec::new(), Vec::new());
     for k in 0..all.inputs.len() {
         let mut left = Polynomial::default();
         // Highest derivatives first: atoms are printed in the order in which they are added.
         for (symbol, coefficients) in symbols.iter().zip(&all.orders).rev() {
-            add_products(&mut left, &coefficients[k], *symbol, 1.0, &mut normal)?;
+            add_symbol_products(&mut left, &coefficients[k], *symbol, 1.0, &mut normal)?;
         }
         let mut right = Polynomial::default();
-        add_products(&mut right, &all.inputs[k], Quantity::Input, -1.0, &mut normal)?;
-        add_products(&mut right, &all.multipliers[k], multiplier_symbol, 1.0, &mut normal)?;
+        add_symbol_products(&mut right, &all.inputs[k], Quantity::Input, -1.0, &mut normal)?;
+        add_symbol_products(&mut right, &all.multipliers[k], multiplier_symbol, 1.0, &mut normal)?;
         motion.push(left);
         forces.push(right);
     }
@@ -168,16 +170,16 @@ fn expand_linear_rows<'g>(
     let values: Option<Vec<_>> =
         values.iter().map(|(what, p)| Some((*what, short.shorten_polynomial(p)?))).collect();
     let values = values?.into_iter().filter(|(_, p)| !p.terms.is_empty()).collect();
-    Some(Linear { ring: short.ring, motion, forces, values, stability: None })
+    Some(LinearisedEquations { ring: short.ring, motion, forces, values, stability: None })
 }
 
 /// Adds products of coefficients and symbols to a sum.
-fn add_products<'g>(
+fn add_symbol_products<'g>(
     sum: &mut Polynomial,
     coefficients: &[Expr<'g>],
     symbol: fn(usize) -> Quantity,
     sign: f64,
-    normal: &mut Normal<'g>,
+    normal: &mut NormalFormCache<'g>,
 ) -> Option<()> {
     for (k, coefficient) in coefficients.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
         let coefficient = normal.normal_form(*coefficient)?;
@@ -188,18 +190,18 @@ fn add_products<'g>(
     Some(())
 }
 
-impl Linear {
+impl LinearisedEquations {
     /// Returns whether a coefficient of the linear equations varies in time.
-    fn varies_in_time(&self) -> bool {
-        let time = self.ring.mask_of_atoms(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
-        let time = self.with_time(time);
+    fn has_time_varying_coefficients(&self) -> bool {
+        let time = self.ring.mask_of_selected_atoms(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
+        let time = self.time_dependent_atoms(time);
         let values = self.values.iter().map(|(_, p)| p);
         let mut all = self.motion.iter().chain(&self.forces).chain(values);
         all.any(|p| p.terms.iter().any(|t| t.monomial.intersects_mask(time)))
     }
 
     /// Returns the mask of the atoms that depend on time, given the mask of time itself.
-    fn with_time(&self, time: Monomial) -> Monomial {
+    fn time_dependent_atoms(&self, time: Monomial) -> Monomial {
         let mut found = time;
         for (k, atom) in self.ring.atoms.iter().enumerate() {
             let contains_found_atoms =
@@ -217,13 +219,17 @@ impl Linear {
                 Atom::Table(.., arguments) => arguments.iter().any(contains_found_atoms),
             };
             if contains {
-                found = found.union_of_bits(Monomial::all_of(k));
+                found = found.union_of_bits(Monomial::power_mask_of_atom(k));
             }
         }
         found
     }
 
-    fn add_stability<'g>(mut self, model: &Model<'g>, all: &Coefficients<'g>) -> Linear {
+    fn add_stability_conditions<'g>(
+        mut self,
+        model: &Model<'g>,
+        all: &EquilibriumCoefficients<'g>,
+    ) -> LinearisedEquations {
         if let Some(characteristic) = characteristic::characteristic_polynomial(model, all) {
             self.stability = stability::analyse_stability(characteristic);
         }

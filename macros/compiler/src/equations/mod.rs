@@ -3,16 +3,16 @@
 //! adaptation for ball and free joints. A test shows that Lagrange's equations are the same polynomials.
 
 use crate::algebra::factor::remove_noise;
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Atom, AtomRank, Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
-use crate::algebra::unit::on_unit_sphere;
+use crate::algebra::unit::simplify_on_unit_sphere;
 use crate::expr::eval::Tape;
 use crate::expr::{Expr, Function, Node, Symbol, Vec3};
 use crate::kinematics::Joint;
 use crate::kinematics::speeds::quaternion_symbols;
 use crate::mechanics::crba::Matrix;
-use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{
     acceleration_symbols, added_mass, constraints, energy, forces, rnea, velocity_symbols,
 };
@@ -27,9 +27,9 @@ pub mod reduced;
 mod tests;
 mod written;
 
-pub use canonical::{Canonical, canonical_equations, determinant_symbol};
-pub use print::Written;
-pub use written::{format_equations, written_canonical};
+pub use canonical::{CanonicalEquations, canonical_equations, determinant_symbol};
+pub use print::PrintedEquations;
+pub use written::{format_canonical_equations, format_equations};
 
 /// Limits on the length of printed equations.
 pub struct Limits {
@@ -57,7 +57,7 @@ impl Limits {
 }
 
 /// Equations of motion of a mechanism as polynomials of one ring.
-pub struct Equations {
+pub struct EquationsOfMotion {
     /// Ring of all polynomials.
     pub ring: Ring,
     /// Lagrangian `L = T − U`.
@@ -83,9 +83,9 @@ pub fn derive<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
-    speeds: Option<&InSpeeds<'g>>,
+    speeds: Option<&SpeedTransformation<'g>>,
     limits: &Limits,
-) -> Option<Equations> {
+) -> Option<EquationsOfMotion> {
     let mass_matrix_in_speeds =
         |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.transform_mass_matrix(mass));
     let entries: Vec<Expr<'g>> = mass_matrix_in_speeds(mass).concat();
@@ -104,9 +104,9 @@ pub fn derive<'g>(
     if Tape::new(&all).node_count() > limits.operations[1] {
         return None;
     }
-    let mut normal = Normal::new(model.graph, rank_of_symbol);
+    let mut normal = NormalFormCache::new(model.graph, rank_of_symbol);
     if limits.long > Limits::READABLE.long {
-        normal.ring.raise_limits();
+        normal.ring.raise_term_limits();
     }
     // Angles in the order of `q`, so that sums of angles are printed in this order.
     for angle in trigonometric_coordinates(model) {
@@ -136,12 +136,12 @@ pub fn derive<'g>(
     let mut forces = normal_forms(&mut normal, &right)?;
     motion.extend(normal_forms(&mut normal, &kept)?);
     forces.resize(motion.len(), Polynomial::default());
-    let replaced: Vec<usize> = speeds.map_or_else(Vec::new, InSpeeds::replaced_velocities);
+    let replaced: Vec<usize> = speeds.map_or_else(Vec::new, SpeedTransformation::replaced_velocity_indices);
     let mut rates = Vec::new();
     for (k, speeds) in replaced.into_iter().filter_map(|k| Some((k, speeds?))) {
         rates.push((k, normal.normal_form(speeds.rates[k])?));
     }
-    let found = Equations {
+    let found = EquationsOfMotion {
         ring: Ring::new(rank_of_symbol),
         lagrangian,
         motion,
@@ -155,12 +155,12 @@ pub fn derive<'g>(
 /// Derives the equations of a mechanism without constraints whose forces are too long to be readable: only
 /// the inertial terms, which for a free body are Euler's equations, with a symbol for each force. `None` if
 /// these are too long as well.
-pub fn derive_inertia<'g>(
+pub fn derive_inertial_terms<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     limits: &Limits,
-) -> Option<Equations> {
+) -> Option<EquationsOfMotion> {
     if !model.constraints.is_empty() {
         return None;
     }
@@ -191,7 +191,7 @@ pub fn derive_inertia<'g>(
 fn bias_of_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    speeds: Option<&InSpeeds<'g>>,
+    speeds: Option<&SpeedTransformation<'g>>,
 ) -> Vec<Expr<'g>> {
     let v = velocity_symbols(model);
     let Some(speeds) = speeds else { return rnea::inverse_dynamics(model, joints, &v, None) };
@@ -201,7 +201,7 @@ fn bias_of_equations<'g>(
 
 /// Returns the right sides of the equations of motion: generalized forces of inputs and multipliers.
 fn right_sides<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
-    let held = constraints::constraint_forces(model, &constraints::multiplier_symbols(model));
+    let held = constraints::constraint_forces(model, &constraints::multiplier_argument_symbols(model));
     let forces = forces::generalized_forces(model, joints);
     forces.into_iter().zip(held).map(|(force, held)| force + held).collect()
 }
@@ -226,11 +226,11 @@ fn trigonometric_coordinates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// Returns the kinetic energy: `½ vᵀ M v` from the given mass matrix, unless the mechanism is driven in time.
 fn kinetic_energy_polynomial<'g>(
-    (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
+    (model, speeds): (&Model<'g>, Option<&SpeedTransformation<'g>>),
     joints: &[Joint<'g>],
     mass: &[Polynomial],
     v: &[Polynomial],
-    normal: &mut Normal<'g>,
+    normal: &mut NormalFormCache<'g>,
 ) -> Option<Polynomial> {
     if joints.iter().any(|joint| joint.drift.is_some()) {
         let energy = energy::kinetic_energy(model, joints, &velocity_symbols(model));
@@ -245,7 +245,7 @@ fn kinetic_energy_polynomial<'g>(
     Some(twice.multiplied_by_number(0.5))
 }
 
-fn normal_forms<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynomial>> {
+fn normal_forms<'g>(normal: &mut NormalFormCache<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynomial>> {
     list.iter().map(|e| normal.normal_form(*e)).collect()
 }
 
@@ -270,17 +270,17 @@ impl Simplifier {
         let p = remove_noise(&self.ring, p);
         let mut p = simplify_trigonometry(&mut self.ring, &p)?;
         for quaternion in &self.quaternions {
-            p = on_unit_sphere(&mut self.ring, &p, quaternion)?;
+            p = simplify_on_unit_sphere(&mut self.ring, &p, quaternion)?;
         }
         self.left = self.left.checked_sub(p.terms.len())?;
-        self.written_left = self.written_left.checked_sub(self.ring.written_terms(&p))?;
+        self.written_left = self.written_left.checked_sub(self.ring.printed_term_count(&p))?;
         p.terms.iter().all(|t| t.coefficient.is_finite()).then_some(p)
     }
 }
 
 /// Simplifies all equations of motion. Returns `None` if they are too long.
-fn simplify_equations(mut short: Simplifier, found: Equations) -> Option<Equations> {
-    let Equations { lagrangian, motion, forces, rates, without_forces, .. } = found;
+fn simplify_equations(mut short: Simplifier, found: EquationsOfMotion) -> Option<EquationsOfMotion> {
+    let EquationsOfMotion { lagrangian, motion, forces, rates, without_forces, .. } = found;
     let all_polynomials = || motion.iter().chain(&forces).chain([&lagrangian]);
     if all_polynomials().map(|p| p.terms.len()).sum::<usize>() > short.long {
         return None;
@@ -289,7 +289,7 @@ fn simplify_equations(mut short: Simplifier, found: Equations) -> Option<Equatio
     let motion = motion.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
     let forces = forces.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
     let rates = rates.iter().map(|(k, p)| Some((*k, short.shorten_polynomial(p)?))).collect::<Option<_>>()?;
-    Some(Equations { ring: short.ring, lagrangian, motion, forces, rates, without_forces })
+    Some(EquationsOfMotion { ring: short.ring, lagrangian, motion, forces, rates, without_forces })
 }
 
 fn rank_of_symbol(symbol: Symbol) -> AtomRank {

@@ -2,7 +2,7 @@
 
 use crate::algebra::common::FactorScope;
 use crate::algebra::factor::items_of_polynomial;
-use crate::algebra::item::{Item, Order};
+use crate::algebra::item::{Item, PrintOrder};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
 use crate::expr::Expr;
 use crate::expr::node::{Node, Symbol};
@@ -18,7 +18,7 @@ pub mod style;
 pub use latex::Latex;
 pub use mathml::MathMl;
 pub use names::SymbolName;
-pub use style::{Plain, Style, Written};
+pub use style::{Plain, PrintedEquations, Style};
 
 use style::{Argument, Number, PrintedFactor};
 
@@ -76,21 +76,21 @@ fn format_node(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u
 /// factors; the style decides their appearance.
 pub struct PolynomialWriter<'a, S = Plain<'a>> {
     ring: &'a Ring,
-    order: Order,
+    order: PrintOrder,
     style: S,
 }
 
 impl<'a> PolynomialWriter<'a> {
     /// Creates a writer of plain text for the polynomials of a ring, with names for its symbols.
     pub fn new(ring: &'a Ring, name: &'a dyn Fn(Symbol) -> String) -> PolynomialWriter<'a> {
-        PolynomialWriter::with_style(ring, Plain { name })
+        PolynomialWriter::new_with_style(ring, Plain { name })
     }
 }
 
 impl<'a, S: Style> PolynomialWriter<'a, S> {
     /// Creates a writer for the polynomials of a ring in the given style.
-    pub fn with_style(ring: &'a Ring, style: S) -> PolynomialWriter<'a, S> {
-        PolynomialWriter { ring, order: Order::new(ring), style }
+    pub fn new_with_style(ring: &'a Ring, style: S) -> PolynomialWriter<'a, S> {
+        PolynomialWriter { ring, order: PrintOrder::new(ring), style }
     }
 
     /// Formats a polynomial with grouped terms and extracted common factors.
@@ -123,13 +123,14 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
     }
 
     fn format_item(&self, item: &Item) -> String {
-        let sums = item.sums.iter().map(|sum| self.sum_as_factor(self.format_sum(&sum.items), sum.power));
+        let sums =
+            item.sums.iter().map(|sum| self.sum_power_as_factor(self.format_sum(&sum.items), sum.power));
         let constant = item.sums.iter().all(|sum| self.order.is_constant(&sum.items));
         self.format_product(item.coefficient, item.factor, sums.collect(), constant)
     }
 
     /// Returns a sum, raised to a power, as a factor of a product.
-    fn sum_as_factor(&self, sum: String, power: u8) -> PrintedFactor {
+    fn sum_power_as_factor(&self, sum: String, power: u8) -> PrintedFactor {
         if power == 1 {
             PrintedFactor::Sum(sum)
         } else {
@@ -163,7 +164,7 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
         factors: &mut Vec<PrintedFactor>,
         divisors: &mut Vec<PrintedFactor>,
     ) {
-        for (atom, power) in self.order.factors_in_order(m) {
+        for (atom, power) in self.order.factors_in_printing_order(m) {
             match &self.ring.atoms[atom] {
                 Atom::Inverse(p) => divisors.push(self.format_divisor(p, power)),
                 atom => factors.push(PrintedFactor::Single(self.format_atom(atom, power))),
@@ -177,7 +178,7 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
         {
             return PrintedFactor::Single(self.format_atom(&self.ring.atoms[atom], power));
         }
-        self.sum_as_factor(self.format_polynomial(p), power)
+        self.sum_power_as_factor(self.format_polynomial(p), power)
     }
 
     fn format_atom(&self, atom: &Atom, power: u8) -> String {
@@ -202,7 +203,7 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
     }
 
     fn format_argument(&self, p: &Polynomial) -> Argument {
-        let lone = matches!(p.terms.as_slice(), [t] if self.is_symbol(t.coefficient, t.monomial));
+        let lone = matches!(p.terms.as_slice(), [t] if self.is_single_symbol(t.coefficient, t.monomial));
         Argument { text: self.format_polynomial(p), lone }
     }
 
@@ -214,10 +215,10 @@ impl<'a, S: Style> PolynomialWriter<'a, S> {
         let text = self.join_signed_terms(
             parts.iter().map(|(c, m)| (*c < 0.0, self.format_product(*c, *m, Vec::new(), true))),
         );
-        Argument { text, lone: matches!(parts.as_slice(), [(c, m)] if self.is_symbol(*c, *m)) }
+        Argument { text, lone: matches!(parts.as_slice(), [(c, m)] if self.is_single_symbol(*c, *m)) }
     }
 
-    fn is_symbol(&self, coefficient: f64, m: Monomial) -> bool {
+    fn is_single_symbol(&self, coefficient: f64, m: Monomial) -> bool {
         let mut factors = m.atoms_with_powers();
         let first = factors.next();
         coefficient == 1.0
@@ -232,7 +233,7 @@ pub fn wrap_text(text: &str, width: usize, indent: &str) -> String {
     let (mut out, mut rest, mut first) = (String::new(), text, true);
     loop {
         let room = if first { width } else { width.saturating_sub(indent.len()) };
-        let cut = if rest.chars().count() > room { break_at(rest, room) } else { None };
+        let cut = if rest.chars().count() > room { line_break_position(rest, room) } else { None };
         if !first {
             out.push('\n');
             out.push_str(indent);
@@ -251,7 +252,7 @@ const SHORT: usize = 24;
 
 /// Returns the position of the line break: the last sign of minimum nesting depth within `room` characters,
 /// or the next sign after them.
-fn break_at(text: &str, room: usize) -> Option<usize> {
+fn line_break_position(text: &str, room: usize) -> Option<usize> {
     let (mut depth, mut best) = (0_usize, None::<(usize, usize)>);
     let mut previous = ' ';
     for (column, (at, c)) in text.char_indices().enumerate() {

@@ -3,22 +3,23 @@
 
 use super::canonical::{determinant_symbol, velocities_of_momenta};
 use super::written::{
-    determinant_names, inertias_sentence, marks_of_coordinate_rates, name_and_derivative_order,
-    typeset_names_with, wrap_sentences,
+    determinant_names, determinants_sentence, marks_of_coordinate_rates, name_and_derivative_order,
+    typeset_names_with_extra_names, wrap_at_page_width,
 };
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
-use crate::diag::all_of;
+use crate::diag::join_names_with_and;
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::name_with_primes;
-use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, PrintedEquations, Style, wrap_text};
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::routh::{
-    Solved, matrix_block, replace_velocities, solve_cyclic_velocities, with_cyclic_velocities,
+    RouthianAtMomenta, matrix_block, replace_velocities, solve_cyclic_velocities,
+    velocities_with_cyclic_replaced,
 };
 use crate::mechanics::{acceleration_symbols, forces, rnea, velocity_symbols};
 use crate::mechanism::{Model, Quantity};
@@ -27,7 +28,7 @@ use crate::mechanism::{Model, Quantity};
 const WIDTH: usize = 100;
 
 /// Routh's equations as polynomials of one ring, with the momenta as arguments.
-pub struct Reduced {
+pub struct ReducedRouthEquations {
     /// Ring of all polynomials.
     pub ring: Ring,
     /// Indices of the velocities of the cyclic coordinates.
@@ -52,18 +53,19 @@ pub fn routh_equations<'g>(
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     cyclic: Vec<usize>,
-) -> Option<Reduced> {
+) -> Option<ReducedRouthEquations> {
     let g = model.graph;
-    let mut normal = Normal::new(g, rank_of_symbol);
-    normal.ring.raise_limits();
+    let mut normal = NormalFormCache::new(g, rank_of_symbol);
+    normal.ring.raise_term_limits();
     let own = matrix_block(mass, &cyclic, &cyclic);
     let mut divisors = Vec::new();
-    let Solved { routhian, velocity } = solve_cyclic_velocities(model, joints, &cyclic, &mut |p| {
-        let (velocity, found) = velocities_of_momenta(&own, &p, &mut normal)?;
-        divisors = found;
-        Some(velocity)
-    })?;
-    let all = with_cyclic_velocities(model, &cyclic, &velocity);
+    let RouthianAtMomenta { routhian, velocity } =
+        solve_cyclic_velocities(model, joints, &cyclic, &mut |p| {
+            let (velocity, found) = velocities_of_momenta(&own, &p, &mut normal)?;
+            divisors = found;
+            Some(velocity)
+        })?;
+    let all = velocities_with_cyclic_replaced(model, &cyclic, &velocity);
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let bias =
         replace_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
@@ -102,7 +104,7 @@ pub fn routh_equations<'g>(
         .collect::<Option<Vec<_>>>()?
         .into_iter();
     let mut next = || found.next().unwrap_or_default();
-    Some(Reduced {
+    Some(ReducedRouthEquations {
         routhian: next().pop()?,
         motion: next(),
         forces: next(),
@@ -115,18 +117,18 @@ pub fn routh_equations<'g>(
 }
 
 /// Formats Routh's equations as plain text, LaTeX and MathML.
-pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
+pub fn format_routh_equations(model: &Model<'_>, reduced: &ReducedRouthEquations) -> PrintedEquations {
     let rates = marks_of_coordinate_rates(model);
     let momenta: Vec<String> =
         reduced.cyclic.iter().map(|k| format!("p_{}", model.velocities[*k].0)).collect();
     let inertias = determinant_names(model, reduced.determinants.len());
-    let all = typeset_names_with(model, &[momenta.clone(), inertias.clone()].concat());
-    let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
+    let all = typeset_names_with_extra_names(model, &[momenta.clone(), inertias.clone()].concat());
+    let index_among_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
     // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
     let name_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(c) => (momenta[c].clone(), 0),
-        Quantity::Acceleration(k) if is_cyclic(k).is_some() => {
-            (is_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)
+        Quantity::Acceleration(k) if index_among_cyclic(k).is_some() => {
+            (index_among_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)
         }
         Quantity::Prepared(k) => (inertias[k].clone(), 0),
         _ => name_and_derivative_order(model, &rates, symbol),
@@ -149,24 +151,24 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     let names: Vec<String> = reduced.cyclic.iter().map(|k| model.velocities[*k].0.clone()).collect();
     let mut about = format!(
         "R is the Routhian; {} {is} of the cyclic {of} {}{}; a prime marks a rate.",
-        all_of(&momenta),
-        all_of(&names),
+        join_names_with_and(&momenta),
+        join_names_with_and(&names),
         if still { ", and constant" } else { "" }
     );
-    about += &inertias_sentence(&inertias);
-    plain = plain + "\n" + &wrap_sentences(&about) + "\n";
+    about += &determinants_sentence(&inertias);
+    plain = plain + "\n" + &wrap_at_page_width(&about) + "\n";
     let mut lines = self::routh_equation_lines(reduced, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);
     let latex = format_aligned(&lines);
     lines = self::routh_equation_lines(reduced, MathMl { name: &name_with_dots });
     lines[0] = format!("<mi>R</mi> = {}", lines[0]);
-    Written { plain, latex, mathml: format_equations_as_html(&lines) }
+    PrintedEquations { plain, latex, mathml: format_equations_as_html(&lines) }
 }
 
 /// Returns the right side of the Routhian, then the equations of motion, the velocities of cyclic
 /// coordinates, their momenta and inertias.
-fn routh_equation_lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
-    let writer = PolynomialWriter::with_style(&reduced.ring, style);
+fn routh_equation_lines<S: Style + Copy>(reduced: &ReducedRouthEquations, style: S) -> Vec<String> {
+    let writer = PolynomialWriter::new_with_style(&reduced.ring, style);
     let mut lines = vec![writer.format_energy(&reduced.routhian)];
     let sides = reduced.motion.iter().zip(&reduced.forces);
     lines.extend(

@@ -8,7 +8,7 @@ use crate::expr::eval::eval;
 use crate::expr::{Graph, Rotation, Vec3};
 use crate::lower::lower;
 use crate::mechanics::{crba, lagrange};
-use crate::mechanism::{Chart, Motion, Pose, Supplied};
+use crate::mechanism::{Chart, Motion, Pose, SuppliedQuantity};
 use std::path::Path;
 
 mod inertia;
@@ -45,8 +45,8 @@ fn random_symbol_values(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 
     let parameters: Vec<f64> = numbers(model.parameters.len()).iter().map(|p| p + 1.5).collect();
     let mut q = numbers(model.nq());
     for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
-        let norm = q[first.and_next(4)].iter().map(|x| x * x).sum::<f64>().sqrt();
-        q[first.and_next(4)].iter_mut().for_each(|x| *x /= norm);
+        let norm = q[first.range_of_entries(4)].iter().map(|x| x * x).sum::<f64>().sqrt();
+        q[first.range_of_entries(4)].iter_mut().for_each(|x| *x /= norm);
     }
     let (v, a, u) = (numbers(model.nv()), numbers(model.nv()), numbers(model.nu()));
     let multipliers = numbers(model.constraints.len());
@@ -56,7 +56,7 @@ fn random_symbol_values(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 
         Quantity::Velocity(k) => v[k],
         Quantity::Acceleration(k) => a[k],
         Quantity::Input(k) => u[k],
-        Quantity::Given(Supplied::Multiplier, k) => multipliers[k],
+        Quantity::Given(SuppliedQuantity::Multiplier, k) => multipliers[k],
         Quantity::Time => 0.7,
         Quantity::Force(k) => 0.3 * k as f64 - 1.0,
         other => panic!("{other:?} in the equations"),
@@ -71,16 +71,21 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 }
 
 /// Returns the values of the symbols of a mechanism by their printed names.
-fn values_by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
+fn value_lookup_by_name<'a>(
+    model: &'a Model<'_>,
+    at: &'a dyn Fn(Symbol) -> f64,
+) -> impl Fn(&str) -> f64 + 'a {
     let rates = written::marks_of_coordinate_rates(model);
-    let quantities_up_to = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
-    let quantities = quantities_up_to(model.parameters.len(), Quantity::Parameter)
-        .chain(quantities_up_to(model.nq(), Quantity::Configuration))
-        .chain(quantities_up_to(model.nv(), Quantity::Velocity))
-        .chain(quantities_up_to(model.nv(), Quantity::Acceleration))
-        .chain(quantities_up_to(model.nu(), Quantity::Input))
-        .chain(quantities_up_to(model.constraints.len(), |k| Quantity::Given(Supplied::Multiplier, k)))
-        .chain(quantities_up_to(model.nv(), Quantity::Force))
+    let indexed_quantities = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
+    let quantities = indexed_quantities(model.parameters.len(), Quantity::Parameter)
+        .chain(indexed_quantities(model.nq(), Quantity::Configuration))
+        .chain(indexed_quantities(model.nv(), Quantity::Velocity))
+        .chain(indexed_quantities(model.nv(), Quantity::Acceleration))
+        .chain(indexed_quantities(model.nu(), Quantity::Input))
+        .chain(indexed_quantities(model.constraints.len(), |k| {
+            Quantity::Given(SuppliedQuantity::Multiplier, k)
+        }))
+        .chain(indexed_quantities(model.nv(), Quantity::Force))
         .chain([Quantity::Time]);
     let named: Vec<(String, Symbol)> = quantities
         .map(|q| {
@@ -103,13 +108,13 @@ fn sides_of_equations(text: &str) -> Vec<(String, String)> {
 }
 
 /// Checks that the printed equations have the values of the polynomials.
-fn check_text(model: &Model<'_>, e: &Equations) {
+fn check_values_of_printed_equations(model: &Model<'_>, e: &EquationsOfMotion) {
     let text = format_equations(model, e).plain;
     let lines = sides_of_equations(&text);
     assert_eq!(lines.len(), 1 + e.motion.len(), "{text}");
     for seed in 1..4 {
         let symbol = random_symbol_values(model, seed);
-        let names = values_by_name(model, &symbol);
+        let names = value_lookup_by_name(model, &symbol);
         let read: Vec<f64> =
             lines.iter().flat_map(|(a, b)| [a, b]).skip(1).map(|side| evaluate_text(side, &names)).collect();
         let sides = e.motion.iter().zip(&e.forces).flat_map(|(a, b)| [a, b]);
@@ -152,7 +157,7 @@ fn check_equations(model: &Model<'_>) {
         assert_near(&all, &program.interpret_program(&symbol), &model.name);
         assert_near(&all[..model.nv()], &eval(&rows, &symbol), "Lagrange");
     }
-    check_text(model, &e);
+    check_values_of_printed_equations(model, &e);
 }
 
 #[test]
@@ -168,10 +173,11 @@ fn printed_normal_forms_equal_generated_functions() {
 }
 
 /// Places the tip of a link at the position `place`, rotated by `angle` about z.
-fn place_tip<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
+fn set_link_placement<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
     model.links[link].motion = Motion::Placed;
     model.links[link].parent = None;
-    model.links[link].placement = Pose { rotation: Rotation::about_axis(2, angle), translation: Vec3(place) };
+    model.links[link].placement =
+        Pose { rotation: Rotation::rotation_about_coordinate_axis(2, angle), translation: Vec3(place) };
 }
 
 /// Describes each rod of a double pendulum by its angle from the vertical.
@@ -181,7 +187,7 @@ fn double_pendulum_in_absolute_angles_prints_correctly() {
         let g = model.graph;
         let [a, b] = [0, 1].map(|k| Quantity::Configuration(k).expr(g));
         let length = Quantity::Parameter(3).expr(g);
-        place_tip(&mut model, 1, [length * a.sin(), -(length * a.cos()), g.zero()], b);
+        set_link_placement(&mut model, 1, [length * a.sin(), -(length * a.cos()), g.zero()], b);
         model.inputs.clear();
         check_equations(&model);
         crate::equations_as_text(&model)
@@ -201,7 +207,12 @@ fn driven_hoop_prints_time_dependent_equations() {
         let [radius, speed] = [2, 3].map(|k| Quantity::Parameter(k).expr(g));
         let (theta, turn) = (Quantity::Configuration(0).expr(g), speed * Quantity::Time.expr(g));
         let out = radius * theta.sin();
-        place_tip(&mut model, 0, [out * turn.cos(), out * turn.sin(), -(radius * theta.cos())], g.zero());
+        set_link_placement(
+            &mut model,
+            0,
+            [out * turn.cos(), out * turn.sin(), -(radius * theta.cos())],
+            g.zero(),
+        );
         check_equations(&model);
         crate::equations_as_text(&model)
     });
@@ -257,11 +268,16 @@ fn trivial_constraint_rows_are_dropped() {
         !text.contains("0 = 0") && text.contains("plane.x' - 0.3 cos(plane.angle) roll' = 0\n"),
         "{text}"
     );
-    let linkage_arguments = || "gravity = -9.81 * z, formulation = speeds, derivatives".parse().unwrap();
-    assert_eq!(crate::check_mechanism(linkage_arguments(), CASTOR.parse().unwrap(), Path::new("")), [""; 0]);
+    let speeds_formulation_arguments =
+        || "gravity = -9.81 * z, formulation = speeds, derivatives".parse().unwrap();
+    assert_eq!(
+        crate::check_mechanism(speeds_formulation_arguments(), CASTOR.parse().unwrap(), Path::new("")),
+        [""; 0]
+    );
     // A contact that can never close is reported, however small its row is.
     let hovering = CASTOR.replace("0.3 * z", "0.4 * z");
-    let messages = crate::check_mechanism(linkage_arguments(), hovering.parse().unwrap(), Path::new(""));
+    let messages =
+        crate::check_mechanism(speeds_formulation_arguments(), hovering.parse().unwrap(), Path::new(""));
     assert!(
         messages.len() == 1 && messages[0].contains("`contact.normal` cannot be satisfied"),
         "{messages:?}"
@@ -352,7 +368,7 @@ L is kinetic less potential energy; tip.wx' is the rate of tip.wx.
 }
 
 /// Compares Hamilton's equations with velocities, energies and rates of the recursive algorithms.
-fn check_canonical(model: &Model<'_>) -> String {
+fn check_hamiltons_equations(model: &Model<'_>) -> String {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let c = canonical_equations(model, &joints, &mass).expect("small");
@@ -386,14 +402,14 @@ fn check_canonical(model: &Model<'_>) -> String {
             all.map(|polynomial| c.ring.evaluate_polynomial(polynomial, &symbol_value)).collect();
         assert_near(&found, &eval(&expected, &symbol), &model.name);
     }
-    let written = written_canonical(model, &c);
+    let written = format_canonical_equations(model, &c);
     assert_eq!(latex::latex_errors(&written.latex), [""; 0], "{}", written.latex);
     written.plain
 }
 
 #[test]
 fn hamiltons_equations_equal_generated_functions() {
-    let text = with_model("-9.81 * y", CART_POLE, |model| check_canonical(&model));
+    let text = with_model("-9.81 * y", CART_POLE, |model| check_hamiltons_equations(&model));
     for line in [
         "rail' = pole_mass pole_length (1/3 pole_length p_rail + 1/2 p_hinge cos(hinge))/D\n",
         "hinge' = (p_hinge (cart_mass + pole_mass) + 1/2 pole_mass pole_length p_rail cos(hinge))/D\n",
@@ -402,13 +418,13 @@ fn hamiltons_equations_equal_generated_functions() {
         assert!(text.contains(line), "{text}");
     }
     for item in [DOUBLE_PENDULUM, GYROSCOPE, SPHERICAL, BALL, FREE, TRIPLE, ARM] {
-        with_model("-g * z", item, |model| check_canonical(&model));
-        with_model("-g * y", item, |model| check_canonical(&model));
+        with_model("-g * z", item, |model| check_hamiltons_equations(&model));
+        with_model("-g * y", item, |model| check_hamiltons_equations(&model));
     }
     // Euler's equations in terms of momenta.
-    let text = with_model("-g * z", FREE, |model| check_canonical(&model));
+    let text = with_model("-g * z", FREE, |model| check_hamiltons_equations(&model));
     assert!(text.contains("p_pose.wx' = p_pose.wy p_pose.wz (1/c - 1/b)\n"), "{text}");
-    let text = with_model("-g * z", BALL, |model| check_canonical(&model));
+    let text = with_model("-g * z", BALL, |model| check_hamiltons_equations(&model));
     assert!(text.contains("p_tip.wz' = 0\n") && !text.contains("D is"), "{text}");
 }
 
@@ -459,6 +475,6 @@ fn long_equations_are_printed_on_request() {
             let found: Vec<f64> = e.motion.iter().map(|p| e.ring.evaluate_polynomial(p, &symbol)).collect();
             assert_near(&found, &eval(&forces, &symbol), "on request");
         }
-        check_text(&model, &e);
+        check_values_of_printed_equations(&model, &e);
     });
 }

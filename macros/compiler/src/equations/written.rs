@@ -1,13 +1,13 @@
 //! Formats equations of motion as plain text, LaTeX and MathML, with the user's names.
 
-use super::{Canonical, Equations, determinant_symbol};
-use crate::diag::all_of;
+use super::{CanonicalEquations, EquationsOfMotion, determinant_symbol};
+use crate::diag::join_names_with_and;
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::{Names, name_with_primes};
-use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, PrintedEquations, Style, wrap_text};
 use crate::expr::Symbol;
-use crate::mechanism::{Chart, Model, Quantity, Supplied};
+use crate::mechanism::{Chart, Model, Quantity, SuppliedQuantity};
 
 /// Maximum number of columns of equations in the text.
 const WIDTH: usize = 100;
@@ -15,10 +15,10 @@ const WIDTH: usize = 100;
 const PAGE: usize = 92;
 
 /// Formats equations of motion as plain text, LaTeX and MathML.
-pub fn format_equations(model: &Model<'_>, equations: &Equations) -> Written {
+pub fn format_equations(model: &Model<'_>, equations: &EquationsOfMotion) -> PrintedEquations {
     let rates = marks_of_coordinate_rates(model);
     let (latex, mathml) = typeset_equations(model, equations, &rates);
-    Written { plain: plain_text(model, equations, &rates), latex, mathml }
+    PrintedEquations { plain: plain_text(model, equations, &rates), latex, mathml }
 }
 
 /// Printed lines: the Lagrangian, and the left and right side of the equation of every velocity.
@@ -30,8 +30,8 @@ struct LagrangeLines {
 }
 
 impl LagrangeLines {
-    fn new<S: Style>(equations: &Equations, style: S) -> LagrangeLines {
-        let writer = PolynomialWriter::with_style(&equations.ring, style);
+    fn new<S: Style>(equations: &EquationsOfMotion, style: S) -> LagrangeLines {
+        let writer = PolynomialWriter::new_with_style(&equations.ring, style);
         let sides = equations.motion.iter().zip(&equations.forces);
         LagrangeLines {
             rates: equations.rates.iter().map(|(k, p)| (*k, writer.format_polynomial(p))).collect(),
@@ -52,7 +52,7 @@ impl LagrangeLines {
 }
 
 /// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
-fn plain_text(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
+fn plain_text(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[bool]) -> String {
     let primed_name = |symbol| name_with_primes(name_and_derivative_order(model, rates, symbol));
     let lines = LagrangeLines::new(equations, Plain { name: &primed_name });
     let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
@@ -69,16 +69,16 @@ fn plain_text(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> Strin
     out.push('\n');
     legend_sentences(model, equations.without_forces, rates)
         .iter()
-        .fold(out, |out, sentence| out + &wrap_sentences(sentence) + "\n")
+        .fold(out, |out, sentence| out + &wrap_at_page_width(sentence) + "\n")
 }
 
 /// Formats the canonical equations as plain text, LaTeX and MathML.
-pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
+pub fn format_canonical_equations(model: &Model<'_>, canonical: &CanonicalEquations) -> PrintedEquations {
     let rates = marks_of_coordinate_rates(model);
     let name_of_momentum = |k: usize| format!("p_{}", model.velocities[k].0);
     let momenta: Vec<String> = (0..model.nv()).map(name_of_momentum).collect();
     let determinants = determinant_names(model, canonical.determinants.len());
-    let all = typeset_names_with(model, &[momenta.clone(), determinants.clone()].concat());
+    let all = typeset_names_with_extra_names(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
     let name_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(k) => (momenta[k].clone(), 0),
@@ -98,14 +98,14 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, \
                      and a prime marks a rate."
         .to_string();
-    about += &inertias_sentence(&determinants);
-    plain = plain + "\n" + &wrap_sentences(&about) + "\n";
+    about += &determinants_sentence(&determinants);
+    plain = plain + "\n" + &wrap_at_page_width(&about) + "\n";
     let mut lines = canonical_lines(canonical, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
     let latex = format_aligned(&lines);
     lines = canonical_lines(canonical, MathMl { name: &name_with_dots });
     lines[0] = format!("<mi>H</mi> = {}", lines[0]);
-    Written { plain, latex, mathml: format_equations_as_html(&lines) }
+    PrintedEquations { plain, latex, mathml: format_equations_as_html(&lines) }
 }
 
 /// Returns a name for a generalized force that no other symbol has.
@@ -129,18 +129,20 @@ pub(super) fn determinant_names(model: &Model<'_>, count: usize) -> Vec<String> 
 }
 
 /// Returns a sentence that explains the determinants, or an empty text without determinants.
-pub(super) fn inertias_sentence(determinants: &[String]) -> String {
+pub(super) fn determinants_sentence(determinants: &[String]) -> String {
     match determinants {
         [] => String::new(),
         [one] => format!(" {one} is an inertia, of coupled coordinates its determinant."),
-        all => format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
+        all => {
+            format!(" {} are inertias, of coupled coordinates their determinants.", join_names_with_and(all))
+        }
     }
 }
 
 /// Returns the right side of the Hamiltonian, then equations for the rates of coordinates and of momenta,
 /// then for determinants.
-fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<String> {
-    let writer = PolynomialWriter::with_style(&canonical.ring, style);
+fn canonical_lines<S: Style + Copy>(canonical: &CanonicalEquations, style: S) -> Vec<String> {
+    let writer = PolynomialWriter::new_with_style(&canonical.ring, style);
     let mut lines = vec![writer.format_energy(&canonical.hamiltonian)];
     let velocities = (0..).map(Quantity::Velocity).zip(&canonical.velocity);
     let momenta = (0..).map(Quantity::Acceleration).zip(&canonical.momentum_rate);
@@ -152,7 +154,7 @@ fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<Stri
 }
 
 /// Wraps sentences at the width of a page.
-pub(super) fn wrap_sentences(text: &str) -> String {
+pub(super) fn wrap_at_page_width(text: &str) -> String {
     let (mut out, mut room) = (String::new(), 0);
     for word in text.split(' ') {
         let length = word.chars().count();
@@ -170,13 +172,13 @@ pub(super) fn wrap_sentences(text: &str) -> String {
 }
 
 /// Returns the Lagrangian and an equation for every velocity, as LaTeX and as HTML.
-fn typeset_equations(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String, String) {
+fn typeset_equations(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[bool]) -> (String, String) {
     let names = typeset_names(model);
     let name_with_dots = |symbol| {
         let (name, dots) = name_and_derivative_order(model, rates, symbol);
         (names.get(&name), dots)
     };
-    let rate_symbol = |k: usize| {
+    let rate_name_and_dots = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
@@ -185,22 +187,22 @@ fn typeset_equations(model: &Model<'_>, equations: &Equations, rates: &[bool]) -
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
     let latex = LagrangeLines::new(equations, Latex { name: &name_with_dots }).equation_lines(energy, &|k| {
-        Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+        Latex { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
     });
     let mathml = LagrangeLines::new(equations, MathMl { name: &name_with_dots })
         .equation_lines(of_mathml, &|k| {
-            MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+            MathMl { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
         });
     (format_aligned(&latex), format_equations_as_html(&mathml))
 }
 
 /// Returns the typeset names of all symbols of a mechanism, which are unambiguous.
 fn typeset_names(model: &Model<'_>) -> Names {
-    typeset_names_with(model, &[])
+    typeset_names_with_extra_names(model, &[])
 }
 
 /// Returns the typeset names of all symbols of a mechanism and of other names, which are unambiguous.
-pub(super) fn typeset_names_with(model: &Model<'_>, others: &[String]) -> Names {
+pub(super) fn typeset_names_with_extra_names(model: &Model<'_>, others: &[String]) -> Names {
     let velocities =
         model.velocities.iter().chain(model.speeds.iter().flat_map(|s| &s.velocities)).map(|(name, _)| name);
     let inputs = model.inputs.iter().map(|(name, _)| name);
@@ -243,7 +245,7 @@ pub(super) fn name_and_derivative_order(model: &Model<'_>, rates: &[bool], symbo
         Quantity::Input(k) => (model.inputs[k].0.clone(), 0),
         Quantity::Time => ("t".to_string(), 0),
         Quantity::Force(k) => (force_name(model, k), 0),
-        Quantity::Given(Supplied::Multiplier, k) => (format!("lambda{}", k + 1), 0),
+        Quantity::Given(SuppliedQuantity::Multiplier, k) => (format!("lambda{}", k + 1), 0),
         _ => (format!("s{}", symbol.0), 0),
     }
 }
@@ -269,7 +271,7 @@ fn legend_sentences(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> 
             }
             all => format!(
                 "{} are generalized speeds, from which rates follow; their equations are Kane's.",
-                all_of(all)
+                join_names_with_and(all)
             ),
         }
     });
@@ -279,7 +281,7 @@ fn legend_sentences(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> 
         [] => None,
         [one] => Some(format!("lambda1 is the multiplier of the constraint {one}.")),
         all => {
-            let (multipliers, all) = (all_of(&multipliers), all_of(all));
+            let (multipliers, all) = (join_names_with_and(&multipliers), join_names_with_and(all));
             Some(format!("{multipliers} are the multipliers of the constraints {all}, in this order."))
         }
     };
@@ -292,7 +294,7 @@ fn legend_sentences(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> 
         format!(
             "{} {are} of gravity, force elements and inputs; {terms} are too many to be readable. The option \
              `equations = lagrange` of `#[mechanism]` prints up to some thousand.",
-            all_of(&names)
+            join_names_with_and(&names)
         )
     });
     std::iter::once(rates).chain(speeds).chain(multipliers).chain(forces).collect()

@@ -50,9 +50,9 @@ pub fn write_program(out: &mut String, program: &Program, scope: &Scope<'_>, pla
     let pieces = vec![None; program.instructions.len()];
     let mut w = Writer { program, scope, statements: Vec::new(), pieces, read: Vec::new() };
     if scope.is_late {
-        w.write_late();
+        w.write_inputs_before_first_use();
     } else {
-        write_inputs(out, program, scope);
+        write_input_bindings(out, program, scope);
         w.write_instructions();
     }
     let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand_text(*o)).collect();
@@ -61,16 +61,16 @@ pub fn write_program(out: &mut String, program: &Program, scope: &Scope<'_>, pla
 }
 
 /// Writes local constants for the arguments and parameters that the program uses.
-fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
+fn write_input_bindings(out: &mut String, program: &Program, scope: &Scope<'_>) {
     for symbol in program.used_symbols() {
-        out.push_str(&input_definition(symbol, scope));
+        out.push_str(&argument_constant_definition(symbol, scope));
     }
 }
 
 /// Returns the definition of the local constant of an argument or parameter.
-fn input_definition(symbol: Symbol, scope: &Scope<'_>) -> String {
+fn argument_constant_definition(symbol: Symbol, scope: &Scope<'_>) -> String {
     let quantity = Quantity::from_symbol(symbol);
-    match (quantity, local_name(quantity, scope)) {
+    match (quantity, local_constant_name(quantity, scope)) {
         (Quantity::Time, _) => String::new(),
         (Quantity::Parameter(k), Some(name)) => {
             format!("    const double {name} = self->{};\n", scope.parameters[k])
@@ -87,7 +87,7 @@ fn input_definition(symbol: Symbol, scope: &Scope<'_>) -> String {
 }
 
 /// Returns the name of the local constant of a quantity; `None` for a quantity that the scope does not have.
-fn local_name(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
+fn local_constant_name(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
     match quantity {
         Quantity::Time => Some("t".to_string()),
         Quantity::Parameter(k) => scope.parameters.get(k).map(|name| format!("p_{name}")),
@@ -113,16 +113,16 @@ impl Writer<'_> {
     }
 
     /// Writes all instructions, with arguments, parameters, sines and cosines right before their first use.
-    fn write_late(&mut self) {
+    fn write_inputs_before_first_use(&mut self) {
         let angles = Angles::find_angles(self.program);
         let mut is_written = vec![false; self.program.instructions.len()];
         for k in 0..self.program.instructions.len() {
-            self.program.instructions[k].visit_operands(|o| self.read_input(o));
+            self.program.instructions[k].visit_operands(|o| self.add_input_read_statement(o));
             if !angles.covered[k] {
                 self.write_instruction(k);
             } else if !is_written[k] {
-                let has_value = |a: &&Angle| a.sine == Some(k) || a.cosine == Some(k);
-                let Some(angle) = angles.list.iter().find(has_value) else { continue };
+                let is_sine_or_cosine_value = |a: &&Angle| a.sine == Some(k) || a.cosine == Some(k);
+                let Some(angle) = angles.list.iter().find(is_sine_or_cosine_value) else { continue };
                 let text = self.operand_text(angle.angle).text;
                 let mut text = format!(
                     "    double sine{k}, cosine{k};\n    lw_sin_cos({text}, &sine{k}, &cosine{k});\n"
@@ -137,24 +137,24 @@ impl Writer<'_> {
                 self.statements.push(Statement { names, text });
             }
         }
-        self.program.outputs.clone().into_iter().for_each(|o| self.read_input(o));
+        self.program.outputs.clone().into_iter().for_each(|o| self.add_input_read_statement(o));
     }
 
     /// Adds the statement that reads an argument or parameter, if the operand is one that has not been read
     /// yet.
-    fn read_input(&mut self, operand: Operand) {
+    fn add_input_read_statement(&mut self, operand: Operand) {
         if let Operand::Symbol(symbol) = operand
             && !self.read.contains(&symbol)
         {
             self.read.push(symbol);
-            let text = input_definition(symbol, self.scope);
-            self.statements.push(Statement { names: self.reading_statement(symbol), text });
+            let text = argument_constant_definition(symbol, self.scope);
+            self.statements.push(Statement { names: self.reading_statement_index(symbol), text });
         }
     }
 
     /// Returns the index of the statement that reads an argument or parameter, after those of the
     /// instructions.
-    fn reading_statement(&self, symbol: Symbol) -> Vec<usize> {
+    fn reading_statement_index(&self, symbol: Symbol) -> Vec<usize> {
         let at = self.read.iter().position(|known| *known == symbol);
         at.map(|at| self.program.instructions.len() + at).into_iter().collect()
     }
@@ -176,7 +176,7 @@ impl Writer<'_> {
         if count == 0 {
             return;
         }
-        let list = angles.widest_first(self.program, |_| 1);
+        let list = angles.angles_by_descending_width(self.program, |_| 1);
         let padded = if count > 2 { count.next_multiple_of(TOGETHER) } else { count };
         let mut texts: Vec<String> = list.iter().map(|angle| self.operand_text(angle.angle).text).collect();
         texts.resize(padded, "0.0".to_string());
@@ -206,15 +206,17 @@ impl Writer<'_> {
     fn operand_text(&mut self, o: Operand) -> Piece {
         match o {
             Operand::Const(c) if c.is_sign_negative() => {
-                Piece { level: 2, ..Piece::plain_expression(numeric_literal(c)) }
+                Piece { level: 2, ..Piece::atomic_expression(numeric_literal(c)) }
             }
-            Operand::Const(c) => Piece::plain_expression(numeric_literal(c)),
-            Operand::Symbol(s) => match local_name(Quantity::from_symbol(s), self.scope) {
-                Some(name) => Piece { needs: self.reading_statement(s), ..Piece::plain_expression(name) },
-                None => Piece::plain_expression(MISSING.to_string()),
+            Operand::Const(c) => Piece::atomic_expression(numeric_literal(c)),
+            Operand::Symbol(s) => match local_constant_name(Quantity::from_symbol(s), self.scope) {
+                Some(name) => {
+                    Piece { needs: self.reading_statement_index(s), ..Piece::atomic_expression(name) }
+                }
+                None => Piece::atomic_expression(MISSING.to_string()),
             },
             // Programs without lanes contain neither tuples nor gathers.
-            Operand::Tuple(_) | Operand::Gather(_) => Piece::plain_expression(MISSING.to_string()),
+            Operand::Tuple(_) | Operand::Gather(_) => Piece::atomic_expression(MISSING.to_string()),
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
@@ -243,7 +245,7 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Max, a, b) => self.call_text("fmax", &[a, b]),
             Op::Table(lookup, a, b, c) => self.table_lookup_text(lookup, [a, b, c]),
             // Rejected by `check`.
-            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::plain_expression(MISSING.to_string()),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::atomic_expression(MISSING.to_string()),
         }
     }
 
@@ -253,7 +255,7 @@ impl Writer<'_> {
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let orders: Vec<String> = lookup.derivative_orders().iter().map(ToString::to_string).collect();
         let Some(table) = self.scope.tables.get(lookup.table_index()) else {
-            return Piece::plain_expression(MISSING.to_string());
+            return Piece::atomic_expression(MISSING.to_string());
         };
         let text = format!("lw_tabulated_{count}(&self->{table}, {}, {})", x.join(", "), orders.join(", "));
         Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }

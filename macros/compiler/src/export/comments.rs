@@ -1,7 +1,7 @@
 //! Documentation comments of exported code, in the form of C.
 
 use crate::catalogue::Argument;
-use crate::mechanism::Supplied;
+use crate::mechanism::SuppliedQuantity;
 
 /// Maximum width of comment lines, in characters.
 const WIDTH: usize = 100;
@@ -13,7 +13,7 @@ pub fn comment_safe_text(text: &str) -> String {
 }
 
 /// Replaces rustdoc's links by their text. Brackets in code do not change.
-pub fn without_links(text: &str) -> String {
+pub fn without_doc_links(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
     while let Some(at) = rest.find(['`', '[']) {
@@ -75,18 +75,18 @@ pub fn argument_description(a: Argument) -> &'static str {
         Argument::Standard(_) => "mass properties",
         Argument::Factors(_) => "factors",
         Argument::Momenta(_) => "generalized momenta, kg m/s for translations, kg m^2/s for rotations",
-        Argument::Given(_, Supplied::Multiplier, _) => "multipliers of the constraints",
+        Argument::Given(_, SuppliedQuantity::Multiplier, _) => "multipliers of the constraints",
         Argument::Given(..) | Argument::Into(..) | Argument::Called(_) => "numbers",
     }
 }
 
 /// Returns a count of numbers in words, such as `3 numbers`.
-pub fn count_in_words(n: usize) -> String {
+pub fn format_number_count(n: usize) -> String {
     if n == 1 { "1 number".to_string() } else { format!("{n} numbers") }
 }
 
 /// Returns the comment of a function: its documentation, then the names of its arrays with their meaning.
-pub fn function_comment<'a>(docs: &[String], arrays: impl Iterator<Item = (&'a str, String)>) -> String {
+pub fn c_function_comment<'a>(docs: &[String], arrays: impl Iterator<Item = (&'a str, String)>) -> String {
     let mut text = String::new();
     for (k, paragraph) in docs.iter().enumerate() {
         text.push_str(&wrap_paragraph(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
@@ -105,14 +105,14 @@ mod tests {
     #[test]
     fn comment_terminators_are_escaped_in_c_comments() {
         assert_eq!(comment_safe_text("a */ b /* c ??/ d\n"), "a * / b / * c ? ?/ d ");
-        assert_eq!(without_links("of [`x`](Self::x) and [`y`](Self::y)."), "of `x` and `y`.");
+        assert_eq!(without_doc_links("of [`x`](Self::x) and [`y`](Self::y)."), "of `x` and `y`.");
         for (text, plain) in [
             ("[`a`](::linkwork::Error::A) where [this](crate) is", "`a` where this is"),
             ("See [`Mechanism`], `v[k]` and `[a, b](c)`.", "See `Mechanism`, `v[k]` and `[a, b](c)`."),
             ("[`v[k]`](Self::v), [1, 2], [x](y", "`v[k]`, [1, 2], [x](y"),
             ("[`", "[`"),
         ] {
-            assert_eq!(without_links(text), plain);
+            assert_eq!(without_doc_links(text), plain);
         }
     }
 }

@@ -176,14 +176,14 @@ impl Handwritten {
         ExportedSignature {
             name: self.name.to_string(),
             arguments: arguments.map(|name| argument_array(name, i)).collect(),
-            results: self.results.split_whitespace().map(|name| self.result_array(name, i)).collect(),
+            results: self.results.split_whitespace().map(|name| self.c_array_of_result(name, i)).collect(),
             returns: false,
             of_frame: false,
             docs: vec![self.docs.to_string()],
         }
     }
 
-    fn result_array(&self, name: &str, i: &ExportedMechanism<'_>) -> Array {
+    fn c_array_of_result(&self, name: &str, i: &ExportedMechanism<'_>) -> Array {
         let (n, m) = (i.nv(), i.nu());
         match (self.name, name) {
             ("integrate", _) | (_, "next_q") => Array::vector(name, i.nq()),

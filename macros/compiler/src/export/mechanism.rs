@@ -6,7 +6,7 @@ use super::signatures::{ExportedSignature, reaction_name};
 use crate::catalogue::{Argument, Called, Id, REACTION, Shape, TOUCHED};
 use crate::derive::{Function, Output};
 use crate::lower::{Op, Operand, Program};
-use crate::mechanism::{Chart, Model, Supplied};
+use crate::mechanism::{Chart, Model, SuppliedQuantity};
 
 /// Options of an export.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +25,7 @@ pub struct Options {
 
 /// Reason why a mechanism cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unfit {
+pub enum CExportObstacle {
     /// The results of this element or option differ from those in Rust by rounding.
     Irreproducible(&'static str),
     /// The mechanism declares generalized speeds, but CasADi's functions take joint velocities.
@@ -80,11 +80,11 @@ impl<'a> ExportedMechanism<'a> {
         output: &'a Output,
         tables: &[String],
         options: &Options,
-    ) -> Result<ExportedMechanism<'a>, Unfit> {
+    ) -> Result<ExportedMechanism<'a>, CExportObstacle> {
         reject_vector_lanes(output)?;
         let prefix = match options.prefix.as_str() {
-            "" => names::prefix_identifier(&names::snake_case_prefix(&model.name)),
-            given => names::prefix_identifier(given),
+            "" => names::c_name_prefix(&names::snake_case_prefix(&model.name)),
+            given => names::c_name_prefix(given),
         };
         let shared: Vec<&String> = model.parameters.iter().chain(tables).collect();
         let mut parameters = names::unique_identifiers(&shared);
@@ -119,7 +119,8 @@ impl<'a> ExportedMechanism<'a> {
     /// Adds a function to the group in which it is exported, or to those that exist in Rust only.
     fn sort_function(&mut self, f: &'a Function) {
         let name = |prefix: &str| f.name.strip_prefix(prefix).unwrap_or_default();
-        let is_contact_force = |a: &Argument| matches!(a, Argument::Given(_, Supplied::ContactForces, _));
+        let is_contact_force =
+            |a: &Argument| matches!(a, Argument::Given(_, SuppliedQuantity::ContactForces, _));
         let (has_frames, has_derivatives) = (!self.output.frames.is_empty(), self.has_derivatives());
         match f.id {
             _ if f.reads_results_of(Called::ContactFeatures) => {
@@ -202,7 +203,7 @@ impl<'a> ExportedMechanism<'a> {
     }
 
     /// Returns true if functions take the parameter struct as their first argument.
-    pub fn has_own(&self) -> bool {
+    pub fn takes_parameter_struct(&self) -> bool {
         !(self.parameters.is_empty() && self.tables.is_empty())
     }
 
@@ -242,7 +243,7 @@ impl<'a> ExportedMechanism<'a> {
 
     /// Returns the call of a function. Parameters and time are added to the arguments.
     pub fn call(&self, name: &str, arguments: &[&str]) -> String {
-        let own = self.has_own().then_some("self");
+        let own = self.takes_parameter_struct().then_some("self");
         let time = self.model.time.then_some("t");
         let list: Vec<&str> = own.into_iter().chain(time).chain(arguments.iter().copied()).collect();
         format!("{}_{name}({})", self.prefix, list.join(", "))
@@ -255,16 +256,19 @@ pub fn is_zero(f: &Function, k: usize) -> bool {
 }
 
 /// Returns an error if a program contains vector lanes, which exported code cannot have.
-fn reject_vector_lanes(output: &Output) -> Result<(), Unfit> {
+fn reject_vector_lanes(output: &Output) -> Result<(), CExportObstacle> {
     let is_lane = |op: &Op| matches!(op, Op::Sum(..) | Op::Lane(..) | Op::Join(..));
-    let has_lanes = |program: &Program| {
+    let is_batched_over_states = |program: &Program| {
         program.instructions.iter().any(is_lane) || !program.gathers.is_empty() || !program.tuples.is_empty()
     };
     let steps = output.links.iter().flat_map(|l| [&l.placement, &l.twist, &l.acceleration, &l.columns]);
     let steps = steps.chain(output.frames.iter().flat_map(|f| [&f.placement, &f.twist, &f.acceleration]));
     let all = output.functions.iter().map(|f| (f.name.as_str(), &f.program));
-    match all.chain(steps.map(|program| ("frames", program))).find(|(_, program)| has_lanes(program)) {
-        Some((name, _)) => Err(Unfit::Lanes(name.to_string())),
+    match all
+        .chain(steps.map(|program| ("frames", program)))
+        .find(|(_, program)| is_batched_over_states(program))
+    {
+        Some((name, _)) => Err(CExportObstacle::Lanes(name.to_string())),
         None => Ok(()),
     }
 }

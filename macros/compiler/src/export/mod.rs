@@ -15,6 +15,6 @@ mod template;
 mod tokens;
 pub mod wgsl;
 
-pub use comments::{comment_safe_text, without_links, wrap_paragraph};
-pub use mechanism::{Options, Unfit};
-pub use names::{identifier_from_name, prefix_identifier, preprocessor_names, snake_case_prefix};
+pub use comments::{comment_safe_text, without_doc_links, wrap_paragraph};
+pub use mechanism::{CExportObstacle, Options};
+pub use names::{c_name_prefix, identifier_from_name, preprocessor_names, snake_case_prefix};

@@ -26,7 +26,7 @@ const OF_HEADERS: &str = "\
     strsignal strspn strstr strtok strtok_r strxfrm tgamma time totalorder trunc ufromfp y0 y1 yn";
 
 /// Returns true if a list of names, separated by spaces, contains a name.
-fn contains_name(list: &str, name: &str) -> bool {
+fn contains_bytes(list: &str, name: &str) -> bool {
     list.split_whitespace().any(|known| known == name)
 }
 
@@ -52,7 +52,7 @@ pub fn identifier_from_name(name: &str) -> String {
         text.insert(0, 'x');
     }
     let shouts = text.len() > 2 && text.chars().all(|c| !c.is_ascii_lowercase());
-    if shouts || contains_name(RESERVED, &text) {
+    if shouts || contains_bytes(RESERVED, &text) {
         text.push('_');
     }
     text
@@ -60,13 +60,13 @@ pub fn identifier_from_name(name: &str) -> String {
 
 /// Returns the prefix of all names of a mechanism, which is also the name of a type. The prefix differs from
 /// all names in headers, and no name of the mechanism begins with `lw_`, the prefix of helpers.
-pub fn prefix_identifier(name: &str) -> String {
+pub fn c_name_prefix(name: &str) -> String {
     let mut text = identifier_from_name(name);
     if text == "lw" || text.starts_with("lw_") {
         text.insert(0, 'x');
     }
     let is_of_header =
-        |name: &str| contains_name(OF_HEADERS, name) || super::tokens::FUNCTIONS.contains(&name);
+        |name: &str| contains_bytes(OF_HEADERS, name) || super::tokens::FUNCTIONS.contains(&name);
     // The mathematical library has each function in three precisions, and type names have these endings.
     let plain = text.strip_suffix(['f', 'l']).unwrap_or(&text);
     if is_of_header(&text) || is_of_header(plain) || text.ends_with("_t") || text.ends_with("_l") {
@@ -77,15 +77,15 @@ pub fn prefix_identifier(name: &str) -> String {
 
 /// Returns C identifiers for several names that are unique in one scope.
 pub fn unique_identifiers<S: AsRef<str>>(names: &[S]) -> Vec<String> {
-    make_unique(names.iter().map(|name| identifier_from_name(name.as_ref())))
+    make_names_unique(names.iter().map(|name| identifier_from_name(name.as_ref())))
 }
 
 /// Returns unique preprocessor names for several names with a common prefix.
 pub fn preprocessor_names<S: AsRef<str>>(names: &[S]) -> Vec<String> {
-    make_unique(names.iter().map(|name| replace_invalid_characters(name.as_ref()).to_ascii_uppercase()))
+    make_names_unique(names.iter().map(|name| replace_invalid_characters(name.as_ref()).to_ascii_uppercase()))
 }
 
-fn make_unique(all: impl Iterator<Item = String>) -> Vec<String> {
+fn make_names_unique(all: impl Iterator<Item = String>) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for name in all {
         let mut text = name.clone();

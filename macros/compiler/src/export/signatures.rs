@@ -1,6 +1,6 @@
 //! Signatures of the functions outside Rust: names, arguments, results and documentation.
 
-use super::comments::{argument_description, count_in_words, function_comment, without_links};
+use super::comments::{argument_description, c_function_comment, format_number_count, without_doc_links};
 use super::mechanism::ExportedMechanism;
 use super::names::replace_invalid_characters;
 use crate::catalogue::{Argument, Id, REACTION, Shape};
@@ -30,7 +30,7 @@ impl Array {
     /// Returns the description of an array argument for a matrix stored by columns.
     pub fn matrix(name: &str, rows: usize, columns: usize) -> Array {
         let about = match columns {
-            1 => count_in_words(rows),
+            1 => format_number_count(rows),
             _ => format!("{rows} by {columns}, column by column"),
         };
         Array { name: name.to_string(), rows, columns, about, is_value: false }
@@ -53,7 +53,7 @@ impl Array {
             Argument::T => Array::value("t", about),
             a => {
                 let length = a.length([i.nq(), i.nv(), i.nu()]);
-                let about = format!("{about}, {}", count_in_words(length));
+                let about = format!("{about}, {}", format_number_count(length));
                 Array { about, ..Array::vector(a.argument_name(), length) }
             }
         }
@@ -115,7 +115,7 @@ impl ExportedSignature {
     pub fn comment(&self, results: &[Array]) -> String {
         let arguments = self.arguments.iter().map(|a| (a.name.as_str(), a.about.clone()));
         let results = results.iter().map(|a| (a.name.as_str(), format!("out: {}", a.about)));
-        function_comment(&self.docs, arguments.chain(results))
+        c_function_comment(&self.docs, arguments.chain(results))
     }
 
     /// Returns the array element to which output `k` is written: the result arrays follow one another.
@@ -191,7 +191,7 @@ fn function_documentation(f: &Function) -> Vec<String> {
             "The derivatives `dv̇` and `dλ` of a motion solve `M dv̇ − Jᵀ dλ = dτ − forces_by_x`, \
              `J dv̇ = −bias_by_x`.",
         ],
-        _ => return f.docs.iter().map(|text| without_links(text)).collect(),
+        _ => return f.docs.iter().map(|text| without_doc_links(text)).collect(),
     };
     docs.iter().map(ToString::to_string).collect()
 }

@@ -22,7 +22,7 @@ pub fn numeric_literal(c: f64) -> String {
 
 /// Converts C code with `double` to C code with `float`.
 pub fn in_single_precision(code: &str) -> String {
-    replaced(code, &single_precision_literal, &word_in_single_precision)
+    replaced(code, &single_precision_literal, &single_precision_c_word)
 }
 
 /// Replaces the numbers of code, and its words, which are given together with the code after them. Comments
@@ -38,7 +38,7 @@ pub fn replaced(
         let length = match first {
             '/' if rest.starts_with("/*") => rest.find("*/").map_or(rest.len(), |end| end + 2),
             '"' => rest.get(1..).and_then(|r| r.find('"')).map_or(rest.len(), |end| end + 2),
-            c if c.is_ascii_digit() => number_length(rest),
+            c if c.is_ascii_digit() => leading_number_length(rest),
             c if c.is_ascii_alphabetic() || c == '_' => {
                 rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len())
             }
@@ -54,7 +54,7 @@ pub fn replaced(
     out
 }
 
-fn word_in_single_precision(word: &str, after: &str) -> String {
+fn single_precision_c_word(word: &str, after: &str) -> String {
     if let Some((_, single)) = WORDS.iter().find(|(double, _)| *double == word) {
         return (*single).to_string();
     }
@@ -74,7 +74,7 @@ pub fn contains_word(text: &str, word: &str) -> bool {
 }
 
 /// Returns the length of the number that a text begins with.
-pub fn number_length(text: &str) -> usize {
+pub fn leading_number_length(text: &str) -> usize {
     let mut exponent = false;
     text.find(|c: char| {
         let goes_on = c.is_ascii_alphanumeric() || c == '.' || (exponent && matches!(c, '+' | '-'));

@@ -32,7 +32,7 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
         });
         for a in operands {
             // Partial derivative of the node by this operand, all other operands constant.
-            let by_operand = Derivative::with_respect_to_operand(a, g);
+            let by_operand = DirectionalDerivative::with_respect_to_operand(a, g);
             let step = by_operand.differentiate_node(id);
             if !step.is_zero() {
                 let sum = open.entry(a).or_insert(g.zero());
@@ -44,7 +44,7 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
 }
 
 /// Directional derivatives of the expressions of one graph, with a cache of computed results.
-pub struct Derivative<'g> {
+pub struct DirectionalDerivative<'g> {
     graph: &'g Graph,
     /// Rates of change of symbols along the direction. All other symbols are constant.
     rates: Vec<(Symbol, Expr<'g>)>,
@@ -52,16 +52,19 @@ pub struct Derivative<'g> {
     known: Memo<'g>,
 }
 
-impl<'g> Derivative<'g> {
+impl<'g> DirectionalDerivative<'g> {
     /// Creates the differentiation of expressions with respect to `symbol`.
-    pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
-        Derivative::with_rates(vec![(symbol, graph.one())], graph)
+    pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> DirectionalDerivative<'g> {
+        DirectionalDerivative::differentiation_with_rates(vec![(symbol, graph.one())], graph)
     }
 
     /// Creates the differentiation along a direction in which the symbols change at the given rates and all
     /// others are constant.
-    pub fn with_rates(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
-        Derivative { graph, rates, known: Memo::new(graph) }
+    pub fn differentiation_with_rates(
+        rates: Vec<(Symbol, Expr<'g>)>,
+        graph: &'g Graph,
+    ) -> DirectionalDerivative<'g> {
+        DirectionalDerivative { graph, rates, known: Memo::new(graph) }
     }
 
     /// Presets the derivatives of some expressions, instead of differentiating their operands. If a preset
@@ -70,7 +73,7 @@ impl<'g> Derivative<'g> {
     pub fn with_preset_derivatives(
         mut self,
         derivatives: impl IntoIterator<Item = (Expr<'g>, Expr<'g>)>,
-    ) -> Derivative<'g> {
+    ) -> DirectionalDerivative<'g> {
         for (e, derivative) in derivatives {
             let (mut e, mut derivative) = (e, derivative);
             loop {
@@ -101,8 +104,8 @@ impl<'g> Derivative<'g> {
 
     /// Creates the partial differentiation of an operation with respect to its operand `id`. Its other
     /// operands are constant.
-    fn with_respect_to_operand(id: Id, graph: &'g Graph) -> Derivative<'g> {
-        let mut derivative = Derivative::with_rates(Vec::new(), graph);
+    fn with_respect_to_operand(id: Id, graph: &'g Graph) -> DirectionalDerivative<'g> {
+        let mut derivative = DirectionalDerivative::differentiation_with_rates(Vec::new(), graph);
         derivative.known.assign_number(id, graph.one().id());
         derivative
     }
@@ -143,7 +146,7 @@ impl<'g> Derivative<'g> {
             Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => self.graph.zero(),
             Node::Sum(n, a) => derivative_of_id(a).lane_sum(n.into()),
             Node::Lane(k, a) => derivative_of_id(a).lane(k.into()),
-            Node::Join(n, a, b) => derivative_of_id(a).join_with(n.into(), derivative_of_id(b)),
+            Node::Join(n, a, b) => derivative_of_id(a).append_lanes(n.into(), derivative_of_id(b)),
             Node::Symbol(s) => self
                 .rates
                 .iter()
@@ -187,11 +190,12 @@ impl<'g> Derivative<'g> {
             }
             Node::Pow(a, b) => {
                 // This form is finite at a base of zero, where the power laws of force elements begin.
-                let derivative_of_power = |b: Expr<'g>| b * expression_of_id(a).pow(b - self.graph.one());
+                let base_derivative_of_power =
+                    |b: Expr<'g>| b * expression_of_id(a).pow(b - self.graph.one());
                 let base = if derivative_of_id(a).is_zero() {
                     self.graph.zero()
                 } else {
-                    derivative_of_power(expression_of_id(b)) * derivative_of_id(a)
+                    base_derivative_of_power(expression_of_id(b)) * derivative_of_id(a)
                 };
                 match derivative_of_id(b).is_zero() {
                     true => base,
@@ -248,7 +252,8 @@ mod tests {
         let found = gradient(e, &symbols);
         let value_at_sample_point = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);
         for (symbol, found) in symbols.into_iter().zip(found) {
-            let expected = value_at_sample_point(Derivative::with_respect_to(symbol, &g).differentiate(e));
+            let expected =
+                value_at_sample_point(DirectionalDerivative::with_respect_to(symbol, &g).differentiate(e));
             assert!(
                 (value_at_sample_point(found) - expected).abs() < 1e-13 * (1.0 + expected.abs()),
                 "{symbol:?}"

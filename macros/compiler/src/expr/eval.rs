@@ -39,7 +39,7 @@ impl<'g> Tape<'g> {
                 count += 1;
             });
             places.assign_number(id, tape.steps.len() as u32);
-            tape.in_lanes |= is_of_lanes(node);
+            tape.in_lanes |= is_lane_node(node);
             tape.steps.push((node, operands));
         }
         tape.roots = roots.iter().map(|r| places.get(r.id()).unwrap_or(0)).collect();
@@ -54,46 +54,47 @@ impl<'g> Tape<'g> {
 
     /// Evaluates the expressions of the tape at these values of the symbols.
     pub fn evaluate_at(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-        self.run_with(symbol)
+        self.evaluate_tape(symbol)
     }
 
     /// Evaluates the expressions of the tape with estimates of their rounding errors.
-    pub fn evaluate_with_rounding(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<Rounded> {
-        self.run_with(&|s| Rounded::from_number(symbol(s)))
+    pub fn evaluate_with_rounding(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<ValueWithRoundingError> {
+        self.evaluate_tape(&|s| ValueWithRoundingError::from_number(symbol(s)))
     }
 
-    fn run_with<V: TapeNumber>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
+    fn evaluate_tape<V: TapeNumber>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
         match self.graph {
             None => Vec::new(),
-            Some(graph) if self.in_lanes => self.evaluate_in_lanes::<V, MAX_LANES>(graph, symbol),
-            Some(graph) => self.evaluate_in_lanes::<V, 1>(graph, symbol),
+            Some(graph) if self.in_lanes => self.evaluate_and_take_first_lane::<V, MAX_LANES>(graph, symbol),
+            Some(graph) => self.evaluate_and_take_first_lane::<V, 1>(graph, symbol),
         }
     }
 
     /// Evaluates all nodes in `N` lanes and returns the first lane of each expression.
-    fn evaluate_in_lanes<V: TapeNumber, const N: usize>(
+    fn evaluate_and_take_first_lane<V: TapeNumber, const N: usize>(
         &self,
         graph: &Graph,
         symbol: &dyn Fn(Symbol) -> V,
     ) -> Vec<V> {
         let none = V::from_number(f64::NAN);
-        let pad_with_none = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
+        let pad_to_lane_count = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
         let mut values: Vec<[V; N]> = Vec::with_capacity(self.steps.len());
         for (node, [a, b, c]) in &self.steps {
-            let value_at_place = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
+            let lanes_at_tape_index = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
             let value = match *node {
                 Node::Tuple(k) => {
-                    pad_with_none(graph.lanes_of_tuple(k).into_iter().map(V::from_number).collect())
+                    pad_to_lane_count(graph.lanes_of_tuple(k).into_iter().map(V::from_number).collect())
                 }
                 Node::Gather(k) => {
-                    pad_with_none(graph.symbols_of_gather(k).into_iter().map(symbol).collect())
+                    pad_to_lane_count(graph.symbols_of_gather(k).into_iter().map(symbol).collect())
                 }
-                Node::Sum(n, _) => [V::sum(&value_at_place(*a)[..usize::from(n)]); N],
-                Node::Lane(k, _) => [value_at_place(*a)[usize::from(k)]; N],
-                Node::Join(n, _, _) => join_lanes(n.into(), value_at_place(*a), value_at_place(*b)),
+                Node::Sum(n, _) => [V::sum(&lanes_at_tape_index(*a)[..usize::from(n)]); N],
+                Node::Lane(k, _) => [lanes_at_tape_index(*a)[usize::from(k)]; N],
+                Node::Join(n, _, _) => join_lanes(n.into(), lanes_at_tape_index(*a), lanes_at_tape_index(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
-                    let (a, b, c) = (value_at_place(*a), value_at_place(*b), value_at_place(*c));
+                    let (a, b, c) =
+                        (lanes_at_tape_index(*a), lanes_at_tape_index(*b), lanes_at_tape_index(*c));
                     std::array::from_fn(|lane| V::step(node, [a[lane], b[lane], c[lane]]))
                 }
             };
@@ -131,14 +132,14 @@ impl TapeNumber for f64 {
 /// error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, § 3.3); with sums of
 /// squares, errors do not grow in rotations.
 #[derive(Clone, Copy, Debug)]
-pub struct Rounded {
+pub struct ValueWithRoundingError {
     /// Computed value of a node of the tape.
     pub value: f64,
     /// Standard deviation of the rounding error, in the unit of the value.
     pub error: f64,
 }
 
-impl Rounded {
+impl ValueWithRoundingError {
     /// Maximum ratio of a value to its error for which the value may be rounding error alone. For random
     /// mechanisms, the ratio of pivots of the mass matrix that are exactly zero is at most 0.4. That of other
     /// pivots is at least `1e9`, or `1e6` if masses differ by twelve orders of magnitude.
@@ -150,20 +151,23 @@ impl Rounded {
     }
 }
 
-impl TapeNumber for Rounded {
-    fn from_number(number: f64) -> Rounded {
-        Rounded { value: number, error: f64::EPSILON * number.abs() }
+impl TapeNumber for ValueWithRoundingError {
+    fn from_number(number: f64) -> ValueWithRoundingError {
+        ValueWithRoundingError { value: number, error: f64::EPSILON * number.abs() }
     }
 
-    fn sum(lanes: &[Rounded]) -> Rounded {
-        let mut sum = Rounded { value: 0.0, error: 0.0 };
+    fn sum(lanes: &[ValueWithRoundingError]) -> ValueWithRoundingError {
+        let mut sum = ValueWithRoundingError { value: 0.0, error: 0.0 };
         for lane in lanes {
-            sum = Rounded { value: sum.value + lane.value, error: libm::hypot(sum.error, lane.error) };
+            sum = ValueWithRoundingError {
+                value: sum.value + lane.value,
+                error: libm::hypot(sum.error, lane.error),
+            };
         }
         sum
     }
 
-    fn step(node: Node, operands: [Rounded; 3]) -> Rounded {
+    fn step(node: Node, operands: [ValueWithRoundingError; 3]) -> ValueWithRoundingError {
         let at = operands.map(|operand| operand.value);
         let value = apply_operation(node, at);
         let mut error = f64::EPSILON * value.abs();
@@ -179,7 +183,7 @@ impl TapeNumber for Rounded {
         if let (Node::Mul(..), [a, b, _]) = (node, operands) {
             error = libm::hypot(error, a.error * b.error);
         }
-        Rounded { value, error }
+        ValueWithRoundingError { value, error }
     }
 }
 
@@ -200,7 +204,7 @@ pub fn nodes_in_order(graph: &Graph, roots: &[Expr<'_>]) -> Vec<Id> {
     needed
 }
 
-fn is_of_lanes(node: Node) -> bool {
+fn is_lane_node(node: Node) -> bool {
     matches!(node, Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..))
 }
 

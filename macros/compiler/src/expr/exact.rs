@@ -3,7 +3,7 @@
 //! original expressions.
 
 use super::node::Function;
-use super::replace::replace_calls;
+use super::replace::replace_symbols_and_calls;
 use super::{Expr, Node, Symbol};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-14;
 /// Substitutes `by(s)` for symbols `s` of expressions, and replaces sines, cosines and tangents of known
 /// angles by exact values.
 pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
-    replace_calls(e, by, &|f, x| match f {
+    replace_symbols_and_calls(e, by, &|f, x| match f {
         Function::Sin => sine_and_cosine(x)[0],
         Function::Cos => sine_and_cosine(x)[1],
         Function::Tan => {

@@ -13,7 +13,7 @@
 //! since `2 x` may be used elsewhere. A constant for each lane counts as a constant.
 
 use super::handle::Expr;
-use super::lanes::Tables;
+use super::lanes::InternedLaneData;
 use super::node::{Function, Id, Lookup, Node, Symbol};
 use std::cell::{Ref, RefCell, RefMut};
 use std::fmt;
@@ -44,7 +44,7 @@ impl NodeStore {
             if id == EMPTY {
                 break;
             }
-            if self.nodes[id as usize].is_same_node(node) {
+            if self.nodes[id as usize].is_bitwise_equal_node(node) {
                 return id;
             }
             slot = (slot + 1) & mask;
@@ -84,7 +84,7 @@ pub struct Graph {
     /// Unused lookup tables that contain only zeros, see [`Memo`](super::Memo).
     tables: RefCell<Vec<Vec<u32>>>,
     /// Constants and symbols of expressions with SIMD lanes.
-    pub(super) lanes: RefCell<Tables>,
+    pub(super) lanes: RefCell<InternedLaneData>,
     /// Names of the functions that are defined by tables.
     functions: RefCell<Vec<String>>,
 }
@@ -107,11 +107,11 @@ const ONE: Id = 1;
 impl Graph {
     /// Creates a graph that contains only the constants zero and one.
     pub fn new() -> Graph {
-        Graph::with_room_for(MOST_NODES)
+        Graph::graph_with_node_limit(MOST_NODES)
     }
 
     /// Creates an expression graph with a maximum number of nodes.
-    pub fn with_room_for(most: usize) -> Graph {
+    pub fn graph_with_node_limit(most: usize) -> Graph {
         let mut store =
             NodeStore { nodes: Vec::new(), table: vec![EMPTY; 1024], most: most.max(2), is_full: false };
         store.intern_node(Node::Const(0.0));
@@ -152,19 +152,19 @@ impl Graph {
     }
 
     /// Borrows a table with a zero for every node. The borrower resets every entry that it writes to zero.
-    pub fn borrow_table(&self) -> RefMut<'_, Vec<u32>> {
+    pub fn borrow_zeroed_node_table(&self) -> RefMut<'_, Vec<u32>> {
         let mut table = self.table.borrow_mut();
         table.resize(self.len(), 0);
         table
     }
 
     /// Returns a lookup table of zeros, of any length.
-    pub(super) fn take_table(&self) -> Vec<u32> {
+    pub(super) fn take_recycled_table(&self) -> Vec<u32> {
         self.tables.borrow_mut().pop().unwrap_or_default()
     }
 
     /// Returns a lookup table of zeros to the graph, so that it is reused without an allocation.
-    pub(super) fn return_table(&self, table: Vec<u32>) {
+    pub(super) fn recycle_lookup_table(&self, table: Vec<u32>) {
         self.tables.borrow_mut().push(table);
     }
 
@@ -194,7 +194,7 @@ impl Graph {
     }
 
     /// Sets the names of the functions that are defined by tables, by table index.
-    pub fn name_tables(&self, names: Vec<String>) {
+    pub fn set_table_names(&self, names: Vec<String>) {
         *self.functions.borrow_mut() = names;
     }
 
@@ -236,10 +236,12 @@ impl Graph {
     }
 
     /// Applies `f` to two constants. `None` if an operand is not constant.
-    fn fold_constants(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
+    fn fold_two_constants(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
         match (self.node(a), self.node(b)) {
             (Node::Const(x), Node::Const(y)) => Some(self.intern_constant(f(x, y))),
-            (Node::Const(_) | Node::Tuple(_), Node::Const(_) | Node::Tuple(_)) => self.fold_lanes(a, b, f),
+            (Node::Const(_) | Node::Tuple(_), Node::Const(_) | Node::Tuple(_)) => {
+                self.combine_constant_lanes(a, b, f)
+            }
             _ => None,
         }
     }
@@ -250,7 +252,7 @@ impl Graph {
         match self.node(id) {
             Node::Neg(a) => (true, a),
             Node::Const(c) if c < 0.0 => (true, self.intern_constant(-c)),
-            Node::Tuple(k) if self.starts_negative(k) => (true, self.neg(id)),
+            Node::Tuple(k) if self.is_first_nonzero_negative(k) => (true, self.neg(id)),
             _ => (false, id),
         }
     }
@@ -275,23 +277,23 @@ impl Graph {
         if b == ZERO {
             return a;
         }
-        if let Some(sum) = self.fold_constants(a, b, |x, y| x + y) {
+        if let Some(sum) = self.fold_two_constants(a, b, |x, y| x + y) {
             return sum;
         }
-        if let Some(sum) = self.constant_sum(a, b).or_else(|| self.constant_sum(b, a)) {
+        if let Some(sum) = self.fold_constant_into_sum(a, b).or_else(|| self.fold_constant_into_sum(b, a)) {
             return sum;
         }
         let ((na, a), (nb, b)) = (self.split_sign(a), self.split_sign(b));
         match (na, nb) {
-            (false, false) => self.plain_sum(a, b),
-            (true, true) => self.neg(self.plain_sum(a, b)),
+            (false, false) => self.sum_of_unsigned_terms(a, b),
+            (true, true) => self.neg(self.sum_of_unsigned_terms(a, b)),
             (false, true) => self.subtract_nodes(a, b),
             (true, false) => self.subtract_nodes(b, a),
         }
     }
 
     /// Adds a constant to a sum or difference that has a constant summand. `None` for other operands.
-    fn constant_sum(&self, c: Id, b: Id) -> Option<Id> {
+    fn fold_constant_into_sum(&self, c: Id, b: Id) -> Option<Id> {
         if !self.is_constant(c) {
             return None;
         }
@@ -307,7 +309,7 @@ impl Graph {
         Some(self.add(sum, self.apply_sign(negative != rest_negative, rest)))
     }
 
-    fn plain_sum(&self, a: Id, b: Id) -> Id {
+    fn sum_of_unsigned_terms(&self, a: Id, b: Id) -> Id {
         if a == b {
             return self.mul(self.intern_constant(2.0), a);
         }
@@ -361,18 +363,18 @@ impl Graph {
             return a;
         }
         let ((na, a), (nb, b)) = (self.split_sign(a), self.split_sign(b));
-        self.apply_sign(na != nb, self.plain_product(a, b))
+        self.apply_sign(na != nb, self.product_without_negations(a, b))
     }
 
     /// Multiplies two nodes whose negations the caller has removed.
-    fn plain_product(&self, a: Id, b: Id) -> Id {
-        if let Some(product) = self.fold_constants(a, b, |x, y| x * y) {
+    fn product_without_negations(&self, a: Id, b: Id) -> Id {
+        if let Some(product) = self.fold_two_constants(a, b, |x, y| x * y) {
             return product;
         }
         match (self.is_constant(a), self.is_constant(b)) {
             (true, _) => self.multiply_by_constant(a, b),
             (_, true) => self.multiply_by_constant(b, a),
-            _ => self.variable_product(a, b),
+            _ => self.product_of_nonconstants(a, b),
         }
     }
 
@@ -383,18 +385,18 @@ impl Graph {
         }
         match self.node(b) {
             Node::Mul(x, y) => {
-                if let Some(product) = self.fold_constants(c, x, |c, d| c * d) {
+                if let Some(product) = self.fold_two_constants(c, x, |c, d| c * d) {
                     return self.mul(product, y);
                 }
             }
             Node::Div(x, y) => {
                 // Another division would cost more than a product with a shared inverse.
                 if x != ONE
-                    && let Some(product) = self.fold_constants(c, x, |c, d| c * d)
+                    && let Some(product) = self.fold_two_constants(c, x, |c, d| c * d)
                 {
                     return self.intern_node(Node::Div(product, y));
                 }
-                if let Some(quotient) = self.fold_constants(c, y, |c, d| c / d) {
+                if let Some(quotient) = self.fold_two_constants(c, y, |c, d| c / d) {
                     return self.mul(quotient, x);
                 }
             }
@@ -403,7 +405,7 @@ impl Graph {
         self.intern_node(Node::Mul(c, b))
     }
 
-    fn variable_product(&self, a: Id, b: Id) -> Id {
+    fn product_of_nonconstants(&self, a: Id, b: Id) -> Id {
         self.intern_node(Node::Mul(a.min(b), a.max(b)))
     }
 
@@ -417,7 +419,7 @@ impl Graph {
         if a == b && b != ZERO {
             return ONE;
         }
-        if let Some(quotient) = self.fold_constants(a, b, |x, y| x / y) {
+        if let Some(quotient) = self.fold_two_constants(a, b, |x, y| x / y) {
             return quotient;
         }
         let ((na, a), (nb, b)) = (self.split_sign(a), self.split_sign(b));

@@ -13,7 +13,7 @@ pub const MAX_LANES: usize = 8;
 
 /// Interned constants and inputs of expressions with SIMD lanes.
 #[derive(Default)]
-pub struct Tables {
+pub struct InternedLaneData {
     tuples: Vec<Vec<f64>>,
     /// Index of each tuple of constants, keyed by the bits of its numbers.
     known: BTreeMap<Vec<u64>, u32>,
@@ -29,7 +29,7 @@ impl Graph {
     }
 
     /// Returns an input for each lane, or an ordinary input if all are equal.
-    pub fn lane_symbols(&self, symbols: &[Symbol]) -> Expr<'_> {
+    pub fn lane_input_of_symbols(&self, symbols: &[Symbol]) -> Expr<'_> {
         if let Some(first) = symbols.first().filter(|first| symbols.iter().all(|s| s == *first)) {
             return self.symbol(*first);
         }
@@ -120,7 +120,7 @@ impl Graph {
     }
 
     /// Applies `f` to two constants, at least one of which is a tuple. `None` for other operands.
-    pub(super) fn fold_lanes(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
+    pub(super) fn combine_constant_lanes(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
         let values: Vec<f64> = match (self.node(a), self.node(b)) {
             (Node::Tuple(x), Node::Tuple(y)) => {
                 self.lanes_of_tuple(x).into_iter().zip(self.lanes_of_tuple(y)).map(|(x, y)| f(x, y)).collect()
@@ -134,7 +134,7 @@ impl Graph {
 
     /// Returns whether the first nonzero constant of a tuple is negative. This holds for exactly one of a
     /// tuple and its negative.
-    pub(super) fn starts_negative(&self, k: u32) -> bool {
+    pub(super) fn is_first_nonzero_negative(&self, k: u32) -> bool {
         let tables = self.lanes.borrow();
         tables.tuples[k as usize].iter().find(|x| **x != 0.0).is_some_and(|x| *x < 0.0)
     }
@@ -177,7 +177,7 @@ impl<'g> Expr<'g> {
 
     /// Returns the `n` lanes of this expression, followed by the `n` lanes of another one. An expression
     /// without lanes has the same value in each lane.
-    pub fn join_with(self, n: usize, other: Expr<'g>) -> Expr<'g> {
+    pub fn append_lanes(self, n: usize, other: Expr<'g>) -> Expr<'g> {
         let g = self.graph();
         g.expr(g.join_lanes(n, self.id(), other.id()))
     }
@@ -209,7 +209,7 @@ mod tests {
     fn constant_lanes_fold() {
         let g = Graph::new();
         let constant_lanes = |values: [f64; 3]| g.lane_constants(&values);
-        let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
+        let x = g.lane_input_of_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
         assert_eq!(constant_lanes([2.0; 3]), g.num(2.0));
         assert_eq!(constant_lanes([1.0, 2.0, 3.0]) - constant_lanes([1.0, 2.0, 3.0]), g.zero());
         assert_eq!(constant_lanes([1.0, 2.0, 4.0]) * constant_lanes([4.0, 2.0, 1.0]), g.num(4.0));
@@ -226,16 +226,16 @@ mod tests {
     #[test]
     fn pairs_of_lanes_are_concatenated() {
         let g = Graph::new();
-        let [x, y] = [[0, 1], [2, 3]].map(|s| g.lane_symbols(&s.map(Symbol)));
+        let [x, y] = [[0, 1], [2, 3]].map(|s| g.lane_input_of_symbols(&s.map(Symbol)));
         let s = g.symbol(Symbol(0));
-        assert_eq!(s.join_with(1, s), s, "what has no lanes is the same in all");
+        assert_eq!(s.append_lanes(1, s), s, "what has no lanes is the same in all");
         assert_eq!(
-            g.lane_constants(&[1.0, 2.0]).join_with(2, g.num(3.0)),
+            g.lane_constants(&[1.0, 2.0]).append_lanes(2, g.num(3.0)),
             g.lane_constants(&[1.0, 2.0, 3.0, 3.0])
         );
-        let both = x.square().join_with(2, y.square());
-        assert_eq!((-x.square()).join_with(2, -y.square()), -both);
-        assert_eq!(x.join_with(2, y).lane(2), g.symbol(Symbol(2)));
+        let both = x.square().append_lanes(2, y.square());
+        assert_eq!((-x.square()).append_lanes(2, -y.square()), -both);
+        assert_eq!(x.append_lanes(2, y).lane(2), g.symbol(Symbol(2)));
         let all = both * g.lane_constants(&[1.0, 2.0, 3.0, 4.0]) + s;
         let lanes: Vec<Expr<'_>> = (0..4).map(|k| all.lane(k)).chain([all.lane_sum(4)]).collect();
         let value_of_symbol = |s: Symbol| f64::from(s.0) + 1.0;
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn lanes_are_evaluated_independently() {
         let g = Graph::new();
-        let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
+        let x = g.lane_input_of_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
         let y = g.symbol(Symbol(3));
         let e = g.lane_constants(&[1.0, -2.0, 3.0]) * x.square() + y;
         let values = eval(&[e.lane_sum(3), e.lane(2), e.lane_sum(3) * y], &|s| f64::from(s.0) + 1.0);

@@ -21,7 +21,7 @@ impl<'g> Vec3<'g> {
     }
 
     /// Returns a vector of constant expressions.
-    pub fn from_numbers(g: &'g Graph, v: [f64; 3]) -> Vec3<'g> {
+    pub fn vector_from_constants(g: &'g Graph, v: [f64; 3]) -> Vec3<'g> {
         Vec3(v.map(|c| g.num(c)))
     }
 
@@ -158,7 +158,7 @@ impl<'g> Mat3<'g> {
     }
 
     /// Returns the entries of the matrix as numbers if all of them are constant.
-    pub fn constant_entries(self) -> Option<[[f64; 3]; 3]> {
+    pub fn entries_if_all_constant(self) -> Option<[[f64; 3]; 3]> {
         let mut out = [[0.0; 3]; 3];
         for i in 0..3 {
             out[i] = self.row(i).constant_components()?;

@@ -147,7 +147,7 @@ impl Lookup {
     /// cubic polynomials, like tables: truncated Taylor series of sines that differ between tables. All
     /// derivatives are consistent.
     pub fn evaluate_surrogate(self, x: [f64; 3]) -> f64 {
-        let cubic_of_variable = |(k, x): (usize, f64)| {
+        let surrogate_cubic = |(k, x): (usize, f64)| {
             let (order, pace, phase) =
                 (self.derivative_order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table_index() as f64);
             let derivative = |n: usize| {
@@ -155,7 +155,7 @@ impl Lookup {
             };
             (order..=3).rev().fold(0.0, |sum, n| derivative(n) + sum * x / (n + 1 - order) as f64)
         };
-        x.into_iter().take(self.variable_count()).enumerate().map(cubic_of_variable).product()
+        x.into_iter().take(self.variable_count()).enumerate().map(surrogate_cubic).product()
     }
 }
 
@@ -272,7 +272,7 @@ impl Node {
         h ^ (h >> 29)
     }
 
-    pub(super) fn is_same_node(self, other: Node) -> bool {
+    pub(super) fn is_bitwise_equal_node(self, other: Node) -> bool {
         match (self, other) {
             // Compares bits, so that a NaN equals itself. Negative zero does not occur, see
             // `Graph::constant`.

@@ -11,7 +11,7 @@ pub fn substitute_symbols<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g
 
 /// Substitutes `by(s)` for every symbol `s` of several expressions for which it is not `None`.
 pub fn replace_all<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
-    replace_calls(e, by, &|f, x| x.apply_function(f))
+    replace_symbols_and_calls(e, by, &|f, x| x.apply_function(f))
 }
 
 /// Constructor of the replacement for an elementary function of an expression.
@@ -19,24 +19,24 @@ type Call<'a, 'g> = &'a dyn Fn(Function, Expr<'g>) -> Expr<'g>;
 
 /// Substitutes `by(s)` for every symbol `s` of several expressions for which it is not `None`, and builds
 /// elementary functions with `call`.
-pub fn replace_calls<'g>(
+pub fn replace_symbols_and_calls<'g>(
     e: &[Expr<'g>],
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
     call: Call<'_, 'g>,
 ) -> Vec<Expr<'g>> {
     let Some(first) = e.first() else { return Vec::new() };
     let mut known = Memo::new(first.graph());
-    e.iter().map(|e| replace_one(*e, &mut known, by, call)).collect()
+    e.iter().map(|e| replace_in_expression(*e, &mut known, by, call)).collect()
 }
 
 /// Substitutes `by` for every occurrence of the node `part` in an expression.
-pub fn replace_part<'g>(e: Expr<'g>, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
+pub fn substitute_subexpression<'g>(e: Expr<'g>, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
     let mut known = Memo::new(e.graph());
     known.assign_number(part.id(), by.id());
-    replace_one(e, &mut known, &|_| None, &|f, x| x.apply_function(f))
+    replace_in_expression(e, &mut known, &|_| None, &|f, x| x.apply_function(f))
 }
 
-fn replace_one<'g>(
+fn replace_in_expression<'g>(
     e: Expr<'g>,
     known: &mut Memo<'g>,
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
@@ -77,7 +77,7 @@ fn rebuild_node<'g>(
         Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => graph.expr(id),
         Node::Sum(n, a) => replaced_operand(a).lane_sum(n.into()),
         Node::Lane(k, a) => replaced_operand(a).lane(k.into()),
-        Node::Join(n, a, b) => replaced_operand(a).join_with(n.into(), replaced_operand(b)),
+        Node::Join(n, a, b) => replaced_operand(a).append_lanes(n.into(), replaced_operand(b)),
         Node::Symbol(s) => by(s).unwrap_or(graph.expr(id)),
         Node::Neg(a) => -replaced_operand(a),
         Node::Add(a, b) => replaced_operand(a) + replaced_operand(b),

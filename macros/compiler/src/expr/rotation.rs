@@ -29,7 +29,7 @@ impl<'g> Rotation<'g> {
     }
 
     /// Returns the rotation about coordinate axis `axis` by `angle`, rad.
-    pub fn about_axis(axis: usize, angle: Expr<'g>) -> Rotation<'g> {
+    pub fn rotation_about_coordinate_axis(axis: usize, angle: Expr<'g>) -> Rotation<'g> {
         let graph = angle.graph();
         let step =
             RotationStep::Axis { axis, sin: round_to_zero(angle.sin()), cos: round_to_zero(angle.cos()) };
@@ -50,8 +50,8 @@ impl<'g> Rotation<'g> {
         for k in 0..3 {
             let others_zero = n[(k + 1) % 3].is_zero() && n[(k + 2) % 3].is_zero();
             match n[k].constant_value() {
-                Some(1.0) if others_zero => return Rotation::about_axis(k, angle),
-                Some(-1.0) if others_zero => return Rotation::about_axis(k, -angle),
+                Some(1.0) if others_zero => return Rotation::rotation_about_coordinate_axis(k, angle),
+                Some(-1.0) if others_zero => return Rotation::rotation_about_coordinate_axis(k, -angle),
                 _ => {}
             }
         }
@@ -96,15 +96,15 @@ impl<'g> Rotation<'g> {
     /// Appends a step to the rotation. Adjacent constant steps are combined into one rotation with the
     /// minimum number of steps.
     fn append_step(&mut self, step: RotationStep<'g>) {
-        let Some(mut product) = step.constant_matrix() else {
+        let Some(mut product) = step.matrix_if_constant() else {
             self.steps.push(step);
             return;
         };
-        while let Some(last) = self.steps.last().and_then(RotationStep::constant_matrix) {
+        while let Some(last) = self.steps.last().and_then(RotationStep::matrix_if_constant) {
             product = last * product;
             self.steps.pop();
         }
-        match constant_steps(&product) {
+        match factor_constant_rotation(&product) {
             Some(steps) => self.steps.extend(steps),
             None => self.steps.push(RotationStep::Matrix(product)),
         }
@@ -127,12 +127,12 @@ impl<'g> Rotation<'g> {
 
     /// Transforms a symmetric tensor from the child to the parent frame: `R X Rᵀ`.
     pub fn sym_to_parent(&self, x: Sym3<'g>) -> Sym3<'g> {
-        self.steps.iter().rev().fold(x, |x, step| step.apply_sym(x))
+        self.steps.iter().rev().fold(x, |x, step| step.rotate_symmetric_tensor(x))
     }
 
     /// Transforms a tensor from the child to the parent frame: `R X Rᵀ`.
-    pub fn mat_to_parent(&self, x: Mat3<'g>) -> Mat3<'g> {
-        self.steps.iter().rev().fold(x, |x, step| step.apply_mat(x))
+    pub fn tensor_in_parent_axes(&self, x: Mat3<'g>) -> Mat3<'g> {
+        self.steps.iter().rev().fold(x, |x, step| step.rotate_tensor(x))
     }
 
     /// Applies a function to all expressions that the rotation contains.
@@ -146,7 +146,7 @@ impl<'g> Rotation<'g> {
 
     /// Combines the rotations of several lanes into one rotation with lanes. `merge` combines one expression
     /// per lane; the result is `None` if `merge` fails.
-    pub fn side_by_side(
+    pub fn merge_into_lanes(
         lanes: &[&Rotation<'g>],
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
     ) -> Option<Rotation<'g>> {
@@ -154,26 +154,28 @@ impl<'g> Rotation<'g> {
         let mut rotation = Rotation::identity(first.graph);
         // The trailing steps that are of the same kind in all lanes are combined one by one. The steps before
         // them become one matrix.
-        let step_from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
+        let rotation_step_from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
         let is_common_step = |k: &usize| {
-            let all = lanes.iter().map(|r| step_from_end(r, *k).map(|step| step.step_kind()));
+            let all =
+                lanes.iter().map(|r| rotation_step_from_end(r, *k).map(|step| step.axis_index_or_matrix()));
             let mut kinds = all.collect::<Vec<_>>();
             kinds.dedup();
             kinds.len() == 1 && kinds[0].is_some()
         };
         let common = (0..first.steps.len()).take_while(is_common_step).count();
-        let remaining_rotation = |r: &Rotation<'g>| {
+        let rotation_without_common_steps = |r: &Rotation<'g>| {
             let steps = r.steps[..r.steps.len() - common].to_vec();
             Rotation { steps, graph: r.graph }
         };
         if lanes.iter().any(|r| r.steps.len() > common) {
             let matrices: Vec<Mat3<'g>> =
-                lanes.iter().map(|r| remaining_rotation(r).rotation_matrix()).collect();
-            rotation.steps.push(RotationStep::Matrix(merged_matrix(&matrices, merge)?));
+                lanes.iter().map(|r| rotation_without_common_steps(r).rotation_matrix()).collect();
+            rotation.steps.push(RotationStep::Matrix(merge_matrix_lanes(&matrices, merge)?));
         }
         for k in (0..common).rev() {
-            let steps: Vec<RotationStep<'g>> = lanes.iter().filter_map(|r| step_from_end(r, k)).collect();
-            rotation.steps.push(RotationStep::side_by_side(&steps, merge)?);
+            let steps: Vec<RotationStep<'g>> =
+                lanes.iter().filter_map(|r| rotation_step_from_end(r, k)).collect();
+            rotation.steps.push(RotationStep::merge_into_lanes(&steps, merge)?);
         }
         Some(rotation)
     }
@@ -195,7 +197,7 @@ fn round_to_zero(e: Expr<'_>) -> Expr<'_> {
     }
 }
 
-fn merged_matrix<'g>(
+fn merge_matrix_lanes<'g>(
     lanes: &[Mat3<'g>],
     merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
 ) -> Option<Mat3<'g>> {
@@ -210,9 +212,9 @@ fn merged_matrix<'g>(
 
 /// Factors a constant rotation matrix with a zero entry into a rotation by right angles and at most two
 /// rotations about coordinate axes. `None` if no entry is zero.
-fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<RotationStep<'g>>> {
+fn factor_constant_rotation<'g>(m: &Mat3<'g>) -> Option<Vec<RotationStep<'g>>> {
     let g = m.0[0][0].graph();
-    let steps = axis_steps(m).or_else(|| {
+    let steps = factor_rotation_about_axis(m).or_else(|| {
         let (r, c) = (0..9).map(|k| (k / 3, k % 3)).find(|(r, c)| m.0[*r][*c].is_zero())?;
         // Column c is normal to axis r. After a rotation about r, column c of the remainder is a coordinate
         // axis.
@@ -222,19 +224,20 @@ fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<RotationStep<'g>>> {
         (rest.0[r][c], rest.0[s][c], rest.0[t][c]) = (g.zero(), g.one(), g.zero());
         rest.0[s][(c + 1) % 3] = g.zero();
         rest.0[s][(c + 2) % 3] = g.zero();
-        Some([vec![first], axis_steps(&rest)?].concat())
+        Some([vec![first], factor_rotation_about_axis(&rest)?].concat())
     })?;
     // A matrix that is not a rotation within rounding error is not factored.
     let product = steps.iter().fold(Mat3::identity(g), |p, step| p * step.step_matrix());
-    let error = (product - *m).constant_entries()?.as_flattened().iter().fold(0.0_f64, |e, x| e.max(x.abs()));
+    let error =
+        (product - *m).entries_if_all_constant()?.as_flattened().iter().fold(0.0_f64, |e, x| e.max(x.abs()));
     (error <= 8.0 * f64::EPSILON).then_some(steps)
 }
 
 /// Factors a constant rotation matrix that has a coordinate axis as a column: a rotation by right angles,
 /// followed by a rotation about that axis. Returns `None` for other matrices.
-fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<RotationStep<'g>>> {
+fn factor_rotation_about_axis<'g>(m: &Mat3<'g>) -> Option<Vec<RotationStep<'g>>> {
     let g = m.0[0][0].graph();
-    let values = m.constant_entries()?;
+    let values = m.entries_if_all_constant()?;
     if *m == Mat3::identity(g) {
         return Some(Vec::new());
     }
@@ -277,7 +280,7 @@ impl<'g> Rotation<'g> {
 
 impl<'g> RotationStep<'g> {
     /// Returns the coordinate axis of the rotation, or 3 for a matrix.
-    fn step_kind(&self) -> usize {
+    fn axis_index_or_matrix(&self) -> usize {
         match self {
             RotationStep::Axis { axis, .. } => *axis,
             RotationStep::Matrix(_) => 3,
@@ -285,25 +288,25 @@ impl<'g> RotationStep<'g> {
     }
 
     /// Combines elementary rotations of one kind, one for each SIMD lane, into a rotation with lanes.
-    fn side_by_side(
+    fn merge_into_lanes(
         lanes: &[RotationStep<'g>],
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
     ) -> Option<RotationStep<'g>> {
         let RotationStep::Axis { axis, .. } = *lanes.first()? else {
             let matrices: Vec<Mat3<'g>> = lanes.iter().map(RotationStep::step_matrix).collect();
-            return Some(RotationStep::Matrix(merged_matrix(&matrices, merge)?));
+            return Some(RotationStep::Matrix(merge_matrix_lanes(&matrices, merge)?));
         };
-        let merge_candidates = |sine: bool| {
-            let lane_part = |step: &RotationStep<'g>| match *step {
+        let lane_sines_or_cosines = |sine: bool| {
+            let sine_or_cosine_of_step = |step: &RotationStep<'g>| match *step {
                 RotationStep::Axis { sin, cos, .. } => Some(if sine { sin } else { cos }),
                 RotationStep::Matrix(_) => None,
             };
-            lanes.iter().map(lane_part).collect::<Option<Vec<_>>>()
+            lanes.iter().map(sine_or_cosine_of_step).collect::<Option<Vec<_>>>()
         };
         Some(RotationStep::Axis {
             axis,
-            sin: merge(&merge_candidates(true)?)?,
-            cos: merge(&merge_candidates(false)?)?,
+            sin: merge(&lane_sines_or_cosines(true)?)?,
+            cos: merge(&lane_sines_or_cosines(false)?)?,
         })
     }
 
@@ -328,9 +331,9 @@ impl<'g> RotationStep<'g> {
     }
 
     /// Returns the matrix of an elementary rotation if every entry is constant.
-    fn constant_matrix(&self) -> Option<Mat3<'g>> {
+    fn matrix_if_constant(&self) -> Option<Mat3<'g>> {
         let matrix = self.step_matrix();
-        matrix.constant_entries().map(|_| matrix)
+        matrix.entries_if_all_constant().map(|_| matrix)
     }
 
     fn step_matrix(&self) -> Mat3<'g> {
@@ -366,7 +369,7 @@ impl<'g> RotationStep<'g> {
         }
     }
 
-    fn apply_mat(&self, x: Mat3<'g>) -> Mat3<'g> {
+    fn rotate_tensor(&self, x: Mat3<'g>) -> Mat3<'g> {
         match *self {
             RotationStep::Matrix(m) => m * x * m.transpose(),
             RotationStep::Axis { axis: k, sin, cos } => {
@@ -385,7 +388,7 @@ impl<'g> RotationStep<'g> {
         }
     }
 
-    fn apply_sym(&self, x: Sym3<'g>) -> Sym3<'g> {
+    fn rotate_symmetric_tensor(&self, x: Sym3<'g>) -> Sym3<'g> {
         match self {
             RotationStep::Matrix(m) => {
                 let half = *m * x.full_matrix();
@@ -395,10 +398,10 @@ impl<'g> RotationStep<'g> {
             }
             RotationStep::Axis { axis: k, sin, cos } => {
                 let (i, j, k) = ((k + 1) % 3, (k + 2) % 3, *k);
-                // Same formula as in `apply_mat`. Twice the sine can be shared between several tensors, but
-                // if `xy` is a multiple, doubling its coefficient costs nothing.
+                // Same formula as in `rotate_tensor`. Twice the sine can be shared between several tensors,
+                // but if `xy` is a multiple, doubling its coefficient costs nothing.
                 let xy = x.entry(i, j);
-                let twice = if xy.is_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
+                let twice = if xy.is_constant_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
                 let u = *cos * (x.entry(i, i) - x.entry(j, j)) - twice;
                 let (cu, su) = (*cos * u, *sin * u);
                 let mut out = x.full_matrix();
@@ -432,13 +435,13 @@ mod tests {
     use super::*;
 
     fn numeric_matrix(rotation: &Rotation<'_>) -> [[f64; 3]; 3] {
-        rotation.rotation_matrix().constant_entries().unwrap()
+        rotation.rotation_matrix().entries_if_all_constant().unwrap()
     }
 
     #[test]
     fn constant_rotations_use_the_fewest_elementary_steps() {
         let g = Graph::new();
-        let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
+        let axis_rotation = |k, angle: f64| Rotation::rotation_about_coordinate_axis(k, g.num(angle));
         let right = Mat3([[0, 1, 0], [0, 0, -1], [-1, 0, 0]].map(|r| r.map(|c| g.num(f64::from(c)))));
         for (rotation, steps) in [
             (axis_rotation(1, 0.3).compose_with(&axis_rotation(1, -0.3)), 0),
@@ -461,8 +464,8 @@ mod tests {
     #[test]
     fn elementary_rotations_equal_the_rotation_matrix() {
         let g = Graph::new();
-        let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
-        let v = Vec3::from_numbers(&g, [0.7, -1.1, 0.4]);
+        let axis_rotation = |k, angle: f64| Rotation::rotation_about_coordinate_axis(k, g.num(angle));
+        let v = Vec3::vector_from_constants(&g, [0.7, -1.1, 0.4]);
         let tensor =
             Sym3 { diagonal: [1.0, 2.0, 3.5].map(|c| g.num(c)), off: [0.2, -0.3, 0.6].map(|c| g.num(c)) };
         for rotation in [

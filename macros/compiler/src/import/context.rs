@@ -151,7 +151,12 @@ impl<'a> Cx<'a> {
     }
 
     /// Reports only the first of many similar errors in a file. Errors with the same `help` are similar.
-    pub(super) fn report_first_similar(&mut self, place: &Place, message: String, help: &'static str) {
+    pub(super) fn report_first_of_similar_errors(
+        &mut self,
+        place: &Place,
+        message: String,
+        help: &'static str,
+    ) {
         if self.habits.contains(&help) {
             self.mistakes += 1;
             return;
@@ -211,7 +216,7 @@ pub(super) fn quote_word(word: &str) -> String {
 }
 
 /// Returns the words, each in backticks. Words after the eighth are replaced by an ellipsis.
-pub(super) fn quote_all<'n>(words: impl Iterator<Item = &'n str>) -> String {
+pub(super) fn quote_first_eight_words<'n>(words: impl Iterator<Item = &'n str>) -> String {
     let mut list: Vec<String> = words.take(9).map(quote_word).collect();
     if list.len() == 9 {
         list[8] = "…".to_string();

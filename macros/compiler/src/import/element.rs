@@ -1,7 +1,7 @@
 //! Checked access to the children, attributes, numbers and names of one XML element, each with its source
 //! position. This module knows no particular element.
 
-use super::context::{Cx, format_position, quote_all, quote_word};
+use super::context::{Cx, format_position, quote_first_eight_words, quote_word};
 use crate::diag::{Place, nearest_candidate};
 use crate::import::imported::Located;
 use crate::syntax::Name;
@@ -13,7 +13,7 @@ pub(super) type Node<'a> = roxmltree::Node<'a, 'a>;
 pub(super) type Attribute<'a> = roxmltree::Attribute<'a, 'a>;
 
 /// Returns the source position of an XML element.
-pub(super) fn element_position(node: Node<'_>, cx: &Cx<'_>) -> Place {
+pub(super) fn element_source_position(node: Node<'_>, cx: &Cx<'_>) -> Place {
     cx.source_position(node.range().start)
 }
 
@@ -31,7 +31,7 @@ pub(super) fn child_elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a
 
 /// Returns the child elements named in `known`, at most one of each. Other children are ignored, unless their
 /// name looks like a typing error: to ignore `<inertal>` would silently remove a body's mass.
-pub(super) fn known_children<'a, const N: usize>(
+pub(super) fn children_with_known_names<'a, const N: usize>(
     node: Node<'a>,
     known: [&str; N],
     cx: &mut Cx<'_>,
@@ -50,9 +50,9 @@ pub(super) fn known_children<'a, const N: usize>(
 
 /// Reports an element that occurs a second time in its parent.
 pub(super) fn report_duplicate(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
-    let first = first.map(|node| format_position(&element_position(node, cx))).unwrap_or_default();
+    let first = first.map(|node| format_position(&element_source_position(node, cx))).unwrap_or_default();
     let message = format!("second {} of one element", quoted_tag(child));
-    cx.report_error(&element_position(child, cx), message, |d| {
+    cx.report_error(&element_source_position(child, cx), message, |d| {
         d.add_help(format!("the first is at {first}"))
     });
 }
@@ -64,9 +64,11 @@ pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>
     }
     if let Some(best) = nearest_candidate(node.tag_name().name(), known) {
         let help = format!("did you mean `<{best}>`?");
-        cx.report_error(&element_position(node, cx), format!("unknown element {}", quoted_tag(node)), |d| {
-            d.add_help(help)
-        });
+        cx.report_error(
+            &element_source_position(node, cx),
+            format!("unknown element {}", quoted_tag(node)),
+            |d| d.add_help(help),
+        );
     }
 }
 
@@ -87,15 +89,16 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
         }
     }
     if !missing.is_empty() {
-        let message = format!("{} without {}", quoted_tag(node), quote_all(missing.into_iter()));
+        let message =
+            format!("{} without {}", quoted_tag(node), quote_first_eight_words(missing.into_iter()));
         let help = expected_element_text(node.tag_name().name(), required);
-        cx.report_error(&element_position(node, cx), message, |d| d.add_help(help));
+        cx.report_error(&element_source_position(node, cx), message, |d| d.add_help(help));
     }
 }
 
 /// Reports all contents of an element other than the attributes in `required`, `optional` and `foreign`
 /// (attributes of other tools), since they would be ignored silently.
-pub(super) fn check_contents(
+pub(super) fn report_unexpected_contents(
     node: Node<'_>,
     required: &[&str],
     optional: &[&str],
@@ -103,12 +106,12 @@ pub(super) fn check_contents(
     cx: &mut Cx<'_>,
 ) {
     let all = [required, optional].concat();
-    let is_known_element = |name: &str| all.contains(&name) || foreign.contains(&name);
+    let is_accepted_attribute = |name: &str| all.contains(&name) || foreign.contains(&name);
     let help =
         expected_element_text(node.tag_name().name(), if required.is_empty() { optional } else { required });
-    let unknown = node.attributes().find(|a| a.namespace().is_none() && !is_known_element(a.name()));
-    if let Some(child) = relevant_contents(node).next() {
-        report_unexpected(child, node, help, cx);
+    let unknown = node.attributes().find(|a| a.namespace().is_none() && !is_accepted_attribute(a.name()));
+    if let Some(child) = nonblank_known_contents(node).next() {
+        report_meaningless_node(child, node, help, cx);
     } else if let Some(attribute) = unknown.filter(|a| nearest_candidate(a.name(), &all).is_none()) {
         let message = format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
         let place = cx.source_position(attribute.range().start);
@@ -119,7 +122,7 @@ pub(super) fn check_contents(
 }
 
 /// Returns the texts that are not blank and the elements of the file's own vocabulary in an element.
-pub(super) fn relevant_contents<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+pub(super) fn nonblank_known_contents<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     node.children().filter(move |child| match child.is_text() {
         true => child.text().is_some_and(|text| !text.trim().is_empty()),
         false => child.is_element() && child.tag_name().namespace() == node.tag_name().namespace(),
@@ -127,7 +130,7 @@ pub(super) fn relevant_contents<'a>(node: Node<'a>) -> impl Iterator<Item = Node
 }
 
 /// Reports a text or an element that has no meaning in `node`.
-fn report_unexpected(child: Node<'_>, node: Node<'_>, help: impl Into<String>, cx: &mut Cx<'_>) {
+fn report_meaningless_node(child: Node<'_>, node: Node<'_>, help: impl Into<String>, cx: &mut Cx<'_>) {
     let text = child.text().unwrap_or_default();
     let start = child.range().start;
     let (found, start) = match child.is_text() {
@@ -139,7 +142,7 @@ fn report_unexpected(child: Node<'_>, node: Node<'_>, help: impl Into<String>, c
 }
 
 /// Reports attributes that are not in `known` on an element whose values are text or child elements.
-pub(super) fn check_value_element(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
+pub(super) fn check_attributes_of_value_element(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
     check_attributes(node, &[], known, cx);
     let unknown = node.attributes().filter(|a| a.namespace().is_none() && !known.contains(&a.name()));
     for attribute in unknown.filter(|a| nearest_candidate(a.name(), known).is_none()) {
@@ -166,7 +169,7 @@ pub(super) fn required_child<'a>(
 ) -> Option<Node<'a>> {
     if child.is_none() {
         let message = format!("{} without `<{element}>`", quoted_tag(node));
-        cx.report_error(&element_position(node, cx), message, |d| {
+        cx.report_error(&element_source_position(node, cx), message, |d| {
             d.add_help(expected_element_text(element, attributes))
         });
     }
@@ -212,10 +215,10 @@ pub(super) fn read_numbers_content<const N: usize>(
     node: Node<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<Located<[f64; N]>> {
-    let mut all = relevant_contents(node);
+    let mut all = nonblank_known_contents(node);
     let text = all.next().filter(Node::is_text);
-    if let Some(other) = relevant_contents(node).find(Node::is_element).or(all.next()) {
-        report_unexpected(other, node, "expected numbers, and comments before or after them", cx);
+    if let Some(other) = nonblank_known_contents(node).find(Node::is_element).or(all.next()) {
+        report_meaningless_node(other, node, "expected numbers, and comments before or after them", cx);
         return None;
     }
     match text {
@@ -225,8 +228,8 @@ pub(super) fn read_numbers_content<const N: usize>(
 }
 
 /// Returns the trimmed text of an element with its source position; `None` if it is empty.
-pub(super) fn read_word(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
-    let found = relevant_contents(node).find(Node::is_text)?;
+pub(super) fn read_trimmed_content(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
+    let found = nonblank_known_contents(node).find(Node::is_text)?;
     let whole = found.text()?;
     let before = whole.len() - whole.trim_start().len();
     let text = whole.trim().to_string();
@@ -245,7 +248,7 @@ fn read_numbers<const N: usize>(
         // Decimal commas usually occur in all vectors of a file and are reported once.
         let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
         let message = format!("expected {expected} in `{attribute}`, found {}", quote_word(text));
-        cx.report_first_similar(&place, message, if N == 1 { POINT } else { SEPARATE });
+        cx.report_first_of_similar_errors(&place, message, if N == 1 { POINT } else { SEPARATE });
         return None;
     }
     let count = text.split_ascii_whitespace().count();
@@ -286,7 +289,7 @@ const LARGEST_TURN: f64 = 7.0;
 
 /// Reports angles that are most likely in degrees: multiples of ½ beyond a full revolution. Multiples of π
 /// are accepted. `help` states the unit of the format.
-pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, cx: &mut Cx<'_>) {
+pub(super) fn report_likely_degrees(angles: &[f64], place: &Place, help: &'static str, cx: &mut Cx<'_>) {
     let is_likely_in_degrees = |n: &&f64| n.abs() > LARGEST_TURN && (2.0 * **n).fract() == 0.0;
     let Some(n) = angles.iter().find(is_likely_in_degrees) else { return };
     let (degrees, turned) = (n.to_radians(), n % std::f64::consts::TAU);
@@ -294,7 +297,7 @@ pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, c
         "an angle of {n} rad is more than a full turn: {n}° are {degrees} rad, {n} rad is the same rotation \
          as {turned} rad"
     );
-    cx.report_first_similar(place, message, help);
+    cx.report_first_of_similar_errors(place, message, help);
 }
 
 const SEPARATE: &str =

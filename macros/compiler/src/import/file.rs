@@ -20,7 +20,7 @@ const INVISIBLE: [char; 3] = ['\u{200b}', '\u{2060}', '\u{feff}'];
 
 /// Removes a byte order mark at the start of a text, and replaces whitespace and invisible characters that
 /// parsers of XML and of numbers do not know, such as no-break spaces, by spaces.
-pub fn with_plain_blanks(text: &str) -> Cow<'_, str> {
+pub fn with_standard_whitespace(text: &str) -> Cow<'_, str> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_invisible_character = |c: char| !c.is_ascii() && (c.is_whitespace() || INVISIBLE.contains(&c));
     match text.contains(is_invisible_character) {
@@ -30,7 +30,7 @@ pub fn with_plain_blanks(text: &str) -> Cow<'_, str> {
 }
 
 /// Reads the file at `path`. `options` contain the path as the user wrote it and its source position.
-pub fn read_file(path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<String> {
+pub fn read_imported_file(path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<String> {
     read_named_file(path, &options.path, options.format, cx)
 }
 
@@ -41,9 +41,9 @@ pub(super) fn read_named_file(
     format: FileFormat,
     cx: &mut Diagnostics,
 ) -> Option<String> {
-    let bytes = fs::metadata(path).and_then(|about| match reason_to_refuse(&about, format) {
+    let bytes = fs::metadata(path).and_then(|about| match reason_not_to_open_file(&about, format) {
         Some(reason) => Ok(Err(reason)),
-        None => read_bytes(path).map(Ok),
+        None => read_bytes_of_limited_file(path).map(Ok),
     });
     match bytes {
         Ok(Ok(bytes)) if bytes.len() > LARGEST_FILE => {
@@ -57,9 +57,9 @@ pub(super) fn read_named_file(
 }
 
 /// Returns the reason why a file must not be opened, such as being a pipe or a device.
-fn reason_to_refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
+fn reason_not_to_open_file(about: &fs::Metadata, format: FileFormat) -> Option<String> {
     match () {
-        _ if about.is_dir() => Some(format!("is a directory, expected {}", format.phrase_with_article())),
+        _ if about.is_dir() => Some(format!("is a directory, expected {}", format.file_format_phrase())),
         _ if !about.is_file() => Some("is not a regular file".to_string()),
         _ if about.len() > LARGEST_FILE as u64 => Some(too_large_message(about.len())),
         _ => None,
@@ -78,7 +78,7 @@ pub(super) fn report_file_error(reason: &str, name: &Name, cx: &mut Diagnostics)
 
 /// Reads the bytes of the file. If the file has grown since the check, at most one byte more than the maximum
 /// size is read.
-fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+fn read_bytes_of_limited_file(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     fs::File::open(path)?.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
@@ -137,11 +137,12 @@ fn neighbouring_files(path: &Path, written: &str, format: FileFormat) -> Vec<Str
     };
     let stem = &written[..written.rfind(['/', '\\']).map_or(0, |slash| slash + 1)];
     let names = entries.take(NEIGHBOURS).flatten().filter_map(|entry| entry.file_name().into_string().ok());
-    let is_description = |name: &String| {
+    let has_description_extension = |name: &String| {
         let end = name.rsplit('.').next().unwrap_or_default();
-        format.file_extensions().iter().any(|known| end.eq_ignore_ascii_case(known))
+        format.extensions_of_file_format().iter().any(|known| end.eq_ignore_ascii_case(known))
     };
-    let mut list: Vec<String> = names.filter(is_description).map(|name| format!("{stem}{name}")).collect();
+    let mut list: Vec<String> =
+        names.filter(has_description_extension).map(|name| format!("{stem}{name}")).collect();
     // The order of directory entries depends on the machine.
     list.sort();
     list

@@ -30,7 +30,7 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
         }
     }
     let is_mesh = |part: &Collision| part.shape == Shape::Mesh && part.mesh.is_some();
-    let share = share_of_meshes(&description.contacts, &description.collisions);
+    let share = vertices_per_mesh(&description.contacts, &description.collisions);
     // Vertices allowed for each mesh: zero if no contact uses it.
     let mut maxima = vec![0; description.collisions.len()];
     for contact in &description.contacts {
@@ -46,7 +46,11 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
             continue;
         };
         if let Some((hull, count)) = hull_of_mesh(source, most, &mut files, cx) {
-            notes.extend(hull_note(&format!("the mesh of `{}`", part.on.body.text), &hull, count));
+            notes.extend(omitted_vertices_note(
+                &format!("the mesh of `{}`", part.on.body.text),
+                &hull,
+                count,
+            ));
             part.hull = hull.vertices;
         }
     }
@@ -67,7 +71,7 @@ fn replace_hull_file(
     let name = Name { text: path.clone(), place: place.clone() };
     let source = MeshVertices::scaled(name, mesh::candidate_paths(folder, path), [1.0; 3]);
     if let Some((hull, count)) = hull_of_mesh(&source, MAX_VERTICES, files, cx) {
-        notes.extend(hull_note(&format!("the mesh `{path}`"), &hull, count));
+        notes.extend(omitted_vertices_note(&format!("the mesh `{path}`"), &hull, count));
         let points = hull.vertices.iter().map(|p| Expr::vector_at(*p, place)).collect();
         let points = Expr { kind: ExprKind::Array(points), place: place.clone() };
         *arguments = vec![points];
@@ -75,7 +79,7 @@ fn replace_hull_file(
 }
 
 /// Returns a line of the documentation for a hull that does not contain all vertices of its mesh.
-fn hull_note(mesh: &str, hull: &Hull, count: usize) -> Option<String> {
+fn omitted_vertices_note(mesh: &str, hull: &Hull, count: usize) -> Option<String> {
     let (kept, error) = (hull.vertices.len(), hull.error);
     let hull = format!("the convex hull of {kept} of its {count} vertices");
     (error > 0.0).then(|| format!("the part of {mesh} outside of {hull}: at most {error:.2e} m"))
@@ -147,14 +151,14 @@ fn describe_hull_error(error: HullError) -> String {
 }
 
 /// Returns the number of friction moments of a contact, and one for the contact itself.
-fn contacts_per_point(contact: &Contact) -> usize {
+fn contact_and_moment_count(contact: &Contact) -> usize {
     let count_of_argument = |key| usize::from(contact.arguments.get(key).is_some());
     1 + count_of_argument(Key::TorsionalFriction) + count_of_argument(Key::RollingFriction)
 }
 
 /// Returns the number of vertices for each mesh in the contacts with planes that the file declares: the
 /// maximum number of contact points without those of other shapes, divided by the number of meshes.
-fn share_of_meshes(contacts: &[Contact], collisions: &[Collision]) -> usize {
+fn vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usize {
     let (mut others, mut meshes) = (0, 0);
     for contact in contacts.iter().filter(|contact| contact.of_file) {
         for k in select_collisions(&contact.first, collisions).unwrap_or_default() {
@@ -164,8 +168,8 @@ fn share_of_meshes(contacts: &[Contact], collisions: &[Collision]) -> usize {
                 Shape::Sphere(_) | Shape::Ellipsoid(_) => 1,
                 Shape::Mesh => 0,
             };
-            others += points * contacts_per_point(contact);
-            meshes += if points == 0 { contacts_per_point(contact) } else { 0 };
+            others += points * contact_and_moment_count(contact);
+            meshes += if points == 0 { contact_and_moment_count(contact) } else { 0 };
         }
     }
     (MAX_CONTACT_POINTS.saturating_sub(others) / meshes.max(1)).min(MAX_VERTICES)

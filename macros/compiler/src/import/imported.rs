@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Mechanism that a robot file describes.
 #[derive(Clone, Debug)]
-pub struct Imported {
+pub struct ImportedMechanism {
     /// Bodies of the links, each after its parent.
     pub bodies: Vec<Body>,
     /// Joints in coordinate order: first the root's joint, then depth first, with the joints of one parent

@@ -1,7 +1,7 @@
 //! Mesh files: STL, OBJ and MuJoCo's own format. This module knows no format of robot files.
 
 use super::context::quote_word;
-use super::pose::{Vector, add, length, scale_vector};
+use super::pose::{Vector, add, length, vector_times_scalar};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -139,7 +139,7 @@ pub(super) fn read_obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
                     vertices.get(usize::try_from(index).ok()?).copied()
                 };
                 let corners = words.map(referenced_vertex).collect::<Option<Vec<Vector>>>()?;
-                add_face(&corners, &mut triangles)?;
+                triangulate_face(&corners, &mut triangles)?;
             }
             _ => {}
         }
@@ -148,11 +148,11 @@ pub(super) fn read_obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
 }
 
 /// Triangulates a face: a quadrilateral along its shorter diagonal, any other face from its first corner.
-fn add_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
+fn triangulate_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
     match corners {
         [a, b, c, d] => {
-            let distance_between = |a: &Vector, b: &Vector| length(add(*a, scale_vector(*b, -1.0)));
-            if distance_between(a, c) < distance_between(b, d) {
+            let distance_of_points = |a: &Vector, b: &Vector| length(add(*a, vector_times_scalar(*b, -1.0)));
+            if distance_of_points(a, c) < distance_of_points(b, d) {
                 triangles.extend([[*a, *b, *c], [*a, *c, *d]]);
             } else {
                 triangles.extend([[*a, *b, *d], [*b, *c, *d]]);

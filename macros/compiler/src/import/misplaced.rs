@@ -3,7 +3,7 @@
 
 use crate::diag::nearest_candidate;
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, child_elements, element_position, quoted_tag};
+use crate::import::element::{Node, child_elements, element_source_position, quoted_tag};
 
 /// Elements and attributes of URDF, SDF and other formats that describe position, mass properties or motion.
 const WORDS: [&str; 47] = [
@@ -61,9 +61,9 @@ const WORDS: [&str; 47] = [
 pub(super) fn report_misplaced_contents(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
     for child in child_elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
         // Misspelt names of elements in `own` are reported by other functions.
-        if nearest_candidate(child.tag_name().name(), own).is_none() && !has_no_effect(child) {
+        if nearest_candidate(child.tag_name().name(), own).is_none() && !is_element_without_effect(child) {
             let message = format!("unexpected {} in {}", quoted_tag(child), quoted_tag(node));
-            cx.report_error(&element_position(child, cx), message, |d| d.add_help(help));
+            cx.report_error(&element_source_position(child, cx), message, |d| d.add_help(help));
         }
     }
     // `<mimic>` names its leader by `joint`.
@@ -83,9 +83,9 @@ pub(super) fn report_misplaced_contents(node: Node<'_>, own: &[&str], help: &str
 }
 
 /// Returns true for an element without effect: it has no text or children, and all its attributes are zero.
-fn has_no_effect(node: Node<'_>) -> bool {
-    let is_zero_list = |text: &str| text.split_whitespace().all(|word| word.parse() == Ok(0.0));
-    node.attributes().all(|attribute| is_zero_list(attribute.value()))
+fn is_element_without_effect(node: Node<'_>) -> bool {
+    let is_list_of_zeros = |text: &str| text.split_whitespace().all(|word| word.parse() == Ok(0.0));
+    node.attributes().all(|attribute| is_list_of_zeros(attribute.value()))
         && node.children().all(|child| child.text().is_none_or(|text| text.trim().is_empty()))
         && !node.children().any(|child| child.is_element())
 }

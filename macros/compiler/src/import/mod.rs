@@ -28,9 +28,9 @@ mod xml;
 #[cfg(test)]
 mod tests;
 
-pub use file::{LARGEST_FILE, read_file, with_plain_blanks};
+pub use file::{LARGEST_FILE, read_imported_file, with_standard_whitespace};
 pub use hulls::read_hulls;
-pub use imported::Imported;
+pub use imported::ImportedMechanism;
 
 /// Reads the text of a file. Paths of other files are relative to the folder of the file, which is
 /// `options.path` in `folder`.
@@ -42,7 +42,7 @@ pub fn import_file(
     folder: &Path,
     options: &FileOptions,
     cx: &mut Diagnostics,
-) -> Option<Imported> {
+) -> Option<ImportedMechanism> {
     if text.len() > LARGEST_FILE {
         file::report_file_error(&file::too_large_message(text.len() as u64), &options.path, cx);
         return None;
@@ -55,7 +55,12 @@ pub fn import_file(
     }
 }
 
-fn import_urdf(text: &str, path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
+fn import_urdf(
+    text: &str,
+    path: &Path,
+    options: &FileOptions,
+    cx: &mut Diagnostics,
+) -> Option<ImportedMechanism> {
     let cx = &mut context::Cx::new(text, &options.path, cx);
     let declared = OnceCell::new();
     let document = xml::parse_document(text, &declared, options.format, cx)?;

@@ -30,7 +30,7 @@ impl FilePose {
     /// Returns the inverse: the pose of the reference frame relative to this frame.
     pub(in crate::import) fn inverse_pose(&self) -> FilePose {
         let axes = transpose(&self.axes);
-        FilePose { at: scale_vector(matrix_times_vector(&axes, self.at), -1.0), axes }
+        FilePose { at: vector_times_scalar(matrix_times_vector(&axes, self.at), -1.0), axes }
     }
 
     /// Composes two poses. `inner` is relative to this frame, the result to the reference frame.
@@ -48,7 +48,7 @@ pub(in crate::import) fn add(a: Vector, b: Vector) -> Vector {
 }
 
 /// Returns a vector times a scalar.
-pub(in crate::import) fn scale_vector(a: Vector, factor: f64) -> Vector {
+pub(in crate::import) fn vector_times_scalar(a: Vector, factor: f64) -> Vector {
     a.map(|x| x * factor)
 }
 
@@ -126,7 +126,7 @@ fn sin_cos(angle: f64) -> (f64, f64) {
 pub(in crate::import) fn rotation_from_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
     let size = length(axis);
-    let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale_vector(axis, 1.0 / size) };
+    let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { vector_times_scalar(axis, 1.0 / size) };
     axis_rotation(axis, libm::atan2(size, direction[2]))
 }
 
@@ -204,8 +204,8 @@ mod tests {
 
     #[test]
     fn quaternions_equal_rotations_about_an_axis() {
-        let (axis, angle) = (scale_vector([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
-        let [x, y, z] = scale_vector(axis, (angle / 2.0).sin());
+        let (axis, angle) = (vector_times_scalar([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
+        let [x, y, z] = vector_times_scalar(axis, (angle / 2.0).sin());
         assert!(is_close(
             &axis_rotation(axis, angle),
             &rotation_of_quaternion([(angle / 2.0).cos(), x, y, z])

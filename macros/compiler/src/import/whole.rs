@@ -2,7 +2,7 @@
 
 use super::context::{Cx, Piece, format_position, quote_word};
 use super::element::Node;
-use super::imported::Imported;
+use super::imported::ImportedMechanism;
 use super::{LARGEST_FILE, file, xml};
 use crate::diag::Diagnostics;
 use crate::syntax::{FileFormat, Name};
@@ -15,7 +15,7 @@ pub(super) const MAX_DEPTH: usize = 32;
 pub(super) const MAX_FILES: usize = 256;
 
 /// Robot file that was read: its text and its paths.
-pub(super) struct ReadFile {
+pub(super) struct LoadedRobotFile {
     /// Text of the robot file.
     pub(super) text: String,
     /// Path of the file as messages show it.
@@ -27,7 +27,7 @@ pub(super) struct ReadFile {
 /// Robot file with its included files, and the text composed of them.
 pub(super) struct ComposedText {
     /// Files that were read; the first one is the file that the user names.
-    pub(super) files: Vec<ReadFile>,
+    pub(super) files: Vec<LoadedRobotFile>,
     /// Text of the robot file with its included files so far.
     pub(super) text: String,
     /// Pieces of the text, each with its file of origin.
@@ -37,7 +37,8 @@ pub(super) struct ComposedText {
 impl ComposedText {
     /// Creates an empty text. The file that the user names is file 0.
     pub(super) fn new(text: &str, path: &Path, name: &Name) -> ComposedText {
-        let first = ReadFile { text: text.to_string(), shown: name.text.clone(), path: path.to_path_buf() };
+        let first =
+            LoadedRobotFile { text: text.to_string(), shown: name.text.clone(), path: path.to_path_buf() };
         ComposedText { files: vec![first], text: String::new(), pieces: Vec::new() }
     }
 
@@ -53,7 +54,7 @@ impl ComposedText {
         let piece = self.files.get(file)?.text.get(from..to)?;
         self.pieces.push(Piece { start: self.text.len(), file, offset: from });
         self.text.push_str(piece);
-        self.check_size(name, cx)
+        self.check_text_size(name, cx)
     }
 
     /// Appends a text that is attributed to a position in a file.
@@ -66,10 +67,10 @@ impl ComposedText {
     ) -> Option<()> {
         self.pieces.push(Piece { start: self.text.len(), file, offset });
         self.text.push_str(text);
-        self.check_size(name, cx)
+        self.check_text_size(name, cx)
     }
 
-    fn check_size(&self, name: &Name, cx: &mut Diagnostics) -> Option<()> {
+    fn check_text_size(&self, name: &Name, cx: &mut Diagnostics) -> Option<()> {
         if self.text.len() > LARGEST_FILE {
             file::report_file_error(&file::too_large_message(self.text.len() as u64), name, cx);
             return None;
@@ -84,8 +85,8 @@ pub(super) fn import_composed_text(
     name: &Name,
     format: FileFormat,
     cx: &mut Diagnostics,
-    read: impl FnOnce(Node<'_>, &mut Cx<'_>) -> Option<Imported>,
-) -> Option<Imported> {
+    read: impl FnOnce(Node<'_>, &mut Cx<'_>) -> Option<ImportedMechanism>,
+) -> Option<ImportedMechanism> {
     let files: Vec<(&str, &str)> =
         whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
     let cx = &mut Cx::context_of_pieces(&files, whole.pieces, name.place.span, cx);
@@ -101,7 +102,7 @@ pub(super) fn import_composed_text(
 pub(super) fn report_include_cycle(
     known: usize,
     open: &[usize],
-    files: &[ReadFile],
+    files: &[LoadedRobotFile],
     places: &[Name],
     at: &Name,
     cx: &mut Diagnostics,

@@ -3,7 +3,7 @@
 //! depth and that xacro may generate them.
 
 use super::context::{Cx, quote_word};
-use super::file::with_plain_blanks;
+use super::file::with_standard_whitespace;
 use crate::diag::Place;
 use crate::syntax::FileFormat;
 use roxmltree::{Document, Error, Node, ParsingOptions};
@@ -37,13 +37,13 @@ fn max_depth(format: FileFormat) -> usize {
 /// after empty lines, are replaced by spaces. Other readers of URDF accept both. Lines and columns are
 /// preserved.
 pub(super) fn clean_xml_text(text: &str) -> Cow<'_, str> {
-    match with_plain_blanks(text.trim_end_matches('\0')) {
-        Cow::Borrowed(plain) => without_late_declaration(plain),
-        Cow::Owned(plain) => Cow::Owned(without_late_declaration(&plain).into_owned()),
+    match with_standard_whitespace(text.trim_end_matches('\0')) {
+        Cow::Borrowed(plain) => blank_out_late_xml_declaration(plain),
+        Cow::Owned(plain) => Cow::Owned(blank_out_late_xml_declaration(&plain).into_owned()),
     }
 }
 
-fn without_late_declaration(text: &str) -> Cow<'_, str> {
+fn blank_out_late_xml_declaration(text: &str) -> Cow<'_, str> {
     let start = text.len() - text.trim_start().len();
     let declaration = &text[start..];
     if start == 0 || !declaration.starts_with("<?xml ") {
@@ -69,26 +69,28 @@ pub(super) fn parse_document<'t>(
     format: FileFormat,
     cx: &mut Cx<'_>,
 ) -> Option<Document<'t>> {
-    let Scan { root, unclosed, prefixes } = match scan_limits(text, format) {
+    let MarkupScan { root, unclosed, prefixes } = match check_size_and_nesting(text, format) {
         Ok(found) => found,
         Err((offset, message)) => {
             cx.report_error(&cx.source_position(offset), message, |d| d);
             return None;
         }
     };
-    let error = match parse_without_prefixes(text) {
+    let error = match parse_xml_without_dtd(text) {
         Ok(document) => return reject_template(&document, format, cx).then_some(document),
         Err(error) => error,
     };
     let at = end_of_name(text, root);
     let declarations = match &error {
-        Error::UnknownNamespace(..) if root < text.len() => prefix_declarations(&text[root..], &prefixes),
+        Error::UnknownNamespace(..) if root < text.len() => {
+            missing_prefix_declarations(&text[root..], &prefixes)
+        }
         _ => String::new(),
     };
     cx.add(at, &declarations);
     let error = match &declarations {
         none if none.is_empty() => error,
-        some => match parse_without_prefixes(declared.get_or_init(|| insert_text(text, at, some))) {
+        some => match parse_xml_without_dtd(declared.get_or_init(|| insert_text(text, at, some))) {
             Ok(document) => return reject_template(&document, format, cx).then_some(document),
             Err(error) => error,
         },
@@ -112,11 +114,11 @@ fn insert_text(text: &str, at: usize, more: &str) -> String {
 
 /// Returns declarations of the undeclared prefixes, for insertion into the root element. All are added at
 /// once, because each attempt to parse takes time proportional to the size of the file.
-fn prefix_declarations(root: &str, prefixes: &[&str]) -> String {
-    let tag = &root[..scan_tag(root, 0, &mut Vec::new(), &mut |_| {}).unwrap_or(root.len())];
+fn missing_prefix_declarations(root: &str, prefixes: &[&str]) -> String {
+    let tag = &root[..scan_start_tag(root, 0, &mut Vec::new(), &mut |_| {}).unwrap_or(root.len())];
     let own: Vec<&str> =
-        tag.split("xmlns:").skip(1).filter_map(|rest| rest.split(not_in_a_name).next()).collect();
-    let is_wanted = |prefix: &&&str| {
+        tag.split("xmlns:").skip(1).filter_map(|rest| rest.split(is_not_prefix_character).next()).collect();
+    let is_undeclared_prefix = |prefix: &&&str| {
         // Declaring the root's own prefix would put the whole tree into a foreign namespace.
         let is_root = tag
             .strip_prefix('<')
@@ -124,21 +126,21 @@ fn prefix_declarations(root: &str, prefixes: &[&str]) -> String {
             .is_some_and(|rest| rest.starts_with(':'));
         !is_root && !["xacro", "xml", "xmlns"].contains(*prefix) && !own.contains(*prefix)
     };
-    let wanted = prefixes.iter().filter(is_wanted).take(MOST_PREFIXES);
+    let wanted = prefixes.iter().filter(is_undeclared_prefix).take(MOST_PREFIXES);
     wanted.map(|prefix| format!(" xmlns:{prefix}=\"undeclared:{prefix}\"")).collect()
 }
 
 /// Returns true for characters that cannot be part of a prefix.
-fn not_in_a_name(c: char) -> bool {
+fn is_not_prefix_character(c: char) -> bool {
     c.is_ascii() && !c.is_ascii_alphanumeric() && !matches!(c, '_' | '-' | '.')
 }
 
-fn parse_without_prefixes(text: &str) -> Result<Document<'_>, Error> {
+fn parse_xml_without_dtd(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, ParsingOptions { allow_dtd: false, ..ParsingOptions::default() })
 }
 
 /// Result of a scan of an XML file's markup without building a tree.
-struct Scan<'t> {
+struct MarkupScan<'t> {
     /// Byte offset of the root element.
     root: usize,
     /// Byte offset of the innermost element that is never closed.
@@ -151,7 +153,7 @@ struct Scan<'t> {
 ///
 /// The scan agrees with the parser up to the first syntax error. After it the scan may be wrong, which has no
 /// effect because the parser stops there.
-fn scan_limits(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
+fn check_size_and_nesting(text: &str, format: FileFormat) -> Result<MarkupScan<'_>, (usize, String)> {
     let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
         return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
@@ -179,7 +181,7 @@ fn scan_limits(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, Strin
                     start,
                     format!(
                         "{} has no document type and no entities of its own",
-                        format.phrase_with_article()
+                        format.file_format_phrase()
                     ),
                 ));
             } else if rest.starts_with("</") {
@@ -187,14 +189,14 @@ fn scan_limits(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, Strin
                 end_of_markup(rest, 2, ">")
             } else {
                 root.get_or_insert(start);
-                let length = scan_tag(rest, start, &mut open, &mut note)?;
+                let length = scan_start_tag(rest, start, &mut open, &mut note)?;
                 if open.len() > deepest {
                     return Err((start, format!("more than {deepest} nested elements")));
                 }
                 length
             };
     }
-    Ok(Scan { root: root.unwrap_or(text.len()), unclosed: open.pop(), prefixes })
+    Ok(MarkupScan { root: root.unwrap_or(text.len()), unclosed: open.pop(), prefixes })
 }
 
 /// Returns the length of a piece of markup that ends with `end`.
@@ -204,7 +206,7 @@ fn end_of_markup(rest: &str, skip: usize, end: &str) -> usize {
 
 /// Returns the length of the start tag at the beginning of `rest`. Adds the element to `open` unless it is
 /// empty, and calls `note` with the prefixes of names.
-fn scan_tag<'t>(
+fn scan_start_tag<'t>(
     rest: &'t str,
     start: usize,
     open: &mut Vec<usize>,
@@ -219,7 +221,7 @@ fn scan_tag<'t>(
         } else if bytes[k] == b':' && k > name && !matches!(bytes[name], b'0'..=b'9' | b'-' | b'.') {
             note(&rest[name..k]);
         }
-        if bytes.get(k).is_none_or(|b| not_in_a_name(char::from(*b))) {
+        if bytes.get(k).is_none_or(|b| is_not_prefix_character(char::from(*b))) {
             name = k + 1;
         }
         k += 1;
@@ -259,9 +261,9 @@ fn reject_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>)
 
 /// Returns an expression that xacro would have replaced by a value, with its byte offset.
 fn unexpanded_xacro_expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t str)> {
-    let is_read = READ.contains(&node.tag_name().name());
+    let will_print_errors = READ.contains(&node.tag_name().name());
     let is_expression = |value: &str| value.contains("${") || value.contains("$(");
-    let attributes = node.attributes().filter(|_| is_read || format == FileFormat::Sdf);
+    let attributes = node.attributes().filter(|_| will_print_errors || format == FileFormat::Sdf);
     let mut said = attributes.filter(|attribute| is_expression(attribute.value()));
     if let Some(found) = said.next() {
         return Some((found.range_value().start, document_slice(node, found.range_value())?));
@@ -328,7 +330,7 @@ fn report_parser_error(
         });
     }
     cx.report_error(
-        &place_of_error(error, unclosed, cx),
+        &position_of_parser_error(error, unclosed, cx),
         format!("malformed XML: {message}"),
         |d| match help {
             Some(help) => d.add_help(help),
@@ -338,7 +340,7 @@ fn report_parser_error(
 }
 
 /// Returns the position of a parser error. The parser gives no position for a premature end of the file.
-fn place_of_error(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
+fn position_of_parser_error(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
     match (error, unclosed) {
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.source_position(offset),
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, None) => cx.end_of_file(),

@@ -27,7 +27,7 @@ pub fn perpendicular_directions(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2]
     if let Some(k) = (0..3).find(|k| is_along_coordinate_axis(*k)) {
         return [words[(k + 1) % 3], words[(k + 2) % 3]];
     }
-    let [first, second] = match in_plane(axis) {
+    let [first, second] = match directions_in_plane(axis) {
         Some((first, second)) => [first, second],
         None => {
             // The coordinate axis farthest from the direction for sampled parameters.
@@ -43,7 +43,7 @@ pub fn perpendicular_directions(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2]
 /// Returns two directions that form a right-handed frame with a normal, or `None` if the normal is not
 /// constant. For the normal z they are x and y, and cyclically for x and y. For any other normal the first
 /// direction is orthogonal to the coordinate axis that is farthest from the normal.
-pub fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
+pub fn directions_in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
     let graph = normal[0].graph();
     let n = normal.constant_components()?;
     if let Some(k) = (0..3).find(|k| n[*k] == 1.0) {

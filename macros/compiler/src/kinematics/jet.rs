@@ -3,7 +3,7 @@
 //! cancels.
 
 use super::joint::Joint;
-use super::links::change_axes;
+use super::links::express_in_link_axes;
 use super::spatial::Spatial;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Model, Quantity};
@@ -21,7 +21,7 @@ pub struct Jet<'g> {
 /// A vector with its first time derivative, and its second time derivative at zero accelerations, in the axes
 /// of a link that is treated as fixed.
 #[derive(Clone, Copy)]
-pub struct Moving<'g> {
+pub struct MovingVector<'g> {
     /// Value of the vector, in the axes of one link.
     pub value: Vec3<'g>,
     /// First time derivative of the moving vector.
@@ -30,14 +30,14 @@ pub struct Moving<'g> {
     pub second: Vec3<'g>,
 }
 
-impl<'g> Moving<'g> {
+impl<'g> MovingVector<'g> {
     /// Returns the difference of two moving vectors.
-    pub fn minus(&self, b: &Moving<'g>) -> Moving<'g> {
-        Moving { value: self.value - b.value, rate: self.rate - b.rate, second: self.second - b.second }
+    pub fn minus(&self, b: &MovingVector<'g>) -> MovingVector<'g> {
+        MovingVector { value: self.value - b.value, rate: self.rate - b.rate, second: self.second - b.second }
     }
 
     /// Returns the inner product of two moving vectors.
-    pub fn dot(&self, b: &Moving<'g>) -> Jet<'g> {
+    pub fn dot(&self, b: &MovingVector<'g>) -> Jet<'g> {
         let twice = self.rate.dot(b.rate) * 2.0;
         Jet {
             value: self.value.dot(b.value),
@@ -53,7 +53,7 @@ impl<'g> Moving<'g> {
 }
 
 /// Motion of a link relative to one of its ancestors, in the link's axes.
-pub struct Relative<'g> {
+pub struct RelativeLinkMotion<'g> {
     /// Link whose relative motion is described; `None` for the ground.
     pub link: Option<LinkId>,
     /// Ancestor that the motion is relative to; `None` for the ground.
@@ -70,7 +70,7 @@ pub fn relative_motion<'g>(
     joints: &[Joint<'g>],
     link: Option<LinkId>,
     other: Option<LinkId>,
-) -> Relative<'g> {
+) -> RelativeLinkMotion<'g> {
     let parent_of_link = |l: LinkId| joints[l.0].parent;
     let (mut a, mut b) = (link, other);
     let mut path = Vec::new();
@@ -90,18 +90,22 @@ pub fn relative_motion<'g>(
     let mut motion: Option<(Spatial<'g>, Spatial<'g>)> = None;
     for l in path.iter().rev() {
         let joint = &joints[l.0];
-        let own = joint.total_relative_twist(model, &v);
+        let own = joint.twist_with_prescribed_motion(model, &v);
         let twist = motion.as_ref().map_or(own, |(twist, _)| joint.twist_to_child(twist).plus(&own));
         let before = motion.as_ref().map(|(twist, acceleration)| (twist, acceleration));
         let acceleration = joint.link_acceleration(model, before, &v, &still);
         motion = Some((twist, acceleration));
     }
     let (twist, acceleration) = motion.unwrap_or((zero, zero));
-    Relative { link, ancestor: a, twist, acceleration }
+    RelativeLinkMotion { link, ancestor: a, twist, acceleration }
 }
 
 /// Returns the motion of a point of a link, in the axes of the ancestor.
-pub fn motion_of_point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
+pub fn motion_of_point<'g>(
+    joints: &[Joint<'g>],
+    on: &RelativeLinkMotion<'g>,
+    p: Vec3<'g>,
+) -> MovingVector<'g> {
     let mut value = p;
     let mut at = on.link;
     while at != on.ancestor {
@@ -113,16 +117,20 @@ pub fn motion_of_point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>)
     let (w, a) = (on.twist.angular, &on.acceleration);
     let rate = on.twist.linear + w.cross(p);
     let second = a.linear + a.angular.cross(p) + w.cross(w.cross(p));
-    let vector_in_ancestor = |v| change_axes(joints, v, on.link, on.ancestor);
-    Moving { value, rate: vector_in_ancestor(rate), second: vector_in_ancestor(second) }
+    let vector_in_ancestor = |v| express_in_link_axes(joints, v, on.link, on.ancestor);
+    MovingVector { value, rate: vector_in_ancestor(rate), second: vector_in_ancestor(second) }
 }
 
 /// Returns the motion of a direction fixed in a link, in the axes of the ancestor.
-pub fn motion_of_direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
+pub fn motion_of_direction<'g>(
+    joints: &[Joint<'g>],
+    on: &RelativeLinkMotion<'g>,
+    e: Vec3<'g>,
+) -> MovingVector<'g> {
     let w = on.twist.angular;
     let second = on.acceleration.angular.cross(e) + w.cross(w.cross(e));
-    let vector_in_ancestor = |v| direction_out(joints, on, v);
-    Moving {
+    let vector_in_ancestor = |v| direction_in_ancestor(joints, on, v);
+    MovingVector {
         value: vector_in_ancestor(e),
         rate: vector_in_ancestor(w.cross(e)),
         second: vector_in_ancestor(second),
@@ -130,6 +138,6 @@ pub fn motion_of_direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<
 }
 
 /// Returns the components of a vector, given in a link's axes, in the axes of the ancestor.
-pub fn direction_out<'g>(joints: &[Joint<'g>], on: &Relative<'g>, v: Vec3<'g>) -> Vec3<'g> {
-    change_axes(joints, v, on.link, on.ancestor)
+pub fn direction_in_ancestor<'g>(joints: &[Joint<'g>], on: &RelativeLinkMotion<'g>, v: Vec3<'g>) -> Vec3<'g> {
+    express_in_link_axes(joints, v, on.link, on.ancestor)
 }

@@ -2,7 +2,7 @@
 //! wrenches and mass properties across the joint. The motion subspace of a joint that is placed by
 //! expressions of coordinates and time depends on these, and its motion may be prescribed in time.
 
-use super::rates::{Partials, position_in};
+use super::rates::{CachedDerivatives, coordinate_as_expression};
 use super::spatial::{Spatial, map_spatial};
 use crate::expr::replace::substitute_symbols;
 use crate::expr::replace::symbols_in;
@@ -34,7 +34,7 @@ pub struct Joint<'g> {
     pub dofs: Vec<Dof<'g>>,
     /// Additional motion of a link placed by expressions, whose motion subspace is not constant or which is
     /// driven in time.
-    pub drift: Option<Drift<'g>>,
+    pub drift: Option<VelocityFreeMotion<'g>>,
     /// Number of identical limbs that this joint connects to the parent, one in each SIMD lane of its
     /// expressions; one for an ordinary joint.
     pub limbs: usize,
@@ -42,7 +42,7 @@ pub struct Joint<'g> {
 
 /// Motion of a link in addition to the velocities of its coordinates, in link axes.
 #[derive(Clone, Debug)]
-pub struct Drift<'g> {
+pub struct VelocityFreeMotion<'g> {
     /// Twist at zero velocities, different from zero if the link is driven in time.
     pub twist: Spatial<'g>,
     /// Time derivative of the components of the joint's twist at constant `v`.
@@ -74,10 +74,13 @@ impl<'g> Joint<'g> {
     /// lanes.
     pub fn composite_inertia(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
         if self.limbs == 1 {
-            return parent.add_placed_inertia(link, &self.rotation, self.translation);
+            return parent.sum_with_placed_inertia(link, &self.rotation, self.translation);
         }
-        let alone =
-            Inertia::zero(parent.mass.graph()).add_placed_inertia(link, &self.rotation, self.translation);
+        let alone = Inertia::zero(parent.mass.graph()).sum_with_placed_inertia(
+            link,
+            &self.rotation,
+            self.translation,
+        );
         parent.plus(&Inertia {
             mass: self.lane_sum(alone.mass),
             moment: alone.moment.map(|c| self.lane_sum(c)),
@@ -106,7 +109,7 @@ impl<'g> Joint<'g> {
 
 impl<'g> Joint<'g> {
     /// Returns the joint's relative twist for the velocities `v`, including motion prescribed in time.
-    pub fn total_relative_twist(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
+    pub fn twist_with_prescribed_motion(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
         let relative = self.relative_twist(model, v);
         self.drift.as_ref().map_or(relative, |drift| relative.plus(&drift.twist))
     }
@@ -119,7 +122,7 @@ impl<'g> Joint<'g> {
         v: &[Expr<'g>],
         a: &[Expr<'g>],
     ) -> Spatial<'g> {
-        let (rate, mut own) = (self.total_relative_twist(model, v), self.relative_twist(model, a));
+        let (rate, mut own) = (self.twist_with_prescribed_motion(model, v), self.relative_twist(model, a));
         if let Some(drift) = &self.drift {
             own = own.plus(&drift.acceleration);
         }
@@ -139,50 +142,56 @@ impl<'g> Joint<'g> {
 
 /// Returns the joints of all links at the configuration `q`.
 pub fn joints_of_model<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
-    let mut partials = Partials::default();
+    let mut partials = CachedDerivatives::default();
     model.links.iter().map(|link| joint_of_link(model.configuration_space(), link, &mut partials)).collect()
 }
 
 /// Returns the joint of a link; `partials` caches derivatives of the preceding links.
-pub fn joint_of_link<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
+pub fn joint_of_link<'g>(
+    space: Space<'_, 'g>,
+    link: &Link<'g>,
+    partials: &mut CachedDerivatives<'g>,
+) -> Joint<'g> {
     let g = space.graph;
     let zero = Vec3::zero(g);
     let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
-    let single_dof = |c: &Coordinate, linear, angular| {
+    let single_dof_list = |c: &Coordinate, linear, angular| {
         vec![Dof { index: c.v.0, ratio: c.ratio, subspace: Spatial { linear, angular } }]
     };
     let (motion, shift, dofs) = match &link.motion {
         Motion::Turn { axis, coordinate } => (
-            Rotation::rotation_about_axis(*axis, position_in(g, coordinate)),
+            Rotation::rotation_about_axis(*axis, coordinate_as_expression(g, coordinate)),
             zero,
-            single_dof(coordinate, zero, *axis),
+            single_dof_list(coordinate, zero, *axis),
         ),
-        Motion::Slide { axis, coordinate } => {
-            (Rotation::identity(g), *axis * position_in(g, coordinate), single_dof(coordinate, *axis, zero))
-        }
+        Motion::Slide { axis, coordinate } => (
+            Rotation::identity(g),
+            *axis * coordinate_as_expression(g, coordinate),
+            single_dof_list(coordinate, *axis, zero),
+        ),
         Motion::Helix { axis, pitch, coordinate } => {
-            let angle = position_in(g, coordinate);
+            let angle = coordinate_as_expression(g, coordinate);
             let shift = *axis * (*pitch * angle);
             (
                 Rotation::rotation_about_axis(*axis, angle),
                 shift,
-                single_dof(coordinate, *axis * *pitch, *axis),
+                single_dof_list(coordinate, *axis * *pitch, *axis),
             )
         }
         Motion::Ball { q, v } => {
             let rotation = Rotation::from_quaternion(quaternion_components(*q));
-            let dofs = (0..3).map(|k| unit_dof(g, v.0 + k, None, Some(k))).collect();
+            let dofs = (0..3).map(|k| axis_aligned_dof(g, v.0 + k, None, Some(k))).collect();
             (rotation, zero, dofs)
         }
         Motion::Free { q, v } => {
             let rotation = Rotation::from_quaternion(quaternion_components(*q + 3));
             let dofs = (0..6).map(|k| match k {
-                0..3 => unit_dof(g, v.0 + k, Some(k), None),
-                _ => unit_dof(g, v.0 + k, None, Some(k - 3)),
+                0..3 => axis_aligned_dof(g, v.0 + k, Some(k), None),
+                _ => axis_aligned_dof(g, v.0 + k, None, Some(k - 3)),
             });
             (rotation, Vec3([0, 1, 2].map(|k| (*q + k).expr(g))), dofs.collect())
         }
-        Motion::Placed => return placed_joint(space, link, partials),
+        Motion::Placed => return joint_from_placement(space, link, partials),
     };
     Joint {
         parent: link.parent,
@@ -197,16 +206,20 @@ pub fn joint_of_link<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut P
 /// Returns the joint of a link whose placement is an expression of coordinates and time. Its twist is the
 /// time derivative of the placement, and its subspace consists of the derivatives of the twist with respect
 /// to the velocities.
-fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
+fn joint_from_placement<'g>(
+    space: Space<'_, 'g>,
+    link: &Link<'g>,
+    partials: &mut CachedDerivatives<'g>,
+) -> Joint<'g> {
     let place = &link.placement;
-    let twist = rate_of_placement(space, &place.rotation, place.translation, partials);
+    let twist = twist_of_placement(space, &place.rotation, place.translation, partials);
     let acceleration = map_spatial(&twist, |c| partials.time_derivative(space, c));
     let mut dofs = Vec::new();
     let mut subspace_rates = Vec::new();
     // The twist is linear in the velocities, so its value at zero velocities is the motion prescribed in
     // time.
-    let drift = map_spatial(&twist, |c| with_zero_velocities(space.graph, c));
-    for index in velocities_in_twist(&twist) {
+    let drift = map_spatial(&twist, |c| substitute_zero_velocities(space.graph, c));
+    for index in velocity_indices_in_twist(&twist) {
         let subspace = map_spatial(&twist, |c| partials.derivative(Quantity::Velocity(index).symbol(), c));
         subspace_rates.push(map_spatial(&subspace, |c| partials.time_derivative(space, c)));
         dofs.push(Dof { index, ratio: 1.0, subspace });
@@ -216,24 +229,24 @@ fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partia
         rotation: place.rotation.clone(),
         translation: place.translation,
         dofs,
-        drift: Some(Drift { twist: drift, acceleration, subspace_rates }),
+        drift: Some(VelocityFreeMotion { twist: drift, acceleration, subspace_rates }),
         limbs: 1,
     }
 }
 
 /// Returns the twist of a frame from the time derivatives of its placement, in the frame's axes: `Rᵀ ṗ`, and
 /// `[ω]× = Rᵀ Ṙ`.
-fn rate_of_placement<'g>(
+fn twist_of_placement<'g>(
     space: Space<'_, 'g>,
     rotation: &Rotation<'g>,
     translation: Vec3<'g>,
-    partials: &mut Partials<'g>,
+    partials: &mut CachedDerivatives<'g>,
 ) -> Spatial<'g> {
     let angular = rotation.angular_velocity(&mut |e| partials.time_derivative(space, e));
     Spatial { linear: rotation.to_child(translation.map(|c| partials.time_derivative(space, c))), angular }
 }
 
-fn velocities_in_twist(twist: &Spatial<'_>) -> Vec<usize> {
+fn velocity_indices_in_twist(twist: &Spatial<'_>) -> Vec<usize> {
     let all: Vec<Expr<'_>> = twist.linear.0.iter().chain(&twist.angular.0).copied().collect();
     let velocity_index = |s: Symbol| match Quantity::from_symbol(s) {
         Quantity::Velocity(k) => Some(k),
@@ -243,13 +256,18 @@ fn velocities_in_twist(twist: &Spatial<'_>) -> Vec<usize> {
 }
 
 /// Returns an expression with all velocity symbols set to zero.
-fn with_zero_velocities<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
+fn substitute_zero_velocities<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
     substitute_symbols(e, &|s| {
         matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| graph.zero())
     })
 }
 
-fn unit_dof<'g>(g: &'g Graph, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
+fn axis_aligned_dof<'g>(
+    g: &'g Graph,
+    index: usize,
+    linear: Option<usize>,
+    angular: Option<usize>,
+) -> Dof<'g> {
     let axis_or_zero = |k: Option<usize>| k.map_or(Vec3::zero(g), |k| Vec3::coordinate_axis(g, k));
     Dof {
         index,

@@ -10,7 +10,7 @@ use crate::mechanism::{LinkId, Model};
 pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Spatial<'g>> {
     let mut twists: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
-        let own = joint.total_relative_twist(model, v);
+        let own = joint.twist_with_prescribed_motion(model, v);
         twists.push(match joint.parent {
             None => own,
             Some(p) => joint.twist_to_child(&twists[p.0]).plus(&own),
@@ -37,7 +37,7 @@ pub fn accelerations<'g>(
 }
 
 /// Returns the components in the axes of `to` of a vector given in the axes of `from`.
-pub fn change_axes<'g>(
+pub fn express_in_link_axes<'g>(
     joints: &[Joint<'g>],
     mut v: Vec3<'g>,
     mut from: Option<LinkId>,

@@ -2,12 +2,12 @@
 //! mechanism's constants and samples of its parameters, and the independent rows are counted there. If none
 //! is found, Grübler's count is used, which assumes that all rows are independent.
 
-use super::redundancy::Basis;
+use super::redundancy::OrthonormalRowBasis;
 use super::rows::{Rows, random_configuration};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::expr::replace::symbols_in;
-use crate::mechanism::{Chart, Freedom, InV, Model, Pivot, Quantity};
+use crate::mechanism::{Chart, ConstraintPivot, Freedom, InV, Model, Quantity};
 
 /// Random starts of the search; a third of them if parameters are sampled, whose values may be incompatible.
 const STARTS: u64 = 24;
@@ -76,7 +76,7 @@ pub fn degrees_of_freedom(
 ) -> Freedom {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let free_dof_count = |(q, seed): &Sample, count: usize| {
-        let mut basis = Basis::default();
+        let mut basis = OrthonormalRowBasis::default();
         rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
         nv - basis.rank()
     };
@@ -85,7 +85,7 @@ pub fn degrees_of_freedom(
     let count_free_dofs = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free_dof_count(w, rank));
     let freedom =
         Freedom { coordinates: count_free_dofs(model.holonomic_count()), velocities: count_free_dofs(nc) };
-    let is_undriven = || samples.iter().all(|sample| !is_driven(model, rows, sample));
+    let is_undriven = || samples.iter().all(|sample| !moves_at_zero_velocity(model, rows, sample));
     if freedom.velocities == 0 && !samples.is_empty() && is_undriven() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.report_error(place.clone(), "this mechanism cannot move").add_help(format!(
@@ -97,25 +97,25 @@ pub fn degrees_of_freedom(
 
 /// Returns true if the mechanism moves at zero velocities: frames depend on time, or the rate of a constraint
 /// has a velocity-free term.
-fn is_driven(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample) -> bool {
+fn moves_at_zero_velocity(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample) -> bool {
     let placements: Vec<Expr<'_>> =
         model.links.iter().flat_map(|link| link.placement.all_expressions()).collect();
-    rows.has_drift(q, *seed)
+    rows.is_violated_at_zero_velocity(q, *seed)
         || symbols_in(&placements).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time)
 }
 
 /// Returns a pivot for each constraint among the velocities that need not be independent, in the order of an
 /// elimination that is well-conditioned at a sample. Returns `None` if some constraint has no pivot.
-pub fn dependent_velocities(
+pub fn constraint_pivot_velocities(
     model: &Model<'_>,
     rows: &Rows<'_>,
     samples: &[Sample],
     independent: &[usize],
-) -> Option<Vec<Pivot>> {
+) -> Option<Vec<ConstraintPivot>> {
     let (q, seed) = samples.first()?;
     let mut rows = rows.jacobian(q, *seed);
     let largest = rows.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
-    let mut pivots: Vec<Pivot> = Vec::new();
+    let mut pivots: Vec<ConstraintPivot> = Vec::new();
     while pivots.len() < rows.len() {
         let open = (0..rows.len()).filter(|i| pivots.iter().all(|pivot| pivot.constraint != *i));
         let all = open.flat_map(|i| (0..model.nv()).map(move |j| (i, j)));
@@ -125,7 +125,7 @@ pub fn dependent_velocities(
         if pivot.abs() <= SMALL_PIVOT * largest {
             return None;
         }
-        pivots.push(Pivot { constraint: row, velocity: InV(column) });
+        pivots.push(ConstraintPivot { constraint: row, velocity: InV(column) });
         let own = rows[row].clone();
         for (i, other) in rows.iter_mut().enumerate() {
             if i != row {
@@ -155,7 +155,7 @@ fn close_loops(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Res
             break;
         }
         let jacobian = &rows.jacobian(&q, seed)[..r.len()];
-        let step = damped_step(jacobian, &r, damping);
+        let step = damped_least_squares_step(jacobian, &r, damping);
         let next = displaced_configuration(model, &q, &step);
         let trial = rows.residuals(&next, seed);
         if sum_of_squares(&trial) < sum_of_squares(&r) {
@@ -172,7 +172,7 @@ fn close_loops(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Res
 }
 
 /// Returns the damped least-squares step `−Jᵀ (J Jᵀ + damping)⁻¹ r` by elimination.
-fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
+fn damped_least_squares_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
     let n = rows.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut m: Vec<Vec<f64>> = rows.iter().map(|a| rows.iter().map(|b| dot(a, b)).collect()).collect();
@@ -203,11 +203,13 @@ fn displaced_configuration(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64>
     for chart in &model.charts {
         match *chart {
             Chart::Plain(k, v) => out[k.0] += dv[v.0],
-            Chart::Ball(k, v) => rotate_quaternion(&mut out[k.and_next(4)], &dv[v.and_next(3)]),
+            Chart::Ball(k, v) => {
+                rotate_quaternion(&mut out[k.range_of_entries(4)], &dv[v.range_of_entries(3)])
+            }
             Chart::Free(k, v) => {
-                let shift = rotate_vector(&q[(k + 3).and_next(4)], &dv[v.and_next(3)]);
-                out[k.and_next(3)].iter_mut().zip(shift).for_each(|(x, by)| *x += by);
-                rotate_quaternion(&mut out[(k + 3).and_next(4)], &dv[(v + 3).and_next(3)]);
+                let shift = rotate_vector(&q[(k + 3).range_of_entries(4)], &dv[v.range_of_entries(3)]);
+                out[k.range_of_entries(3)].iter_mut().zip(shift).for_each(|(x, by)| *x += by);
+                rotate_quaternion(&mut out[(k + 3).range_of_entries(4)], &dv[(v + 3).range_of_entries(3)]);
             }
         }
     }

@@ -13,13 +13,13 @@ mod spatial;
 pub mod speeds;
 
 pub use crate::expr::replace::symbols_in;
-pub use directions::{AXES, in_plane, normalised_or_zero, perpendicular_directions};
-pub use joint::{Dof, Drift, Joint, joint_of_link, joints_of_model};
-pub use links::{accelerations, change_axes, twists};
+pub use directions::{AXES, directions_in_plane, normalised_or_zero, perpendicular_directions};
+pub use joint::{Dof, Joint, VelocityFreeMotion, joint_of_link, joints_of_model};
+pub use links::{accelerations, express_in_link_axes, twists};
 pub use rates::{
-    Partials, configuration_rate, coordinate_position, coordinate_velocity, differentiated_gradient,
-    energy_gradient, motion_rates, position_in, rotation_rates, time_derivative, velocity_gradient,
-    velocity_gradients,
+    CachedDerivatives, cached_velocity_gradient, configuration_rate, coordinate_as_expression,
+    coordinate_in_terms_of_q, coordinate_velocity, energy_gradient, rotation_entries_with_rates,
+    time_derivative, time_derivatives_along_motion, velocity_gradient, velocity_gradients,
 };
-pub use rows::{Rows, random_configuration, sampled_value};
+pub use rows::{Rows, random_configuration, symbol_value_at_rest};
 pub use spatial::{Spatial, map_spatial};

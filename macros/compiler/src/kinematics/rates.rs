@@ -1,18 +1,18 @@
 //! Time derivatives of expressions along the motion, and derivatives with respect to the velocities.
 
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::symbols_in;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Chart, Coordinate, Gradient, InQ, InV, Model, Quantity, Space};
 use std::collections::BTreeMap;
 
 /// Returns the value of a coordinate as an expression of `q`.
-pub fn coordinate_position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
-    position_in(model.graph, c)
+pub fn coordinate_in_terms_of_q<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
+    coordinate_as_expression(model.graph, c)
 }
 
 /// Returns the value of a coordinate as an expression of `q`.
-pub fn position_in<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
+pub fn coordinate_as_expression<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
     c.q.expr(g) * g.num(c.ratio) + g.num(c.offset)
 }
 
@@ -23,13 +23,19 @@ pub fn coordinate_velocity<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 
 /// Returns the time derivative of an expression of `q`, `v` and `t` along the motion, at constant `v`.
 pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
-    time_derivative_with(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).differentiate(e))
+    time_derivative_from_partials(space, e, |symbol| {
+        DirectionalDerivative::with_respect_to(symbol, space.graph).differentiate(e)
+    })
 }
 
 /// Returns the time derivatives of expressions of `q`, `v` and `t` along the motion, with accelerations or at
 /// constant velocities. All symbols vary at once, so common subexpressions are differentiated once instead of
 /// once per symbol.
-pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool) -> Vec<Expr<'g>> {
+pub fn time_derivatives_along_motion<'g>(
+    space: Space<'_, 'g>,
+    e: &[Expr<'g>],
+    accelerated: bool,
+) -> Vec<Expr<'g>> {
     let g = space.graph;
     let rate = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => Some(configuration_rate(space, k)),
@@ -38,14 +44,15 @@ pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool)
         _ => None,
     };
     let seeds = symbols_in(e).into_iter().filter_map(|symbol| rate(symbol).map(|rate| (symbol, rate)));
-    let mut along = Derivative::with_rates(seeds.collect(), g).with_preset_derivatives(rotation_rates(space));
+    let mut along = DirectionalDerivative::differentiation_with_rates(seeds.collect(), g)
+        .with_preset_derivatives(rotation_entries_with_rates(space));
     e.iter().map(|e| along.differentiate(*e)).collect()
 }
 
 /// Returns the entries of the rotation matrices of ball and free joints, each with its time derivative by
 /// `Ṙ = R [ω]×`. The derivative consists of other entries times angular velocities, whereas the derivatives
 /// of the quaternion's components would have to be multiplied out.
-pub fn rotation_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+pub fn rotation_entries_with_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let g = space.graph;
     let mut all = Vec::new();
     for chart in space.charts {
@@ -81,22 +88,22 @@ fn joint_velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
 /// the positions of their predecessors, and to differentiate each of them by each coordinate without a cache
 /// would take a number of operations that is cubic in the length of the chain.
 #[derive(Default)]
-pub struct Partials<'g>(BTreeMap<Symbol, Derivative<'g>>);
+pub struct CachedDerivatives<'g>(BTreeMap<Symbol, DirectionalDerivative<'g>>);
 
-impl<'g> Partials<'g> {
+impl<'g> CachedDerivatives<'g> {
     /// Returns the derivative of an expression with respect to a symbol.
     pub fn derivative(&mut self, symbol: Symbol, e: Expr<'g>) -> Expr<'g> {
-        let new_derivative = || Derivative::with_respect_to(symbol, e.graph());
-        self.0.entry(symbol).or_insert_with(new_derivative).differentiate(e)
+        let new_partial_derivative = || DirectionalDerivative::with_respect_to(symbol, e.graph());
+        self.0.entry(symbol).or_insert_with(new_partial_derivative).differentiate(e)
     }
 
     /// Returns the time derivative of an expression along the motion, at constant `v`.
     pub fn time_derivative(&mut self, space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
-        time_derivative_with(space, e, |symbol| self.derivative(symbol, e))
+        time_derivative_from_partials(space, e, |symbol| self.derivative(symbol, e))
     }
 }
 
-fn time_derivative_with<'g>(
+fn time_derivative_from_partials<'g>(
     space: Space<'_, 'g>,
     e: Expr<'g>,
     mut partial: impl FnMut(Symbol) -> Expr<'g>,
@@ -121,20 +128,25 @@ pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
     let velocity_component = |index: InV| joint_velocity(space, index);
     let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
-    let three_velocities = |first: InV| [0, 1, 2].map(|k| velocity_component(first + k));
+    let three_velocity_components = |first: InV| [0, 1, 2].map(|k| velocity_component(first + k));
     for chart in space.charts {
         match *chart {
             Chart::Plain(a, b) if a.0 == k => return velocity_component(b),
-            Chart::Ball(a, b) if a.and_next(4).contains(&k) => {
-                return quaternion_rate(quaternion_components(a), three_velocities(b), k - a.0);
+            Chart::Ball(a, b) if a.range_of_entries(4).contains(&k) => {
+                return quaternion_rate_entry(
+                    quaternion_components(a),
+                    three_velocity_components(b),
+                    k - a.0,
+                );
             }
-            Chart::Free(a, b) if a.and_next(7).contains(&k) => {
+            Chart::Free(a, b) if a.range_of_entries(7).contains(&k) => {
                 let quaternion = quaternion_components(a + 3);
                 return match k - a.0 {
-                    position @ 0..3 => {
-                        Rotation::from_quaternion(quaternion).to_parent(Vec3(three_velocities(b)))[position]
+                    position @ 0..3 => Rotation::from_quaternion(quaternion)
+                        .to_parent(Vec3(three_velocity_components(b)))[position],
+                    component => {
+                        quaternion_rate_entry(quaternion, three_velocity_components(b + 3), component - 3)
                     }
-                    component => quaternion_rate(quaternion, three_velocities(b + 3), component - 3),
                 };
             }
             _ => {}
@@ -143,7 +155,7 @@ pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     g.zero()
 }
 
-fn quaternion_rate<'g>(quaternion: [Expr<'g>; 4], w: [Expr<'g>; 3], entry: usize) -> Expr<'g> {
+fn quaternion_rate_entry<'g>(quaternion: [Expr<'g>; 4], w: [Expr<'g>; 3], entry: usize) -> Expr<'g> {
     let [x, y, z, s] = quaternion;
     let [a, b, c] = w.map(|w| w * 0.5);
     match entry {
@@ -172,7 +184,7 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
     wanted.sort_unstable();
     for rows in wanted.chunk_by(|a, b| a.0 == b.0) {
         let Quantity::Velocity(k) = Quantity::from_symbol(rows[0].0) else { continue };
-        let mut derivative = Derivative::with_respect_to(rows[0].0, graph);
+        let mut derivative = DirectionalDerivative::with_respect_to(rows[0].0, graph);
         for (_, row) in rows {
             gradients[*row].push((k, derivative.differentiate(all[*row])));
         }
@@ -183,11 +195,12 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
 /// Returns the generalized forces that oppose an energy: the derivatives of its time derivative with respect
 /// to the velocities, at constant time.
 pub fn energy_gradient<'g>(model: &Model<'g>, energy: Expr<'g>) -> Gradient<'g> {
-    let gradient_of_energy_rate = || velocity_gradient(time_derivative(model.configuration_space(), energy));
-    model.gradients.gradient_of_energy(&model.charts, energy, gradient_of_energy_rate)
+    let velocity_gradient_of_energy_rate =
+        || velocity_gradient(time_derivative(model.configuration_space(), energy));
+    model.gradients.cached_energy_gradient(&model.charts, energy, velocity_gradient_of_energy_rate)
 }
 
 /// Returns the derivatives of an expression with respect to all velocities from the model's cache.
-pub fn differentiated_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> Gradient<'g> {
-    model.gradients.by_velocity(e, || velocity_gradient(e))
+pub fn cached_velocity_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> Gradient<'g> {
+    model.gradients.cached_velocity_derivatives(e, || velocity_gradient(e))
 }

@@ -3,7 +3,7 @@
 //! random parameters, so that only rows that are redundant in every configuration are recognised.
 
 use super::mobility::Sample;
-use super::rows::{Rows, random_configuration, sampled_value};
+use super::rows::{Rows, random_configuration, symbol_value_at_rest};
 use crate::diag::Diagnostics;
 use crate::expr::eval::Tape;
 use crate::mechanism::{Constraint, Model};
@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-15;
 
 /// Returns for each row whether no velocity influences it in any configuration, up to rounding. An example is
 /// the height of a wheel whose axle has a constant height.
-pub fn constant_rows(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
+pub fn velocity_independent_row_flags(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
     let sample_jacobian = |seed| rows.jacobian(&random_configuration(model, seed), seed);
     let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sample_jacobian).collect();
     let group_of_row = |row: usize| model.constraints[row].group;
@@ -46,13 +46,13 @@ pub fn constant_rows(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
 
 /// Reports rows that no velocity influences and that are violated: they have the same value in every
 /// configuration.
-pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics) {
+pub fn report_violated_constant_rows(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics) {
     let all = model.constraints.iter().zip(constant);
     let constant: Vec<&Constraint<'_>> = all.filter(|(_, constant)| **constant).map(|(c, _)| c).collect();
     let tape = Tape::new(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
     let sample_gap_values = |seed| {
         let q = random_configuration(model, seed);
-        tape.evaluate_at(&|s| sampled_value(s, &q, seed))
+        tape.evaluate_at(&|s| symbol_value_at_rest(s, &q, seed))
     };
     let is_violated = |gap: f64| gap.abs() > TOLERANCE || gap.is_nan();
     for ((c, gap), again) in constant.iter().zip(sample_gap_values(0)).zip(sample_gap_values(1)) {
@@ -86,7 +86,8 @@ pub fn prune_redundant_rows(
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
     let all = random.chain(samples.iter().cloned());
     let jacobians: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| rows.jacobian(&q, seed)).collect();
-    let mut bases: Vec<Basis> = jacobians.iter().map(|_| Basis::default()).collect();
+    let mut bases: Vec<OrthonormalRowBasis> =
+        jacobians.iter().map(|_| OrthonormalRowBasis::default()).collect();
     let mut kept: Vec<usize> = Vec::new();
     for row in (0..model.constraints.len()).filter(|row| !constant[*row]) {
         if !jacobians.iter().zip(&bases).all(|(j, basis)| basis.spans_row(&j[row], TOLERANCE)) {
@@ -109,9 +110,9 @@ pub fn prune_redundant_rows(
 
 /// Orthonormal basis of the span of Jacobian rows.
 #[derive(Default)]
-pub struct Basis(Vec<Vec<f64>>);
+pub struct OrthonormalRowBasis(Vec<Vec<f64>>);
 
-impl Basis {
+impl OrthonormalRowBasis {
     /// Returns the number of independent rows in the basis.
     pub fn rank(&self) -> usize {
         self.0.len()

@@ -53,13 +53,13 @@ impl<'g> Rows<'g> {
 
     /// Returns the residuals of the holonomic constraints, which come first.
     pub fn residuals(&self, q: &[f64], seed: u64) -> Vec<f64> {
-        self.residuals.evaluate_at(&|s| sampled_value(s, q, seed))
+        self.residuals.evaluate_at(&|s| symbol_value_at_rest(s, q, seed))
     }
 
     /// Returns the coefficients of the velocities at a configuration, with parameters sampled by `seed`.
     pub fn jacobian(&self, q: &[f64], seed: u64) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.size.1]; self.size.0];
-        let values = self.entries.evaluate_at(&|s| sampled_value(s, q, seed));
+        let values = self.entries.evaluate_at(&|s| symbol_value_at_rest(s, q, seed));
         for ((row, column), value) in self.at.iter().zip(values) {
             rows[*row][*column] = value;
         }
@@ -68,9 +68,9 @@ impl<'g> Rows<'g> {
 
     /// Returns true if some constraint is violated at zero velocities beyond rounding: its rate has a
     /// velocity-free term.
-    pub fn has_drift(&self, q: &[f64], seed: u64) -> bool {
+    pub fn is_violated_at_zero_velocity(&self, q: &[f64], seed: u64) -> bool {
         self.rates
-            .evaluate_with_rounding(&|s| sampled_value(s, q, seed))
+            .evaluate_with_rounding(&|s| symbol_value_at_rest(s, q, seed))
             .iter()
             .any(|rate| !rate.may_be_zero())
     }
@@ -79,7 +79,7 @@ impl<'g> Rows<'g> {
     /// errors.
     pub fn may_be_zero(&self, q: &[f64], seed: u64) -> Vec<bool> {
         let mut may_be = vec![true; self.size.0];
-        let entries = self.entries.evaluate_with_rounding(&|s| sampled_value(s, q, seed));
+        let entries = self.entries.evaluate_with_rounding(&|s| symbol_value_at_rest(s, q, seed));
         for ((row, _), entry) in self.at.iter().zip(entries) {
             may_be[*row] &= entry.may_be_zero();
         }
@@ -88,7 +88,7 @@ impl<'g> Rows<'g> {
 }
 
 /// Returns the value of a symbol at zero velocities, with parameters sampled by `seed`.
-pub fn sampled_value(s: Symbol, q: &[f64], seed: u64) -> f64 {
+pub fn symbol_value_at_rest(s: Symbol, q: &[f64], seed: u64) -> f64 {
     match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(_) => 0.0,
@@ -102,8 +102,8 @@ pub fn random_configuration(model: &Model<'_>, seed: u64) -> Vec<f64> {
         .map(|k| 2.0 * sample_of_symbol(Quantity::Configuration(k).symbol(), seed) - 2.0)
         .collect();
     for first in model.links.iter().filter_map(|link| link.motion.first_quaternion_index()) {
-        let norm = q[first.and_next(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
-        for c in &mut q[first.and_next(4)] {
+        let norm = q[first.range_of_entries(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
+        for c in &mut q[first.range_of_entries(4)] {
             *c /= norm;
         }
     }

@@ -1,11 +1,11 @@
 //! Generalized speeds: the velocities on which they depend, their invertibility, and the inverse matrix.
 
-use super::redundancy::Basis;
-use super::rows::{random_configuration, sampled_value};
-use crate::algebra::normal::Normal;
+use super::redundancy::OrthonormalRowBasis;
+use super::rows::{random_configuration, symbol_value_at_rest};
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{AtomRank, polynomial_to_expression};
 use crate::algebra::trigonometry::simplify_trigonometry;
-use crate::algebra::unit::on_unit_sphere;
+use crate::algebra::unit::simplify_on_unit_sphere;
 use crate::expr::eval::Tape;
 use crate::expr::{Expr, Symbol};
 use crate::mechanism::{Chart, Model, Quantity};
@@ -21,36 +21,37 @@ const TOLERANCE: f64 = 1e-9;
 type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 
 /// Returns the entries of a matrix in random configurations, row by row.
-fn sample_matrix(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
+fn sampled_matrix_entries(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
     let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
     let (tape, width) = (Tape::new(&entries), rows.first().map_or(0, Vec::len).max(1));
     let sampled_rows = |seed| {
         let q = random_configuration(model, seed);
-        tape.evaluate_at(&|s| sampled_value(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
+        tape.evaluate_at(&|s| symbol_value_at_rest(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
     };
     (0..SAMPLES).map(sampled_rows).collect()
 }
 
 /// Returns the columns of a matrix that are not zero in all configurations.
-pub fn named_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
-    let all = sample_matrix(model, rows);
+pub fn nonzero_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
+    let all = sampled_matrix_entries(model, rows);
     let width = rows.first().map_or(0, Vec::len);
-    let is_named = |k: &usize| all.iter().flatten().any(|row| row[*k].abs() > TOLERANCE);
-    (0..width).filter(is_named).collect()
+    let has_nonzero_coefficient = |k: &usize| all.iter().flatten().any(|row| row[*k].abs() > TOLERANCE);
+    (0..width).filter(has_nonzero_coefficient).collect()
 }
 
 /// Returns the first row that is a combination of its predecessors in every configuration; `None` if there is
 /// none.
-pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
+pub fn index_of_first_dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
     let first_dependent_row = |sample: &Vec<Vec<f64>>| {
-        let mut basis = Basis::default();
+        let mut basis = OrthonormalRowBasis::default();
         sample.iter().position(|row| {
             let before = basis.rank();
             basis.add(row, TOLERANCE);
             basis.rank() == before
         })
     };
-    let found: Vec<Option<usize>> = sample_matrix(model, rows).iter().map(first_dependent_row).collect();
+    let found: Vec<Option<usize>> =
+        sampled_matrix_entries(model, rows).iter().map(first_dependent_row).collect();
     found.into_iter().collect::<Option<Vec<usize>>>().and_then(|rows| rows.into_iter().max())
 }
 
@@ -64,7 +65,7 @@ pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
             return None;
         }
         let block = own_rows.iter().map(|i| own_columns.iter().map(|j| rows[*i][*j]).collect()).collect();
-        let found = block_inverse(model, &block);
+        let found = invert_speed_block_with_minors(model, &block);
         for (i, row) in own_columns.iter().zip(found) {
             for (j, entry) in own_rows.iter().zip(row) {
                 out[*i][*j] = entry;
@@ -102,9 +103,9 @@ fn connected_blocks(rows: &Matrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
     blocks
 }
 
-fn block_inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
+fn invert_speed_block_with_minors<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
     let n = rows.len();
-    let mut minors = Minors { model, rows, known: BTreeMap::new() };
+    let mut minors = MinorCache { model, rows, known: BTreeMap::new() };
     let all = (1_u32 << n) - 1;
     let whole = minors.submatrix_determinant(all, all);
     let mut entry = |i: usize, j: usize| {
@@ -116,13 +117,13 @@ fn block_inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
 }
 
 /// Cache of the minors of a matrix; sets of rows and columns are bit masks.
-struct Minors<'a, 'g> {
+struct MinorCache<'a, 'g> {
     model: &'a Model<'g>,
     rows: &'a Matrix<'g>,
     known: BTreeMap<(u32, u32), Expr<'g>>,
 }
 
-impl<'g> Minors<'_, 'g> {
+impl<'g> MinorCache<'_, 'g> {
     /// Returns the determinant of a submatrix, expanded along its first row.
     fn submatrix_determinant(&mut self, rows: u32, columns: u32) -> Expr<'g> {
         if rows == 0 {
@@ -156,11 +157,11 @@ pub fn shorten_expression<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
 }
 
 fn shorter_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
-    let mut normal = Normal::new(model.graph, |_: Symbol| AtomRank::Position);
+    let mut normal = NormalFormCache::new(model.graph, |_: Symbol| AtomRank::Position);
     let p = normal.normal_form(e)?;
     let mut p = simplify_trigonometry(&mut normal.ring, &p)?;
     for quaternion in quaternion_symbols(model) {
-        p = on_unit_sphere(&mut normal.ring, &p, &quaternion)?;
+        p = simplify_on_unit_sphere(&mut normal.ring, &p, &quaternion)?;
     }
     Some(polynomial_to_expression(model.graph, &normal.ring, &p))
 }

@@ -43,14 +43,14 @@ const OTHERS: [(&str, Callable); 5] = [
 
 impl Callable {
     /// Returns the callable function of the language with this name.
-    pub fn of_name(name: &str) -> Option<Callable> {
+    pub fn find_by_name(name: &str) -> Option<Callable> {
         let elementary = Function::ALL.iter().find(|(known, _)| *known == name);
         let find_other_callable = || OTHERS.iter().find(|(known, _)| *known == name);
         elementary
             .map(|(_, function)| Callable::Elementary(*function))
-            .or_else(|| FunctionId::of_name(name).map(Callable::Function))
-            .or_else(|| Solid::of_name(name).map(Callable::Solid))
-            .or_else(|| Rotation::of_name(name).map(Callable::Rotation))
+            .or_else(|| FunctionId::find_by_name(name).map(Callable::Function))
+            .or_else(|| Solid::find_by_name(name).map(Callable::Solid))
+            .or_else(|| Rotation::find_by_name(name).map(Callable::Rotation))
             .or_else(|| find_other_callable().map(|(_, callable)| *callable))
     }
 
@@ -60,7 +60,7 @@ impl Callable {
     }
 
     /// True for a name of a function of expressions.
-    pub fn is_function(name: &str) -> bool {
-        matches!(Callable::of_name(name), Some(Callable::Elementary(_) | Callable::Function(_)))
+    pub fn is_function_name(name: &str) -> bool {
+        matches!(Callable::find_by_name(name), Some(Callable::Elementary(_) | Callable::Function(_)))
     }
 }

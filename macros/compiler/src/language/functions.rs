@@ -4,7 +4,7 @@ use super::dimension::{
     ACCELERATION, ANGULAR_MOMENTUM, DENSITY, Dimension, ENERGY, FORCE, INERTIA, LENGTH, MOMENTUM, PLAIN,
     POWER, PRESSURE, RATE, RATE_OF_RATE, SPEED,
 };
-use Dependence::{Acceleration, Arguments, Motion, Power, Rate, Reaction};
+use FunctionDependence::{Acceleration, Arguments, Motion, Power, Rate, Reaction};
 use UnitRule::{
     Alike, Cable, Direction, Gradient, Inverse, LikeFirst, LikeLast, Moment, Of, OfHeight, Places, Product,
     Quotient, TimeDerivative, Unknown,
@@ -22,14 +22,14 @@ pub struct FunctionRow {
     /// Help line of the error message about wrong arguments of the function.
     pub usage: &'static str,
     /// Quantities on which the value of the function depends.
-    pub depends_on: Dependence,
+    pub depends_on: FunctionDependence,
     /// Dimension of the function's value, and dimensions that its arguments must have.
     pub unit: UnitRule,
 }
 
 /// The quantities that the value of a function depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dependence {
+pub enum FunctionDependence {
     /// The configuration, and the quantities that its arguments depend on.
     Arguments,
     /// The value of the function depends on velocities.
@@ -97,7 +97,7 @@ const fn row(
     name: &'static str,
     synonyms: &'static str,
     (takes, usage): (&'static str, &'static str),
-    depends_on: Dependence,
+    depends_on: FunctionDependence,
     unit: UnitRule,
 ) -> FunctionRow {
     FunctionRow { name, synonyms, takes, usage, depends_on, unit }

@@ -18,12 +18,12 @@ pub enum Method {
 
 impl Method {
     /// Returns the method of a name and a number of arguments.
-    pub fn of_call(name: &str, count: usize) -> Option<Method> {
+    pub fn find_by_name_and_argument_count(name: &str, count: usize) -> Option<Method> {
         match name {
             "at" => Some(Method::At),
             "rotated" => Some(Method::Rotated),
             COLLISION => Some(Method::Collision),
-            _ => SurfaceId::of_call(name, count).map(Method::Surface),
+            _ => SurfaceId::find_by_name_and_argument_count(name, count).map(Method::Surface),
         }
     }
 }

@@ -32,7 +32,7 @@ macro_rules! table {
             }
 
             /// Returns the id of the row with this name.
-            pub fn of_name(name: &str) -> Option<$ids> {
+            pub fn find_by_name(name: &str) -> Option<$ids> {
                 Self::ALL.iter().copied().find(|id| id.name() == name)
             }
 
@@ -67,10 +67,12 @@ pub mod surfaces;
 
 pub use argument::{Argument, ArgumentKind};
 pub use callable::Callable;
-pub use elements::{ArgumentQuantity, ElementKind, ForceKind, JointKind, Key, Locals, OtherKind, Relation};
-pub use functions::{Dependence, FunctionId, UnitRule};
+pub use elements::{
+    ArgumentQuantity, ArgumentRelation, ElementKind, ForceKind, ForceLawVariables, JointKind, Key, OtherKind,
+};
+pub use functions::{FunctionDependence, FunctionId, UnitRule};
 pub use methods::Method;
-pub use names::{Builtin, axis_of_name};
+pub use names::{Builtin, axis_index_of_name};
 pub use rotations::Rotation;
 pub use solids::Solid;
 pub use surfaces::SurfaceId;

@@ -22,16 +22,16 @@ pub const TIME: &str = "t";
 
 impl Builtin {
     /// Returns the built-in quantity with this name.
-    pub fn of_name(name: &str) -> Option<Builtin> {
+    pub fn find_by_name(name: &str) -> Option<Builtin> {
         match name {
             PI => Some(Builtin::Pi),
             TIME => Some(Builtin::Time),
-            _ => axis_of_name(name).map(Builtin::Axis),
+            _ => axis_index_of_name(name).map(Builtin::Axis),
         }
     }
 }
 
 /// Returns the index of the axis of this name.
-pub fn axis_of_name(name: &str) -> Option<usize> {
+pub fn axis_index_of_name(name: &str) -> Option<usize> {
     AXES.iter().position(|axis| *axis == name)
 }

@@ -37,11 +37,11 @@ impl Ratio {
 
     /// Returns the simple fraction that equals a number, if one exists.
     pub fn from_value(x: f64) -> Option<Ratio> {
-        let numerator_for = |d: i64| {
+        let numerator_for_denominator = |d: i64| {
             let n = x * d as f64;
             ((n - n.round()).abs() < 1e-9 && n.abs() < 1e6).then(|| n.round() as i64)
         };
-        (1..=READABLE).find_map(|d| numerator_for(d).and_then(|n| Ratio::new(n, d)))
+        (1..=READABLE).find_map(|d| numerator_for_denominator(d).and_then(|n| Ratio::new(n, d)))
     }
 
     /// Returns whether the fraction is zero.
@@ -55,7 +55,7 @@ impl Ratio {
     }
 
     /// Returns the negative `−self` of the fraction.
-    pub fn negated(self) -> Ratio {
+    pub fn negative_ratio(self) -> Ratio {
         Ratio { n: -self.n, d: self.d }
     }
 

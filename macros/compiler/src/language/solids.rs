@@ -29,7 +29,7 @@ const X: Argument = Argument::length("x length");
 const Y: Argument = Argument::length("y length");
 const Z: Argument = Argument::length("z length");
 
-const fn moment_argument(name: &'static str) -> Argument {
+const fn inertia_argument(name: &'static str) -> Argument {
     Argument::new(name, ArgumentKind::Inertia)
 }
 
@@ -40,19 +40,21 @@ table! {
         Rod = SolidRow {
             name: "rod", synonyms: "bar stick thinrod slenderrod beam line",
             arguments: &[MASS, LENGTH, AXIS], piece: Some(PieceKind::Rod),
-            inertia: |n, axis| axisymmetric(n[0].zero(), n[0] * n[1].square() * (1.0 / 12.0), axis),
+            inertia: |n, axis| axisymmetric_inertia(n[0].zero(), n[0] * n[1].square() * (1.0 / 12.0), axis),
         };
         /// Thin ring, a homogeneous solid of inertia expressions.
         Ring = SolidRow {
             name: "ring", synonyms: "hoop",
             arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Ring),
-            inertia: |n, axis| axisymmetric(n[0] * n[1].square(), n[0] * n[1].square() * 0.5, axis),
+            inertia: |n, axis| axisymmetric_inertia(n[0] * n[1].square(), n[0] * n[1].square() * 0.5, axis),
         };
         /// Thin disk, a homogeneous solid of inertia expressions.
         Disk = SolidRow {
             name: "disk", synonyms: "disc",
             arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Disk),
-            inertia: |n, axis| axisymmetric(n[0] * n[1].square() * 0.5, n[0] * n[1].square() * 0.25, axis),
+            inertia: |n, axis| axisymmetric_inertia(
+                n[0] * n[1].square() * 0.5, n[0] * n[1].square() * 0.25, axis,
+            ),
         };
         /// Solid cylinder, for inertia expressions.
         Cylinder = SolidRow {
@@ -61,7 +63,7 @@ table! {
             inertia: |n, axis| {
                 let axial = n[0] * n[1].square() * 0.5;
                 let transverse = n[1].square() * 0.25 + n[2].square() * (1.0 / 12.0);
-                axisymmetric(axial, n[0] * transverse, axis)
+                axisymmetric_inertia(axial, n[0] * transverse, axis)
             },
         };
         /// Hollow cylinder: a cylinder with a coaxial hole, for inertia expressions.
@@ -73,7 +75,9 @@ table! {
             piece: Some(PieceKind::Tube),
             inertia: |n, axis| {
                 let radii = n[1].square() + n[2].square();
-                axisymmetric(n[0] * radii * 0.5, n[0] * (radii * 0.25 + n[3].square() * (1.0 / 12.0)), axis)
+                axisymmetric_inertia(
+                    n[0] * radii * 0.5, n[0] * (radii * 0.25 + n[3].square() * (1.0 / 12.0)), axis,
+                )
             },
         };
         /// Solid cone, for inertia expressions.
@@ -83,7 +87,7 @@ table! {
             inertia: |n, axis| {
                 let axial = n[0] * n[1].square() * 0.3;
                 let transverse = n[1].square() * 0.15 + n[2].square() * 0.0375;
-                axisymmetric(axial, n[0] * transverse, axis)
+                axisymmetric_inertia(axial, n[0] * transverse, axis)
             },
         };
         /// Capsule: a cylinder of the given height between two half balls, for inertia expressions.
@@ -98,7 +102,7 @@ table! {
                 let axial = m_cylinder * r.square() * 0.5 + m_ball * r.square() * 0.4;
                 let transverse = m_cylinder * (r.square() * 0.25 + h.square() * (1.0 / 12.0))
                     + m_ball * (r.square() * 0.4 + h.square() * 0.25 + h * r * 0.375);
-                axisymmetric(axial, transverse, axis)
+                axisymmetric_inertia(axial, transverse, axis)
             },
         };
         /// Solid ball, for inertia expressions.
@@ -117,13 +121,13 @@ table! {
         Cuboid = SolidRow {
             name: "cuboid", synonyms: "cube brick block cuboid3 parallelepiped rectangle",
             arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
-            inertia: |n, _| of_three_lengths(n[0] * (1.0 / 12.0), n),
+            inertia: |n, _| diagonal_inertia_of_lengths(n[0] * (1.0 / 12.0), n),
         };
         /// Solid cuboid under the name `box`, for inertia expressions.
         Box = SolidRow {
             name: "box", synonyms: "",
             arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
-            inertia: |n, _| of_three_lengths(n[0] * (1.0 / 12.0), n),
+            inertia: |n, _| diagonal_inertia_of_lengths(n[0] * (1.0 / 12.0), n),
         };
         /// Thin rectangular plate, for inertia expressions.
         Plate = SolidRow {
@@ -141,12 +145,12 @@ table! {
                 MASS, Argument::length("x radius"), Argument::length("y radius"), Argument::length("z radius"),
             ],
             piece: Some(PieceKind::Ellipsoid),
-            inertia: |n, _| of_three_lengths(n[0] * 0.2, n),
+            inertia: |n, _| diagonal_inertia_of_lengths(n[0] * 0.2, n),
         };
         /// Three principal moments of inertia instead of a solid.
         Diagonal = SolidRow {
             name: "diagonal", synonyms: "diag principal",
-            arguments: &[moment_argument("xx"), moment_argument("yy"), moment_argument("zz")], piece: None,
+            arguments: &[inertia_argument("xx"), inertia_argument("yy"), inertia_argument("zz")], piece: None,
             inertia: |n, _| diagonal_inertia([n[0], n[1], n[2]]),
         };
     }
@@ -169,7 +173,7 @@ fn diagonal_inertia(moments: [Expr<'_>; 3]) -> Sym3<'_> {
 }
 
 /// Returns moments proportional to the sums of squares of two of three lengths.
-fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
+fn diagonal_inertia_of_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
     let squared_length = |k: usize| n[k].square();
     diagonal_inertia([
         m * (squared_length(2) + squared_length(3)),
@@ -179,7 +183,7 @@ fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
 }
 
 /// Returns `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, moment `t` about all normals of `n`.
-fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
+fn axisymmetric_inertia<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
     if let Some(k) = (0..3).find(|k| n[*k].constant_value().is_some_and(|c| c.abs() == 1.0)) {
         let diagonal = std::array::from_fn(|i| if i == k { axial } else { transverse });
         return Sym3 { diagonal, off: [axial.zero(); 3] };

@@ -76,7 +76,7 @@ table! {
         /// The inside of a cone, with the axis from the apex to the opening.
         Funnel = surface_row("funnel", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
         /// Surface `surface`: a parametric surface, given by points that depend on two coordinates.
-        Sheet = surface_row("surface",
+        ParametricSurface = surface_row("surface",
             &[Argument::new("u", ArgumentKind::Coordinate), Argument::new("w", ArgumentKind::Coordinate),
                 Argument::length("point")],
             NONE, &[Circle, Torus, Sphere, Ellipsoid]);
@@ -96,10 +96,10 @@ table! {
 impl SurfaceId {
     /// Returns the surface with a name and a number of arguments; if none has this number, another surface
     /// of this name.
-    pub fn of_call(name: &str, count: usize) -> Option<SurfaceId> {
-        let candidates_by_name = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
-        candidates_by_name()
+    pub fn find_by_name_and_argument_count(name: &str, count: usize) -> Option<SurfaceId> {
+        let surfaces_with_name = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
+        surfaces_with_name()
             .find(|id| id.row().arguments.len() == count)
-            .or_else(|| candidates_by_name().next())
+            .or_else(|| surfaces_with_name().next())
     }
 }

@@ -74,15 +74,21 @@ impl Angles {
 impl Angles {
     /// Returns the angles in descending order of their lanes; angles with equally many lanes in the order of
     /// the inputs on which they depend.
-    pub fn widest_first(&self, program: &Program, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
+    pub fn angles_by_descending_width(
+        &self,
+        program: &Program,
+        lanes: impl Fn(Operand) -> usize,
+    ) -> Vec<&Angle> {
         let mut list: Vec<&Angle> = self.list.iter().collect();
-        list.sort_by_key(|angle| (Reverse(lanes(angle.angle)), first_input_of_angle(program, angle.angle)));
+        list.sort_by_key(|angle| {
+            (Reverse(lanes(angle.angle)), first_argument_symbol_of_angle(program, angle.angle))
+        });
         list
     }
 }
 
 /// Returns the first input of an angle that is an input, or an operation on inputs.
-fn first_input_of_angle(program: &Program, angle: Operand) -> Option<Symbol> {
+fn first_argument_symbol_of_angle(program: &Program, angle: Operand) -> Option<Symbol> {
     let mut first = None;
     let mut note = |o: Operand| {
         if let Operand::Symbol(s) = o {

@@ -15,14 +15,14 @@ impl Program {
         let mut late = vec![false; self.instructions.len()];
         let mut times = InstructionTimes::default();
         for k in 0..self.instructions.len() {
-            let before = times.instruction_time(&self, k);
+            let before = times.instruction_finish_time(&self, k);
             times.known.push(before);
             let Some((sum, ops)) =
                 self.sum_to_chain(k).and_then(|sum| sum.chain_of_additions().map(|ops| (sum, ops)))
             else {
                 continue;
             };
-            let time = times.time_of_chain(&self, &sum.terms);
+            let time = times.time_of_ordered_sum(&self, &sum.terms);
             // One instruction less is worth the longer latency of a fused addition for each term.
             if time > before + (MULTIPLY - ADD) * sum.terms.len() as u32 {
                 continue;
@@ -34,7 +34,7 @@ impl Program {
             }
         }
         let program = if late.contains(&true) { self.sort_instructions(&late) } else { self };
-        program.with_products_at_their_sums()
+        program.move_products_next_to_sums()
     }
 
     /// Returns the sum that ends with instruction `k`, if another order of its terms saves an instruction.
@@ -63,7 +63,7 @@ impl Program {
         else {
             return false;
         };
-        let mut terms = terms.map(|t| t.with_outer_sign(top.negative));
+        let mut terms = terms.map(|t| t.multiplied_by_sum_sign(top.negative));
         sum.additions.push(top.operand.instruction_index());
         let products = terms.map(|t| self.is_fusable_product(t));
         match products {
@@ -95,7 +95,7 @@ impl Program {
 
     /// Returns true for a product whose only use is this term.
     fn is_fusable_product(&self, term: Term) -> bool {
-        self.single_use_product(term.operand).is_some()
+        self.factors_of_single_use_product(term.operand).is_some()
     }
 
     /// Sorts the instructions so that operands precede operations; `late` instructions come right before

@@ -7,7 +7,7 @@ use super::{Op, Operand, Program};
 impl Program {
     /// Extracts common factors from the sums of a program.
     pub(super) fn factor_sums(self) -> Program {
-        let inner = self.inner_additions();
+        let inner = self.inner_addition_flags();
         let sums = (0..self.instructions.len()).filter(|k| !inner[*k]);
         let mut groups =
             sums.filter_map(|k| Some((k, self.group_by_common_factor(self.terms_of_sum(k)?)?))).peekable();
@@ -19,14 +19,16 @@ impl Program {
         let mut values: Vec<Operand> = Vec::with_capacity(self.instructions.len());
         for (k, op) in self.instructions.iter().enumerate() {
             values.push(match groups.next_if(|(sum, _)| *sum == k) {
-                Some((_, groups)) => out.add_groups(&groups, &|o| o.translate_value(&values)),
-                None => out.append_instruction(op.map_operands(|o| o.translate_value(&values))),
+                Some((_, groups)) => {
+                    out.add_sum_of_factored_groups(&groups, &|o| o.operand_in_other_program(&values))
+                }
+                None => out.append_instruction(op.map_operands(|o| o.operand_in_other_program(&values))),
             });
         }
         drop(groups);
-        out.outputs = self.outputs.iter().map(|o| o.translate_value(&values)).collect();
+        out.outputs = self.outputs.iter().map(|o| o.operand_in_other_program(&values)).collect();
         out.gathers = self.gathers;
-        out.remove_unused();
+        out.remove_unused_instructions();
         out
     }
 
@@ -36,7 +38,7 @@ impl Program {
     }
 
     /// Returns for each instruction whether it is an addition whose only use is another addition.
-    fn inner_additions(&self) -> Vec<bool> {
+    fn inner_addition_flags(&self) -> Vec<bool> {
         let mut inner = vec![false; self.instructions.len()];
         for op in &self.instructions {
             for term in op.addition_terms().into_iter().flatten() {
@@ -58,9 +60,10 @@ impl Program {
                 return None;
             }
             match self.single_use_addition(term.operand) {
-                Some([a, b]) => {
-                    todo.extend([b.with_outer_sign(term.negative), a.with_outer_sign(term.negative)])
-                }
+                Some([a, b]) => todo.extend([
+                    b.multiplied_by_sum_sign(term.negative),
+                    a.multiplied_by_sum_sign(term.negative),
+                ]),
                 None => terms.push(term),
             }
         }
@@ -87,7 +90,7 @@ impl Program {
             groups.push(FactorGroup { factor: Some(factor), others });
         }
         // A term without common factor forms a group of its own.
-        groups.extend(open.into_iter().map(|t| match self.single_use_product(t.operand) {
+        groups.extend(open.into_iter().map(|t| match self.factors_of_single_use_product(t.operand) {
             Some((a, b)) => FactorGroup { factor: Some(a), others: vec![Term { operand: b, ..t }] },
             None => FactorGroup { factor: None, others: vec![t] },
         }));
@@ -100,7 +103,7 @@ impl Program {
     fn may_share_factors(&self, terms: &[Term]) -> bool {
         let mut factors: Vec<u64> = Vec::new();
         for term in terms {
-            let Some((a, b)) = self.single_use_product(term.operand) else { continue };
+            let Some((a, b)) = self.factors_of_single_use_product(term.operand) else { continue };
             let [a, b] = [a, b].map(sign_independent_key);
             if factors.contains(&a) || factors.contains(&b) {
                 return true;
@@ -114,7 +117,7 @@ impl Program {
     fn most_common_factor(&self, terms: &[Term]) -> Option<Operand> {
         let mut best: Option<(usize, Operand)> = None;
         for term in terms {
-            let Some((a, b)) = self.single_use_product(term.operand) else { continue };
+            let Some((a, b)) = self.factors_of_single_use_product(term.operand) else { continue };
             for factor in [a, b] {
                 let count = terms.iter().filter(|t| self.cofactor_of_term(**t, factor).is_some()).count();
                 if count > best.map_or(1, |(most, _)| most) {
@@ -127,7 +130,7 @@ impl Program {
 
     /// Returns the other factor of a term that is a product with this factor.
     fn cofactor_of_term(&self, term: Term, factor: Operand) -> Option<Term> {
-        let (a, b) = self.single_use_product(term.operand)?;
+        let (a, b) = self.factors_of_single_use_product(term.operand)?;
         let is_opposite_of_factor = |x: Operand| match (x, factor) {
             (Operand::Const(x), Operand::Const(f)) if x == -f => Some(true),
             (x, f) if x == f => Some(false),
@@ -139,14 +142,18 @@ impl Program {
     }
 
     /// Adds the instructions for a sum of groups, each a factor times a sum.
-    fn add_groups(&mut self, groups: &[FactorGroup], at: &dyn Fn(Operand) -> Operand) -> Operand {
+    fn add_sum_of_factored_groups(
+        &mut self,
+        groups: &[FactorGroup],
+        at: &dyn Fn(Operand) -> Operand,
+    ) -> Operand {
         let mut sum: Option<Term> = None;
         for group in groups {
-            let mut value = self.append_sum(&group.others, at);
+            let mut value = self.append_sum_instructions(&group.others, at);
             if let Some(factor) = group.factor {
                 value.operand = self.append_instruction(Op::Mul(at(factor), value.operand));
             }
-            sum = Some(sum.map_or(value, |sum| self.sum_of_two(sum, value)));
+            sum = Some(sum.map_or(value, |sum| self.append_sum_of_terms(sum, value)));
         }
         match sum {
             Some(Term { operand, negative: true }) => self.append_instruction(Op::Neg(operand)),
@@ -156,19 +163,19 @@ impl Program {
     }
 
     /// Appends the instructions for a sum of terms to a program.
-    fn append_sum(&mut self, terms: &[Term], at: &dyn Fn(Operand) -> Operand) -> Term {
+    fn append_sum_instructions(&mut self, terms: &[Term], at: &dyn Fn(Operand) -> Operand) -> Term {
         let known: f64 = terms.iter().filter_map(signed_constant).sum();
         let is_known = terms.iter().any(|t| signed_constant(t).is_some());
         let constant = is_known.then_some(Term::positive_term(Operand::Const(known)));
         let rest = terms.iter().filter(|t| signed_constant(t).is_none());
         let mut all = rest.map(|t| Term { operand: at(t.operand), ..*t }).chain(constant);
         let first = all.next().unwrap_or(Term::positive_term(Operand::Const(0.0)));
-        all.fold(first, |sum, term| self.sum_of_two(sum, term))
+        all.fold(first, |sum, term| self.append_sum_of_terms(sum, term))
     }
 
     /// Appends the instruction for a sum of two terms to a program.
-    fn sum_of_two(&mut self, a: Term, b: Term) -> Term {
-        let (op, negative) = Term::add_two_terms(a, b);
+    fn append_sum_of_terms(&mut self, a: Term, b: Term) -> Term {
+        let (op, negative) = Term::addition_operation(a, b);
         Term { operand: self.append_instruction(op), negative }
     }
 }

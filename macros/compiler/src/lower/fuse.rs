@@ -5,13 +5,13 @@ use super::{Op, Operand, Program};
 
 impl Program {
     /// Returns the number of instructions after products are fused into sums.
-    pub fn fused_length(&self) -> usize {
+    pub fn instruction_count_after_fusion(&self) -> usize {
         let fused = (0..self.instructions.len()).filter(|k| self.product_to_fuse(*k).is_some());
         self.instructions.len() - fused.count()
     }
 
     /// Returns for each instruction whether it is a product that will be fused.
-    pub(super) fn products_to_fuse(&self) -> Vec<bool> {
+    pub(super) fn fused_product_flags(&self) -> Vec<bool> {
         let mut fuses = vec![false; self.instructions.len()];
         for product in (0..self.instructions.len()).filter_map(|k| self.product_to_fuse(k)) {
             fuses[product.instruction_index()] = true;
@@ -20,7 +20,7 @@ impl Program {
     }
 
     /// Returns a copy with products fused into sums, for cost estimates.
-    pub(super) fn fused_copy(&self) -> Program {
+    pub(super) fn copy_with_fused_products(&self) -> Program {
         Program { simd: None, ..self.clone() }.with_fused_products()
     }
 
@@ -33,14 +33,14 @@ impl Program {
                 self.instructions[k] = op;
             }
         }
-        self.remove_unused();
+        self.remove_unused_instructions();
         self.counts = counts;
         self
     }
 
     fn fuse_instruction(&self, k: usize) -> Option<Op> {
         let product = self.product_to_fuse(k)?;
-        let (x, y) = self.single_use_product(product)?;
+        let (x, y) = self.factors_of_single_use_product(product)?;
         match self.instructions[k] {
             Op::Add(a, b) => Some(Op::MulAdd(x, y, if product == a { b } else { a })),
             Op::Sub(a, b) if product == b => Some(Op::NegMulAdd(x, y, a)),
@@ -51,25 +51,26 @@ impl Program {
 
     /// Returns the product that fuses into the sum of instruction `k`.
     fn product_to_fuse(&self, k: usize) -> Option<Operand> {
-        let is_product = |o: Operand| self.single_use_product(o).is_some();
+        let is_unshared_product = |o: Operand| self.factors_of_single_use_product(o).is_some();
         let product = match self.instructions[k] {
             // Of two products the later one is fused, because the earlier one is ready by then.
             Op::Add(a, b)
-                if is_product(a) && (!is_product(b) || a.instruction_index() > b.instruction_index()) =>
+                if is_unshared_product(a)
+                    && (!is_unshared_product(b) || a.instruction_index() > b.instruction_index()) =>
             {
                 a
             }
-            Op::Sub(a, b) if !is_product(b) => a,
+            Op::Sub(a, b) if !is_unshared_product(b) => a,
             Op::Add(_, b) | Op::Sub(_, b) => b,
             _ => return None,
         };
-        Some(product).filter(|product| is_product(*product))
+        Some(product).filter(|product| is_unshared_product(*product))
     }
 
     /// Moves each product that will be fused directly before its sum.
-    pub(super) fn with_products_at_their_sums(self) -> Program {
+    pub(super) fn move_products_next_to_sums(self) -> Program {
         let n = self.instructions.len();
-        let waits = self.products_to_fuse();
+        let waits = self.fused_product_flags();
         let product_to_place = |k: usize| self.product_to_fuse(k).map(Operand::instruction_index);
         let order: Vec<usize> =
             (0..n).filter(|k| !waits[*k]).flat_map(|k| product_to_place(k).into_iter().chain([k])).collect();

@@ -15,7 +15,7 @@ pub fn node_of_hoisted_symbol(symbol: Symbol) -> Option<(Id, bool)> {
 }
 
 /// Replaces symbols of hoisted nodes by other symbols.
-pub fn replace_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
+pub fn replace_hoisted_symbols(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
     let mut placed = |o: Operand| match o {
         Operand::Symbol(s) => match node_of_hoisted_symbol(s) {
             Some((id, negative)) => Operand::Symbol(place(id, negative)),
@@ -30,7 +30,7 @@ pub fn replace_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) ->
         *output = placed(*output);
     }
     if let Some(program) = &mut program.simd {
-        replace_hoisted(program, place);
+        replace_hoisted_symbols(program, place);
     }
 }
 
@@ -59,7 +59,7 @@ pub(super) fn negate_hoisted(o: Operand) -> Operand {
 
 /// Returns for each node, operands first, whether it depends on known symbols and constants only, and on at
 /// least one known symbol. Operations on constants alone are not hoisted.
-pub(super) fn hoisted_nodes(
+pub(super) fn hoisting_flags_of_nodes(
     nodes: &[Node],
     place: impl Fn(Id) -> usize,
     known: &dyn Fn(Symbol) -> bool,
@@ -86,7 +86,7 @@ pub(super) fn hoisted_nodes(
 mod tests {
     use crate::expr::eval::eval_one;
     use crate::expr::{Graph, Symbol};
-    use crate::lower::{draft_without_hoisted, node_of_hoisted_symbol};
+    use crate::lower::{draft_with_hoisted_arguments, node_of_hoisted_symbol};
 
     /// Checks a program with two parameters and two variables: it neither computes nor negates values of the
     /// parameters alone.
@@ -104,7 +104,7 @@ mod tests {
             (vec![m / (l + g.num(2.0)), g.num(3.0)], 0),
             (vec![x * y - ml, ml - x * y + y], 3),
         ] {
-            let program = draft_without_hoisted(&outputs, &is_parameter_symbol);
+            let program = draft_with_hoisted_arguments(&outputs, &is_parameter_symbol);
             let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value_of_symbol)).collect();
             let found = program.interpret_program(&|s| match node_of_hoisted_symbol(s) {
                 Some((id, negative)) => {

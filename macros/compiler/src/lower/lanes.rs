@@ -8,22 +8,22 @@ use crate::machine::{
 
 /// Numbers of SIMD lanes of the values of a program that is being written.
 #[derive(Default)]
-pub(super) struct Lanes {
+pub(super) struct ValueLaneCounts {
     /// Number of SIMD lanes of each value; one for scalars.
     widths: Vec<usize>,
     gathers: Vec<usize>,
     tuples: Vec<usize>,
 }
 
-impl Lanes {
+impl ValueLaneCounts {
     /// Returns the lanes of the constants and inputs of a program, before its instructions.
-    pub(super) fn lanes_of_inputs(program: &Program) -> Lanes {
+    pub(super) fn lanes_of_inputs(program: &Program) -> ValueLaneCounts {
         let gathers = program.gathers.iter().map(Vec::len).collect();
-        Lanes { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }
+        ValueLaneCounts { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }
     }
 
     /// Returns the operand of a node that needs no instruction.
-    pub(super) fn leaf_operand(
+    pub(super) fn operand_without_instruction(
         &mut self,
         graph: &Graph,
         node: Node,
@@ -86,7 +86,7 @@ impl Lanes {
 
 impl Program {
     /// Adds the cheapest candidate with SIMD lanes as variant, if it is cheaper than the program itself.
-    pub fn or_in_lanes(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
+    pub fn with_cheapest_lane_variant(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
         let costs = candidates.into_iter().map(|program| (program.estimated_cost(), program));
         let best = costs.min_by_key(|(cost, _)| *cost);
         self.simd =
@@ -98,7 +98,7 @@ impl Program {
     pub fn estimated_cost(&self) -> usize {
         let gathers: usize = self.gathers.iter().map(|g| GATHER_COST * g.len()).sum();
         // A product that will be fused costs nothing in addition to its sum.
-        let fuses = self.products_to_fuse();
+        let fuses = self.fused_product_flags();
         let all = self.instructions.iter().zip(self.lane_counts()).zip(&fuses);
         let instructions: usize = all
             .map(|((op, lanes), fuses)| match op {
@@ -116,7 +116,7 @@ impl Program {
 
     /// Returns the number of SIMD lanes of each value; one for scalars.
     pub fn lane_counts(&self) -> Vec<usize> {
-        let mut lanes = Lanes::lanes_of_inputs(self);
+        let mut lanes = ValueLaneCounts::lanes_of_inputs(self);
         for op in &self.instructions {
             lanes.record_lanes(op);
         }

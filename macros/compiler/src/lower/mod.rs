@@ -24,18 +24,18 @@ mod text;
 mod times;
 
 pub use angles::{Angle, Angles};
-pub use hoist::{node_of_hoisted_symbol, replace_hoisted};
+pub use hoist::{node_of_hoisted_symbol, replace_hoisted_symbols};
 pub use program::{Counts, Op, Operand, Program};
 
 /// Drafts a program of the outputs. Products and sums are separate instructions until [`pipeline::FINISH`] or
 /// [`pipeline::PART`] fuses them.
 pub fn lower(outputs: &[Expr<'_>]) -> Program {
-    draft_without_hoisted(outputs, &|_| false)
+    draft_with_hoisted_arguments(outputs, &|_| false)
 }
 
 /// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see the
 /// module `hoist`.
-pub fn draft_without_hoisted(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
+pub fn draft_with_hoisted_arguments(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let start = Instant::now();
     let program = select_instructions(outputs, known);
     pipeline::report_to_observer(pipeline::SELECT, &program, start.elapsed());
@@ -52,11 +52,11 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
     let graph = first.graph();
     // Position of each node in the order, counted from one. Only the entries of needed nodes are written, so
     // that a small function does not pay for a large graph.
-    let mut places = graph.borrow_table();
+    let mut places = graph.borrow_zeroed_node_table();
     let order = collect_needed_nodes(outputs, &mut places);
     let index_of_node = |id: Id| places[id as usize] as usize - 1;
     let nodes = nodes_of_ids(graph, &order);
-    let hoisted = hoist::hoisted_nodes(&nodes, index_of_node, known);
+    let hoisted = hoist::hoisting_flags_of_nodes(&nodes, index_of_node, known);
     let mut uses = vec![0_u32; order.len()];
     for (node, _) in nodes.iter().zip(&hoisted).filter(|(_, hoisted)| !**hoisted) {
         node.visit_operands(|a| uses[index_of_node(a)] += 1);
@@ -66,7 +66,7 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
     }
     let mut program = Program::default();
     let mut values: Vec<Operand> = Vec::with_capacity(order.len());
-    let mut lanes = lanes::Lanes::default();
+    let mut lanes = lanes::ValueLaneCounts::default();
     for (k, node) in nodes.iter().enumerate() {
         let operand_of_node = |a: Id| values[index_of_node(a)];
         if hoisted[k] {
@@ -76,7 +76,7 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
             });
             continue;
         }
-        if let Some(leaf) = lanes.leaf_operand(graph, *node, &mut program, &operand_of_node) {
+        if let Some(leaf) = lanes.operand_without_instruction(graph, *node, &mut program, &operand_of_node) {
             values.push(leaf);
             continue;
         }
@@ -112,7 +112,7 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
     for id in &order {
         places[*id as usize] = 0;
     }
-    program.remove_unused();
+    program.remove_unused_instructions();
     program
 }
 
@@ -121,10 +121,10 @@ fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> 
 pub fn operation_count(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
     let Some(first) = outputs.first() else { return 0 };
     let graph = first.graph();
-    let mut places = graph.borrow_table();
+    let mut places = graph.borrow_zeroed_node_table();
     let order = collect_needed_nodes(outputs, &mut places);
     let nodes = nodes_of_ids(graph, &order);
-    let hoisted = hoist::hoisted_nodes(&nodes, |id| places[id as usize] as usize - 1, known);
+    let hoisted = hoist::hoisting_flags_of_nodes(&nodes, |id| places[id as usize] as usize - 1, known);
     for id in &order {
         places[*id as usize] = 0;
     }

@@ -22,8 +22,8 @@ const REACH: usize = 400;
 impl Program {
     /// Removes negations by the choice of signs. Angles `c - q` become `q - c` if that needs at most one more
     /// negation: the offsets of all angles are then one vector addition.
-    pub(super) fn with_cheap_signs(self) -> Program {
-        let reversed = self.reversed_angles();
+    pub(super) fn choose_signs_with_fewest_negations(self) -> Program {
+        let reversed = self.constant_minus_angle_values();
         if reversed.is_empty() && !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
             return self;
         }
@@ -40,7 +40,7 @@ impl Program {
     }
 
     /// Returns values `c - q` that are used by sines and cosines alone.
-    fn reversed_angles(&self) -> Vec<usize> {
+    fn constant_minus_angle_values(&self) -> Vec<usize> {
         let is_reversed =
             |op: &Op| matches!(op, Op::Sub(c, Operand::Symbol(_)) if is_constant_or_hoisted(*c));
         let mut uses = vec![0; self.instructions.len()];
@@ -73,7 +73,7 @@ impl<'a> StoredSigns<'a> {
     /// Searches signs that need few negations, from all free signs plus, with some values fixed to minus.
     fn optimise_signs(program: &'a Program, negative: &[usize]) -> StoredSigns<'a> {
         let mut signs = StoredSigns::new(program, negative);
-        signs.search_signs();
+        signs.flip_signs_to_save_negations();
         signs
     }
 
@@ -92,14 +92,14 @@ impl<'a> StoredSigns<'a> {
             signs.fixed[k] = true;
         }
         for (k, op) in program.instructions.iter().enumerate() {
-            let keeps = accepts_either_sign(op);
+            let keeps = operands_accept_either_sign(op);
             op.visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     signs.users[a].push(k);
                     signs.sink[a] |= !keeps;
                 }
             });
-            signs.negative[k] = signs.sign_of_value(k);
+            signs.negative[k] = signs.is_value_stored_negated(k);
         }
         for output in &program.outputs {
             if let Operand::Value(a) = output {
@@ -110,19 +110,21 @@ impl<'a> StoredSigns<'a> {
     }
 
     /// Returns true if an operand is stored with a minus sign.
-    fn is_negative(&self, o: Operand) -> bool {
+    fn is_operand_stored_negated(&self, o: Operand) -> bool {
         matches!(o, Operand::Value(a) if self.negative[a])
     }
 
     /// Returns the sign of a value from the signs of its operands, or the chosen sign if it is free.
-    fn sign_of_value(&self, k: usize) -> bool {
+    fn is_value_stored_negated(&self, k: usize) -> bool {
         match self.program.instructions[k] {
             _ if self.has_free_sign(k) => self.choice[k],
-            Op::Neg(a) => !self.is_negative(a),
-            Op::Add(a, _) | Op::Sub(a, _) => self.is_negative(a),
-            Op::Mul(a, b) | Op::Div(a, b) => self.is_negative(a) != self.is_negative(b),
-            Op::Call(f, a) => f.is_odd() && self.is_negative(a),
-            Op::Sum(_, a) => self.is_negative(a),
+            Op::Neg(a) => !self.is_operand_stored_negated(a),
+            Op::Add(a, _) | Op::Sub(a, _) => self.is_operand_stored_negated(a),
+            Op::Mul(a, b) | Op::Div(a, b) => {
+                self.is_operand_stored_negated(a) != self.is_operand_stored_negated(b)
+            }
+            Op::Call(f, a) => f.is_odd() && self.is_operand_stored_negated(a),
+            Op::Sum(_, a) => self.is_operand_stored_negated(a),
             _ => false,
         }
     }
@@ -133,12 +135,12 @@ impl<'a> StoredSigns<'a> {
             Op::Add(a, b) => {
                 is_constant_or_hoisted(a)
                     || is_constant_or_hoisted(b)
-                    || self.is_negative(a) != self.is_negative(b)
+                    || self.is_operand_stored_negated(a) != self.is_operand_stored_negated(b)
             }
             Op::Sub(a, b) => {
                 is_constant_or_hoisted(a)
                     || is_constant_or_hoisted(b)
-                    || self.is_negative(a) == self.is_negative(b)
+                    || self.is_operand_stored_negated(a) == self.is_operand_stored_negated(b)
             }
             Op::Mul(a, b) | Op::Div(a, b) => is_constant_or_hoisted(a) || is_constant_or_hoisted(b),
             _ => false,
@@ -151,7 +153,7 @@ impl<'a> StoredSigns<'a> {
     }
 
     /// Changes free signs as long as that reduces the number of negations.
-    fn search_signs(&mut self) {
+    fn flip_signs_to_save_negations(&mut self) {
         for least in [1, 0, 1, 0, 1] {
             let mut better = false;
             for k in 0..self.negative.len() {
@@ -159,7 +161,7 @@ impl<'a> StoredSigns<'a> {
                     continue;
                 }
                 let mut paths = Vec::new();
-                self.paths_to_free(&mut vec![k], &mut paths);
+                self.find_paths_to_free_signs(&mut vec![k], &mut paths);
                 better |= paths.iter().any(|path| self.try_sign_change(path, least));
             }
             if !better {
@@ -169,7 +171,7 @@ impl<'a> StoredSigns<'a> {
     }
 
     /// Finds paths from the last value of `path` through operands to free values that its sign depends on.
-    fn paths_to_free(&self, path: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
+    fn find_paths_to_free_signs(&self, path: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
         let Some(k) = path.last().copied().filter(|_| found.len() < TRIES) else { return };
         if self.has_free_sign(k) && !self.fixed[k] {
             found.push(path.clone());
@@ -177,7 +179,7 @@ impl<'a> StoredSigns<'a> {
             self.program.instructions[k].visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     path.push(a);
-                    self.paths_to_free(path, found);
+                    self.find_paths_to_free_signs(path, found);
                     path.pop();
                 }
             });
@@ -209,7 +211,7 @@ impl<'a> StoredSigns<'a> {
         let mut gain = 0;
         let mut todo: BTreeSet<usize> = from.iter().copied().collect();
         while let Some(k) = todo.pop_first() {
-            let sign = self.sign_of_value(k);
+            let sign = self.is_value_stored_negated(k);
             if sign == self.negative[k] {
                 continue;
             }
@@ -247,7 +249,7 @@ impl<'a> StoredSigns<'a> {
             gathers: self.program.gathers.clone(),
             ..Program::default()
         };
-        program.remove_unused();
+        program.remove_unused_instructions();
         program
     }
 }
@@ -269,7 +271,7 @@ impl SignRewriter<'_> {
         Operand::Value(self.instructions.len() - 1)
     }
 
-    fn stored_operand(&self, o: Operand) -> Operand {
+    fn rewritten_operand(&self, o: Operand) -> Operand {
         match o {
             Operand::Value(a) => self.stored[a],
             other => other,
@@ -291,29 +293,35 @@ impl SignRewriter<'_> {
         let (signs, negative) = (self.signs, self.signs.negative[k]);
         let stored = match signs.program.instructions[k] {
             // The sign of the value records the negation.
-            Op::Neg(a) => self.stored_operand(a),
+            Op::Neg(a) => self.rewritten_operand(a),
             Op::Mul(a, b) => {
-                let (a, b) =
-                    self.factors_with_signs(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
+                let (a, b) = self.factors_of_signed_product(
+                    a,
+                    b,
+                    (signs.is_operand_stored_negated(a) != signs.is_operand_stored_negated(b)) != negative,
+                );
                 self.append_instruction(Op::Mul(a, b))
             }
             Op::Div(a, b) => {
-                let (a, b) =
-                    self.factors_with_signs(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
+                let (a, b) = self.factors_of_signed_product(
+                    a,
+                    b,
+                    (signs.is_operand_stored_negated(a) != signs.is_operand_stored_negated(b)) != negative,
+                );
                 self.append_instruction(Op::Div(a, b))
             }
             Op::Call(f, a) if f.is_odd() || f.is_even() => {
-                let a = self.stored_operand(a);
+                let a = self.rewritten_operand(a);
                 self.append_instruction(Op::Call(f, a))
             }
             Op::Sum(n, a) => {
-                let a = self.stored_operand(a);
+                let a = self.rewritten_operand(a);
                 self.append_instruction(Op::Sum(n, a))
             }
             op => match op.addition_terms() {
-                Some(terms) => self.add_sum_of_terms(
-                    terms.map(|t| t.with_outer_sign(signs.is_negative(t.operand) != negative)),
-                ),
+                Some(terms) => self.add_signed_sum_instruction(terms.map(|t| {
+                    t.multiplied_by_sum_sign(signs.is_operand_stored_negated(t.operand) != negative)
+                })),
                 None => {
                     let op = op.map_operands(|o| self.operand_with_plus(o));
                     self.append_instruction(op)
@@ -325,18 +333,18 @@ impl SignRewriter<'_> {
     }
 
     /// Adds the instruction for the sum of two terms; at most one term is negative, unless one is a constant.
-    fn add_sum_of_terms(&mut self, terms: [Term; 2]) -> Operand {
-        let mut terms = terms.map(|t| Term { operand: self.stored_operand(t.operand), ..t });
+    fn add_signed_sum_instruction(&mut self, terms: [Term; 2]) -> Operand {
+        let mut terms = terms.map(|t| Term { operand: self.rewritten_operand(t.operand), ..t });
         if terms.iter().all(|t| t.negative) {
             let constant = usize::from(!is_constant_or_hoisted(terms[0].operand));
             terms[constant] = Term::positive_term(self.negate_constant(terms[constant].operand));
         }
         let [a, b] = terms;
-        self.append_instruction(Term::add_two_terms(a, b).0)
+        self.append_instruction(Term::addition_operation(a, b).0)
     }
 
-    fn factors_with_signs(&mut self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
-        let (a, b) = (self.stored_operand(a), self.stored_operand(b));
+    fn factors_of_signed_product(&mut self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
+        let (a, b) = (self.rewritten_operand(a), self.rewritten_operand(b));
         match (negate, is_constant_or_hoisted(a)) {
             (false, _) => (a, b),
             (true, true) => (self.negate_constant(a), b),
@@ -361,7 +369,7 @@ impl SignRewriter<'_> {
 }
 
 /// Returns true for operations whose operands may be stored with either sign.
-fn accepts_either_sign(op: &Op) -> bool {
+fn operands_accept_either_sign(op: &Op) -> bool {
     match op {
         Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) | Op::Sum(..) => true,
         Op::Call(f, _) => f.is_odd() || f.is_even(),

@@ -25,7 +25,7 @@ const FACTOR: Pass = Pass {
 const NEGATIONS: Pass = Pass {
     name: "negations",
     about: "the negatives of some values are computed, so that few negations are left",
-    run: Program::with_cheap_signs,
+    run: Program::choose_signs_with_fewest_negations,
 };
 const CHAIN: Pass = Pass {
     name: "chain",
@@ -77,15 +77,15 @@ impl Program {
 
 /// Callback after every pass: the function that is being compiled, the name of the pass, the program, and the
 /// duration.
-type Observer = Box<dyn FnMut(&str, &str, &Program, Duration)>;
+type PassObserver = Box<dyn FnMut(&str, &str, &Program, Duration)>;
 
 thread_local! {
-    static OBSERVER: RefCell<Option<Observer>> = const { RefCell::new(None) };
+    static OBSERVER: RefCell<Option<PassObserver>> = const { RefCell::new(None) };
     static FUNCTION: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
 /// Calls `f` with an observer of all passes on this thread.
-pub fn with_observer<T>(observer: Observer, f: impl FnOnce() -> T) -> T {
+pub fn run_with_pass_observer<T>(observer: PassObserver, f: impl FnOnce() -> T) -> T {
     OBSERVER.with(|cell| cell.replace(Some(observer)));
     let result = f();
     OBSERVER.with(|cell| cell.replace(None));
@@ -93,7 +93,7 @@ pub fn with_observer<T>(observer: Observer, f: impl FnOnce() -> T) -> T {
 }
 
 /// Sets the name of the function that the next passes belong to.
-pub fn begin_function(function: &str) {
+pub fn set_observed_function_name(function: &str) {
     if OBSERVER.with(|cell| cell.borrow().is_some()) {
         FUNCTION.with(|name| name.replace(function.to_string()));
     }

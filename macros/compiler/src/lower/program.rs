@@ -30,7 +30,7 @@ impl Operand {
     }
 
     /// Replaces a value by the operand that computes it in another program.
-    pub fn translate_value(self, values: &[Operand]) -> Operand {
+    pub fn operand_in_other_program(self, values: &[Operand]) -> Operand {
         match self {
             Operand::Value(k) => values[k],
             other => other,
@@ -143,11 +143,11 @@ impl Counts {
 
 impl Program {
     /// Returns the program that computes only the chosen outputs.
-    pub fn with_outputs(mut self, chosen: &[usize]) -> Program {
+    pub fn with_selected_outputs(mut self, chosen: &[usize]) -> Program {
         self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
-        self.remove_unused();
+        self.remove_unused_instructions();
         self.counts = self.count_operations();
-        self.simd = self.simd.map(|program| Box::new(program.with_outputs(chosen)));
+        self.simd = self.simd.map(|program| Box::new(program.with_selected_outputs(chosen)));
         self
     }
 
@@ -164,7 +164,7 @@ impl Program {
     }
 
     /// Removes unused instructions, renumbers the others and counts uses.
-    pub fn remove_unused(&mut self) {
+    pub fn remove_unused_instructions(&mut self) {
         let n = self.instructions.len();
         self.uses.clear();
         self.uses.resize(n, 0);
@@ -251,7 +251,7 @@ impl Program {
 
     /// Returns the text of an operation on constants whose result is not finite, if there is one. Operations
     /// on constants with a finite result may remain where a pass has changed a sign.
-    pub fn undefined_operation(&self) -> Option<String> {
+    pub fn non_finite_constant_operation(&self) -> Option<String> {
         let constant_value = |o: Operand| match o {
             Operand::Const(c) => Some(c),
             _ => None,

@@ -13,7 +13,7 @@ impl Program {
     /// Orders the terms of sums on the critical path by the times at which they become available, late terms
     /// last.
     pub(super) fn with_late_terms_last(mut self) -> Program {
-        let sums = self.sums_by_instruction();
+        let sums = self.sums_ending_at_instructions();
         let lanes = self.lane_counts();
         let is_multi_lane_operand = |o: Operand| match o {
             Operand::Value(a) => lanes[a] > 1,
@@ -23,10 +23,10 @@ impl Program {
         let mut times = InstructionTimes::default();
         let mut ordered: Vec<Option<Sum>> = Vec::with_capacity(sums.len());
         for (k, sum) in sums.into_iter().enumerate() {
-            let before = times.instruction_time(&self, k);
-            let sum = sum.map(|sum| times.order_terms(&self, sum, &is_multi_lane_operand));
+            let before = times.instruction_finish_time(&self, k);
+            let sum = sum.map(|sum| times.order_terms_by_time(&self, sum, &is_multi_lane_operand));
             let sum = sum
-                .map(|sum| (times.time_of_chain(&self, &sum.terms), sum))
+                .map(|sum| (times.time_of_ordered_sum(&self, &sum.terms), sum))
                 .filter(|(time, _)| *time <= before);
             let (time, sum) = sum.map_or((before, None), |(time, sum)| (time, Some(sum)));
             times.known.push(time);
@@ -39,10 +39,10 @@ impl Program {
         let mut rewritten = Vec::new();
         times.known.clear();
         for (k, sum) in ordered.iter().enumerate() {
-            let before = times.instruction_time(&self, k);
+            let before = times.instruction_finish_time(&self, k);
             times.known.push(before);
             let Some(sum) = sum.as_ref().filter(|_| before + rest[k] > end) else { continue };
-            let time = times.time_of_chain(&self, &sum.terms);
+            let time = times.time_of_ordered_sum(&self, &sum.terms);
             let Some(ops) = sum.chain_of_additions().filter(|_| time <= before) else { continue };
             times.known[k] = time;
             for (at, op) in sum.additions.iter().zip(ops) {
@@ -56,11 +56,11 @@ impl Program {
         for (at, op) in rewritten {
             self.instructions[at] = op;
         }
-        self.order_with_late_last(&late)
+        self.schedule_late_after_operands(&late)
     }
 
     /// Returns for each instruction the sum of at least three terms that ends with it.
-    fn sums_by_instruction(&self) -> Vec<Option<Sum>> {
+    fn sums_ending_at_instructions(&self) -> Vec<Option<Sum>> {
         let mut sums: Vec<Option<Sum>> = self.instructions.iter().map(|_| None).collect();
         let mut inside = vec![false; self.instructions.len()];
         for k in (0..self.instructions.len()).rev() {
@@ -73,7 +73,7 @@ impl Program {
                     Some(inner) => {
                         sum.additions.push(term.operand.instruction_index());
                         inside[term.operand.instruction_index()] = true;
-                        todo.extend(inner.map(|t| t.with_outer_sign(term.negative)));
+                        todo.extend(inner.map(|t| t.multiplied_by_sum_sign(term.negative)));
                     }
                     None => sum.terms.push(term),
                 }
@@ -86,7 +86,7 @@ impl Program {
 
     /// Sorts the instructions so that operands precede operations; `late` instructions come right after their
     /// last operand.
-    fn order_with_late_last(self, late: &[bool]) -> Program {
+    fn schedule_late_after_operands(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
         let mut users = vec![Vec::new(); n];
         let mut missing = vec![0; n];
@@ -119,11 +119,15 @@ impl Program {
 impl InstructionTimes {
     /// Orders the terms of a sum by time, scalars before vectors of lanes; at least one of the first two
     /// terms is not a product.
-    fn order_terms(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
+    fn order_terms_by_time(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
         sum.terms.sort_by_key(|term| {
-            (is_wide(term.operand), self.time_of_term(program, *term).0, term.operand.instruction_index())
+            (
+                is_wide(term.operand),
+                self.availability_time_of_term(program, *term).0,
+                term.operand.instruction_index(),
+            )
         });
-        let single = sum.terms.iter().position(|term| !self.time_of_term(program, *term).1);
+        let single = sum.terms.iter().position(|term| !self.availability_time_of_term(program, *term).1);
         if let Some(k) = single.filter(|k| *k > 1) {
             sum.terms[..=k].rotate_right(1);
         }
@@ -166,7 +170,7 @@ impl Program {
                 if place > 0 {
                     time += MULTIPLY;
                 }
-                match self.single_use_product(term.operand) {
+                match self.factors_of_single_use_product(term.operand) {
                     Some((a, b)) => {
                         is_part[term.operand.instruction_index()] = true;
                         raise_remaining_time(&mut rest, a, time);
@@ -208,6 +212,6 @@ mod tests {
                 + value_of_index(8) * value_of_index(9)
         };
         assert!((fused.interpret_program(&value_of_symbol)[0] - expected).abs() < 1e-14);
-        assert_eq!(fused.estimated_time(), 16 + 6 * (4 + 13) + 4);
+        assert_eq!(fused.estimated_call_time(), 16 + 6 * (4 + 13) + 4);
     }
 }

@@ -8,21 +8,21 @@ impl Program {
     /// results have the same bits.
     #[must_use]
     pub fn expand_lanes(&self) -> Program {
-        let mut expansion = Expansion { program: self, instructions: Vec::new(), values: Vec::new() };
+        let mut expansion = ScalarisedProgram { program: self, instructions: Vec::new(), values: Vec::new() };
         for op in &self.instructions {
             let lanes = expansion.expand_operation(*op);
             expansion.values.push(lanes);
         }
         let outputs = self.outputs.iter().map(|o| expansion.lane_operand(*o, 0)).collect();
         let mut program = Program { instructions: expansion.instructions, outputs, ..Program::default() };
-        program.remove_unused();
+        program.remove_unused_instructions();
         program.counts = program.count_operations();
         program
     }
 }
 
 /// Program in which an instruction on SIMD lanes becomes one instruction per lane.
-struct Expansion<'a> {
+struct ScalarisedProgram<'a> {
     program: &'a Program,
     /// Scalar instructions written so far.
     instructions: Vec<Op>,
@@ -30,7 +30,7 @@ struct Expansion<'a> {
     values: Vec<Vec<Operand>>,
 }
 
-impl Expansion<'_> {
+impl ScalarisedProgram<'_> {
     /// Appends the instructions of an operation, and returns the operands that hold its lanes.
     fn expand_operation(&mut self, op: Op) -> Vec<Operand> {
         match op {
@@ -40,7 +40,7 @@ impl Expansion<'_> {
             }
             Op::Sum(n, a) => {
                 let lanes = (0..n).map(|k| self.lane_operand(a, k)).collect();
-                vec![self.sum_of_lanes(lanes)]
+                vec![self.append_sum_of_lanes(lanes)]
             }
             op => {
                 let mut width = 1;
@@ -54,7 +54,7 @@ impl Expansion<'_> {
 
     /// Appends the instructions that sum SIMD lanes: the upper half is added to the lower half until one lane
     /// is left.
-    fn sum_of_lanes(&mut self, mut lanes: Vec<Operand>) -> Operand {
+    fn append_sum_of_lanes(&mut self, mut lanes: Vec<Operand>) -> Operand {
         while lanes.len() > 1 {
             let half = lanes.len().div_ceil(2);
             for (k, upper) in lanes.split_off(half).into_iter().enumerate() {
@@ -107,7 +107,7 @@ mod tests {
         let tuples = vec![vec![1e16, 1.0, -1e16, 1.0, 3.0]];
         let gathers = vec![(0..5).map(Symbol).collect()];
         let mut lanes = Program { instructions, outputs, tuples, gathers, ..Program::default() };
-        lanes.remove_unused();
+        lanes.remove_unused_instructions();
         let program = lanes.expand_lanes();
         assert!(program.tuples.is_empty() && program.gathers.is_empty());
         assert_eq!(program.instructions.len(), 9);

@@ -20,9 +20,10 @@ impl Program {
 
     /// Returns the estimated time of a call in half cycles: the number of instructions plus the cycles of the
     /// critical path, since consecutive calls overlap only in part.
-    pub fn estimated_time(&self) -> usize {
-        let fused = self.fused_copy();
-        let longest = fused.critical_latency(&fused.users_of_values()).into_iter().max().unwrap_or(0) / CYCLE;
+    pub fn estimated_call_time(&self) -> usize {
+        let fused = self.copy_with_fused_products();
+        let longest =
+            fused.latencies_to_program_end(&fused.users_of_values()).into_iter().max().unwrap_or(0) / CYCLE;
         fused.instructions.len() + longest as usize
     }
 
@@ -41,7 +42,7 @@ impl Program {
 
     /// Returns the latency from the start of each instruction to the end of the program, in thirds of a
     /// cycle.
-    fn critical_latency(&self, users: &[Vec<usize>]) -> Vec<u32> {
+    fn latencies_to_program_end(&self, users: &[Vec<usize>]) -> Vec<u32> {
         let mut rest = vec![0; users.len()];
         for k in (0..users.len()).rev() {
             let after = users[k].iter().map(|u| rest[*u]).max().unwrap_or(0);
@@ -57,7 +58,7 @@ impl Program {
         let users = self.users_of_values();
         let mut missing = vec![0; n];
         users.iter().flatten().for_each(|k| missing[*k] += 1);
-        let rest = self.critical_latency(&users);
+        let rest = self.latencies_to_program_end(&users);
         let cycles = f64::from(*rest.iter().max()?) / f64::from(CYCLE);
         if n as f64 > MOST_PARALLELISM * cycles {
             return None;
@@ -97,17 +98,17 @@ mod tests {
     use crate::lower::{Op, Operand, lower};
 
     /// Returns a long chain of operations, and a longer one that follows it in the program.
-    fn test_chains<'g>(g: &'g Graph) -> Vec<Expr<'g>> {
+    fn long_operation_chains<'g>(g: &'g Graph) -> Vec<Expr<'g>> {
         let [x, y] = [0, 1].map(|k| g.symbol(Symbol(k)));
-        let chain_of_products = |from: Expr<'g>, n: usize| (0..n).fold(from, |e, _| e * e + x * y);
-        let first = chain_of_products(x + y, 8);
-        vec![first, chain_of_products((x - y).sin() / y, 12)]
+        let iterated_square_plus_product = |from: Expr<'g>, n: usize| (0..n).fold(from, |e, _| e * e + x * y);
+        let first = iterated_square_plus_product(x + y, 8);
+        vec![first, iterated_square_plus_product((x - y).sin() / y, 12)]
     }
 
     #[test]
     fn scheduling_preserves_values_and_uses() {
         let g = Graph::new();
-        let before = lower(&test_chains(&g)).run_passes(PART);
+        let before = lower(&long_operation_chains(&g)).run_passes(PART);
         let after = before.clone().schedule_instructions();
         let value_of_symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
         assert_eq!(before.interpret_program(&value_of_symbol), after.interpret_program(&value_of_symbol));
@@ -135,7 +136,7 @@ mod tests {
         let index_of_division = |program: &crate::lower::Program| {
             program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")
         };
-        let program = lower(&test_chains(&g)).run_passes(PART);
+        let program = lower(&long_operation_chains(&g)).run_passes(PART);
         assert!(index_of_division(&program) > 8, "the quotient comes after the other chain");
         assert!(
             index_of_division(&program.schedule_instructions()) < 6,

@@ -3,7 +3,7 @@
 //! becomes a sum of its own, repeatedly (greedy elimination of common subexpressions of linear systems, as
 //! for digital filters: Hartley 1996). The result is used if it has fewer instructions.
 
-use super::lanes::Lanes;
+use super::lanes::ValueLaneCounts;
 use super::{Op, Operand, Program};
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ enum TermKey {
 
 impl TermKey {
     /// Returns the number of a term's key: zero for the number 1, then the values, then the sums.
-    fn key_number(self) -> u32 {
+    fn term_key_index(self) -> u32 {
         match self {
             TermKey::One => 0,
             TermKey::Atom(a) => 1 + a as u32,
@@ -69,7 +69,7 @@ struct SumTable {
 impl Program {
     /// Computes terms that several sums have in common only once.
     pub(super) fn with_shared_sums(mut self) -> Program {
-        let mut length = self.fused_length();
+        let mut length = self.instruction_count_after_fusion();
         for _ in 0..=ROUNDS {
             if length > MOST_INSTRUCTIONS {
                 break;
@@ -103,13 +103,14 @@ impl Program {
             }
             fewest = operations;
             // Choose the signs of the new sums, and let sums begin with a product again.
-            let mut program = self.program_of_sums(&sums).with_cheap_signs().order_terms_for_fusion();
+            let mut program =
+                self.program_of_sums(&sums).choose_signs_with_fewest_negations().order_terms_for_fusion();
             program.counts = program.count_operations();
             let operations = program.counts.total_operations();
             if operations > cost.1 {
                 continue;
             }
-            let length = program.fused_length();
+            let length = program.instruction_count_after_fusion();
             if (length, operations) < cost {
                 cost = (length, operations);
                 best = Some((length, program));
@@ -126,7 +127,7 @@ impl Program {
         let mut out = SumWriter {
             sums,
             instructions: Vec::new(),
-            lanes: Lanes::lanes_of_inputs(self),
+            lanes: ValueLaneCounts::lanes_of_inputs(self),
             values: Vec::new(),
             written: vec![None; sums.sums.len()],
         };
@@ -136,7 +137,7 @@ impl Program {
                 None => {
                     let values = &out.values;
                     // An operand may have become a scalar because its terms in lanes cancelled.
-                    match op.map_operands(|o| o.translate_value(values)) {
+                    match op.map_operands(|o| o.operand_in_other_program(values)) {
                         Op::Lane(_, a) if out.lanes.lane_count(a) == 1 => a,
                         Op::Sum(n, a) => out.append_instruction(out.lanes.lane_sum_operation(n, a)),
                         op => out.append_instruction(op),
@@ -145,7 +146,7 @@ impl Program {
             };
             out.values.push(value);
         }
-        let outputs = self.outputs.iter().map(|o| o.translate_value(&out.values)).collect();
+        let outputs = self.outputs.iter().map(|o| o.operand_in_other_program(&out.values)).collect();
         let mut program = Program {
             instructions: out.instructions,
             outputs,
@@ -153,7 +154,7 @@ impl Program {
             gathers: self.gathers.clone(),
             ..Program::default()
         };
-        program.remove_unused();
+        program.remove_unused_instructions();
         program
     }
 }
@@ -187,17 +188,17 @@ impl SumTable {
                             continue;
                         }
                         Some(sum) => TermKey::Sum(sum),
-                        None => sums.key_of_atom(term.operand, &mut known),
+                        None => sums.key_of_non_sum_operand(term.operand, &mut known),
                     },
-                    o => sums.key_of_atom(o, &mut known),
+                    o => sums.key_of_non_sum_operand(o, &mut known),
                 };
                 add(&mut terms, key, sign);
             }
             sums.ends[k] = Some(sums.sums.len());
             sums.sums.push(terms);
         }
-        let is_lone_product = |o: &Operand| program.single_use_product(*o).is_some();
-        sums.lone_products = sums.atoms.iter().map(is_lone_product).collect();
+        let is_single_use_product = |o: &Operand| program.factors_of_single_use_product(*o).is_some();
+        sums.lone_products = sums.atoms.iter().map(is_single_use_product).collect();
         let sum_ending_at = |o: Operand| match o {
             Operand::Value(k) => sums.ends[k],
             _ => None,
@@ -231,7 +232,7 @@ impl SumTable {
     }
 
     /// Returns the key of an operand that is not a sum.
-    fn key_of_atom(&mut self, o: Operand, known: &mut AtomNumbers) -> TermKey {
+    fn key_of_non_sum_operand(&mut self, o: Operand, known: &mut AtomNumbers) -> TermKey {
         let place = match o {
             Operand::Value(k) => &mut known.values[k],
             Operand::Const(c) => known.others.entry((0, c.to_bits())).or_default(),
@@ -265,8 +266,8 @@ impl SumTable {
                     key => add(&mut terms, key, *c),
                 }
             }
-            let is_value = |(key, c): &(TermKey, f64)| *key != TermKey::One && *c > 0.0;
-            if terms.len() <= MOST_TERMS && terms.iter().any(is_value) {
+            let is_positive_value_term = |(key, c): &(TermKey, f64)| *key != TermKey::One && *c > 0.0;
+            if terms.len() <= MOST_TERMS && terms.iter().any(is_positive_value_term) {
                 self.sums[k] = terms;
             }
         }
@@ -275,36 +276,38 @@ impl SumTable {
     /// Replaces the pairs of terms that most sums share by sums of their own.
     fn share_frequent_pairs(&mut self) {
         let mut pairs = SharedPairs::from_sums(&self.sums, self.atoms.len());
-        while let Some((pair, list)) = pairs.take_most_shared() {
+        while let Some((pair, list)) = pairs.take_most_shared_pair() {
             let new = TermKey::Sum(self.sums.len());
             let mut with_new = Vec::new();
             for &k in &list {
                 let terms = &mut self.sums[k];
                 let Some(c) =
-                    terms.iter().find(|(key, _)| key.key_number() == pair.first_key()).map(|(_, c)| *c)
+                    terms.iter().find(|(key, _)| key.term_key_index() == pair.first_key()).map(|(_, c)| *c)
                 else {
                     continue;
                 };
-                let is_member_of_pair = |key: u32| key == pair.first_key() || key == pair.second_key();
+                let is_member_of_pair = |key: u32| key == pair.first_key() || key == pair.second_term_key();
                 for (i, a) in terms.iter().enumerate() {
                     for b in &terms[i + 1..] {
-                        if is_member_of_pair(a.0.key_number()) || is_member_of_pair(b.0.key_number()) {
+                        if is_member_of_pair(a.0.term_key_index()) || is_member_of_pair(b.0.term_key_index())
+                        {
                             pairs.remove_sum_from_pair(TermPair::new(*a, *b), k);
                         }
                     }
                 }
-                terms.retain(|(key, _)| !is_member_of_pair(key.key_number()));
+                terms.retain(|(key, _)| !is_member_of_pair(key.term_key_index()));
                 with_new.extend(terms.iter().map(|term| (TermPair::new(*term, (new, c)), k)));
                 terms.push((new, c));
             }
             pairs.add(with_new);
-            let [a, b] = [pair.first_key(), pair.second_key()].map(|number| self.key_of_number(number));
+            let [a, b] =
+                [pair.first_key(), pair.second_term_key()].map(|number| self.key_of_sum_or_atom(number));
             self.sums.push(vec![(a, 1.0), (b, pair.coefficient_ratio())]);
         }
     }
 
     /// Returns the key of the atom or sum with this number.
-    fn key_of_number(&self, number: u32) -> TermKey {
+    fn key_of_sum_or_atom(&self, number: u32) -> TermKey {
         match number {
             0 => TermKey::One,
             n if n < FIRST_SUM => TermKey::Atom(n as usize - 1),
@@ -339,7 +342,7 @@ fn add(terms: &mut Terms, key: TermKey, c: f64) {
 struct SumWriter<'a> {
     sums: &'a SumTable,
     instructions: Vec<Op>,
-    lanes: Lanes,
+    lanes: ValueLaneCounts,
     /// New operand for each instruction of the original program.
     values: Vec<Operand>,
     /// New operand of each sum that is already written.
@@ -371,7 +374,7 @@ impl SumWriter<'_> {
             if todo.len() == before {
                 todo.pop();
                 if self.written[top].is_none() {
-                    self.written[top] = Some(self.write_sum(top));
+                    self.written[top] = Some(self.write_sum_instructions(top));
                 }
             }
         }
@@ -379,12 +382,12 @@ impl SumWriter<'_> {
     }
 
     /// Writes the instructions of a sum whose inner sums are already written.
-    fn write_sum(&mut self, k: usize) -> Operand {
+    fn write_sum_instructions(&mut self, k: usize) -> Operand {
         let mut terms: Vec<(Operand, f64)> = Vec::new();
         for (key, c) in &self.sums.sums[k] {
             terms.push(match *key {
                 TermKey::One => (Operand::Const(c.abs()), c.signum()),
-                TermKey::Atom(a) => (self.sums.atoms[a].translate_value(&self.values), *c),
+                TermKey::Atom(a) => (self.sums.atoms[a].operand_in_other_program(&self.values), *c),
                 TermKey::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
             });
         }

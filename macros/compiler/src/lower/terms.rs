@@ -18,13 +18,13 @@ impl Term {
     }
 
     /// Returns the term of a sum that itself has this sign.
-    pub fn with_outer_sign(self, negative: bool) -> Term {
+    pub fn multiplied_by_sum_sign(self, negative: bool) -> Term {
         Term { negative: self.negative != negative, ..self }
     }
 
     /// Returns the operation that adds two terms, and true if its result has to be negated: if both terms are
     /// negative.
-    pub fn add_two_terms(a: Term, b: Term) -> (Op, bool) {
+    pub fn addition_operation(a: Term, b: Term) -> (Op, bool) {
         let op = match (a.negative, b.negative) {
             (false, false) | (true, true) => Op::Add(a.operand, b.operand),
             (false, true) => Op::Sub(a.operand, b.operand),
@@ -46,7 +46,7 @@ impl Sum {
         let mut ops = Vec::with_capacity(self.additions.len());
         let mut sum = *self.terms.first()?;
         for (term, at) in self.terms[1..].iter().zip(&self.additions) {
-            let (op, negative) = Term::add_two_terms(sum, *term);
+            let (op, negative) = Term::addition_operation(sum, *term);
             ops.push(op);
             sum = Term { operand: Operand::Value(*at), negative };
         }
@@ -72,7 +72,7 @@ impl Program {
     }
 
     /// Returns the factors of a product with a single use.
-    pub(super) fn single_use_product(&self, o: Operand) -> Option<(Operand, Operand)> {
+    pub(super) fn factors_of_single_use_product(&self, o: Operand) -> Option<(Operand, Operand)> {
         match *self.single_use_operation(o)? {
             Op::Mul(a, b) => Some((a, b)),
             _ => None,

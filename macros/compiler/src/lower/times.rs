@@ -20,10 +20,10 @@ impl InstructionTimes {
     }
 
     /// Returns the time at which the value of instruction `k` is available.
-    pub fn instruction_time(&self, program: &Program, k: usize) -> u32 {
+    pub fn instruction_finish_time(&self, program: &Program, k: usize) -> u32 {
         let op = &program.instructions[k];
         if let Some([a, b]) = op.addition_terms() {
-            return self.time_of_chain(program, &[a, b]);
+            return self.time_of_ordered_sum(program, &[a, b]);
         }
         let mut start = 0;
         op.visit_operands(|o| start = start.max(self.time_of_value(o)));
@@ -32,16 +32,16 @@ impl InstructionTimes {
 
     /// Returns the time at which a term can be added, and true if it is a product that fuses; its factors
     /// must be available then.
-    pub fn time_of_term(&self, program: &Program, term: Term) -> (u32, bool) {
-        match program.single_use_product(term.operand) {
+    pub fn availability_time_of_term(&self, program: &Program, term: Term) -> (u32, bool) {
+        match program.factors_of_single_use_product(term.operand) {
             Some((a, b)) => (self.time_of_value(a).max(self.time_of_value(b)), true),
             None => (self.time_of_value(term.operand), false),
         }
     }
 
     /// Returns the time at which the sum of terms that are added in order is available.
-    pub fn time_of_chain(&self, program: &Program, terms: &[Term]) -> u32 {
-        let mut times = terms.iter().map(|term| self.time_of_term(program, *term));
+    pub fn time_of_ordered_sum(&self, program: &Program, terms: &[Term]) -> u32 {
+        let mut times = terms.iter().map(|term| self.availability_time_of_term(program, *term));
         let (Some(first), Some(second)) = (times.next(), times.next()) else { return 0 };
         let start = match (first, second) {
             // The earlier of two products is a separate instruction.
@@ -61,7 +61,7 @@ pub(super) fn operation_latency(op: &Op) -> u32 {
         Op::Lane(..) | Op::Join(..) => MOVE_LANE,
         Op::Add(..) | Op::Sub(..) => ADD,
         Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) | Op::Extreme(..) => MULTIPLY,
-        Op::Sum(lanes, _) => HALVE * lane_reduction_steps(*lanes),
+        Op::Sum(lanes, _) => HALVE * lane_reduction_step_count(*lanes),
         Op::Div(..) => DIVIDE,
         Op::Atan2(..) | Op::Pow(..) | Op::Table(..) => CALL,
     }
@@ -71,12 +71,12 @@ pub(super) fn operation_latency(op: &Op) -> u32 {
 pub(super) fn issue_slots(op: &Op) -> u32 {
     match op {
         Op::Call(..) => 0,
-        Op::Sum(lanes, _) => 2 * lane_reduction_steps(*lanes),
+        Op::Sum(lanes, _) => 2 * lane_reduction_step_count(*lanes),
         _ => 1,
     }
 }
 
 /// Returns the number of steps that add the upper half of the lanes to the lower half.
-fn lane_reduction_steps(lanes: usize) -> u32 {
+fn lane_reduction_step_count(lanes: usize) -> u32 {
     lanes.next_power_of_two().trailing_zeros()
 }

@@ -3,7 +3,7 @@
 //! mechanism at rest without gravity, so that the recursion has no velocity terms.
 
 use super::is_plain_tree;
-use super::ldl::second_inverse;
+use super::ldl::inverse_of_second_ldl_pivot;
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanics::passive::passive_forces;
@@ -37,19 +37,19 @@ fn solve_articulated<'g>(
     if !is_plain_tree(model) {
         return None;
     }
-    let mut inertias: Vec<Articulated<'g>> =
-        model.links.iter().map(|l| Articulated::from_rigid_inertia(&l.inertia)).collect();
-    let mut handles: Vec<Vec<Eliminated<'g>>> = vec![Vec::new(); joints.len()];
+    let mut inertias: Vec<ArticulatedInertia<'g>> =
+        model.links.iter().map(|l| ArticulatedInertia::from_rigid_inertia(&l.inertia)).collect();
+    let mut handles: Vec<Vec<EliminatedDof<'g>>> = vec![Vec::new(); joints.len()];
     for (k, joint) in joints.iter().enumerate().rev() {
         let (mut inertia, mut wrench) = (inertias[k], wrenches[k]);
         let mut inverse = None;
         for (place, dof) in joint.dofs.iter().enumerate().rev() {
             let next = place.checked_sub(1).map(|next| &joint.dofs[next]).filter(|_| inverse.is_none());
-            let handle = Eliminated::new(dof, &inertia, &wrench, r[dof.index], inverse);
+            let handle = EliminatedDof::new(dof, &inertia, &wrench, r[dof.index], inverse);
             inverse = next.and_then(|next| inertia.second_pivot_inverse(&dof.subspace, &next.subspace));
             // The reduced inertia after the last elimination of a root is used by no later step.
             inertia.eliminate_dof(&handle);
-            wrench = handle.transmit_wrench(&wrench);
+            wrench = handle.wrench_transmitted_to_parent(&wrench);
             handles[k].push(handle);
         }
         if let Some(parent) = joint.parent {
@@ -63,7 +63,7 @@ fn solve_articulated<'g>(
 fn outward_recursion<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    handles: &[Vec<Eliminated<'g>>],
+    handles: &[Vec<EliminatedDof<'g>>],
 ) -> Vec<Expr<'g>> {
     let mut result = vec![model.graph.zero(); model.nv()];
     let mut motions: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
@@ -84,8 +84,8 @@ fn outward_recursion<'g>(
 /// be `D`. The transmitted wrench has the entry `r` there, because `s · (pA + U u / D) = r`. The acceleration
 /// along the axis is `(u − U · a) / D`, independent of the parent's acceleration along the axis.
 #[derive(Clone)]
-struct Eliminated<'g> {
-    axis: Option<Axis>,
+struct EliminatedDof<'g> {
+    axis: Option<SpatialCoordinateAxis>,
     column: Spatial<'g>,
     scaled: Spatial<'g>,
     effort: Expr<'g>,
@@ -94,17 +94,17 @@ struct Eliminated<'g> {
 
 /// One of the six coordinate axes of spatial vectors, linear axes first, with its sign.
 #[derive(Clone, Copy)]
-struct Axis {
+struct SpatialCoordinateAxis {
     entry: usize,
     backwards: bool,
 }
 
-impl Axis {
-    fn from_subspace(s: &Spatial<'_>) -> Option<Axis> {
+impl SpatialCoordinateAxis {
+    fn coordinate_axis_of_subspace(s: &Spatial<'_>) -> Option<SpatialCoordinateAxis> {
         let mut nonzero = (0..6).filter(|e| !spatial_entry(s, *e).is_zero());
         let first = nonzero.next()?;
         let value = spatial_entry(s, first).constant_value().filter(|c| c.abs() == 1.0)?;
-        nonzero.next().is_none().then_some(Axis { entry: first, backwards: value < 0.0 })
+        nonzero.next().is_none().then_some(SpatialCoordinateAxis { entry: first, backwards: value < 0.0 })
     }
 
     fn apply_sign<'g>(self, e: Expr<'g>) -> Expr<'g> {
@@ -125,28 +125,28 @@ fn with_spatial_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spat
     s
 }
 
-impl<'g> Eliminated<'g> {
+impl<'g> EliminatedDof<'g> {
     /// Eliminates one degree of freedom from an articulated inertia. `inverse` is `1 / D` if it has already
     /// been computed.
     fn new(
         dof: &Dof<'g>,
-        inertia: &Articulated<'g>,
+        inertia: &ArticulatedInertia<'g>,
         wrench: &Spatial<'g>,
         r: Expr<'g>,
         inverse: Option<Expr<'g>>,
-    ) -> Eliminated<'g> {
-        let axis = Axis::from_subspace(&dof.subspace);
+    ) -> EliminatedDof<'g> {
+        let axis = SpatialCoordinateAxis::coordinate_axis_of_subspace(&dof.subspace);
         let mut column = inertia.multiply_by_motion(&dof.subspace);
         let inverse = inverse.unwrap_or_else(|| r.num(1.0) / dof.subspace.dot(&column));
         if let Some(axis) = axis {
             column = with_spatial_entry(column, axis.entry, r.zero());
         }
         let effort = (r - dof.subspace.dot(wrench)) * inverse;
-        Eliminated { axis, column, scaled: column.times_scalar(inverse), effort, r }
+        EliminatedDof { axis, column, scaled: column.times_scalar(inverse), effort, r }
     }
 
     /// Returns the wrench that the joint transmits towards the parent.
-    fn transmit_wrench(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
+    fn wrench_transmitted_to_parent(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
         let sum = wrench.plus(&self.column.times_scalar(self.effort));
         self.axis.map_or(sum, |axis| with_spatial_entry(sum, axis.entry, axis.apply_sign(self.r)))
     }
@@ -167,15 +167,15 @@ impl<'g> Eliminated<'g> {
 /// Articulated-body inertia: force `M a + Hᵀ w` and moment `H a + I w` for an acceleration `(a, w)` of the
 /// origin.
 #[derive(Clone, Copy)]
-struct Articulated<'g> {
+struct ArticulatedInertia<'g> {
     m: Sym3<'g>,
     h: Mat3<'g>,
     i: Sym3<'g>,
 }
 
-impl<'g> Articulated<'g> {
-    fn from_rigid_inertia(inertia: &Inertia<'g>) -> Articulated<'g> {
-        Articulated {
+impl<'g> ArticulatedInertia<'g> {
+    fn from_rigid_inertia(inertia: &Inertia<'g>) -> ArticulatedInertia<'g> {
+        ArticulatedInertia {
             m: Sym3::multiple_of_identity(inertia.mass),
             h: Mat3::skew(inertia.moment),
             i: inertia.tensor,
@@ -190,15 +190,19 @@ impl<'g> Articulated<'g> {
     }
 
     /// Returns `1 / D` of the second degree of freedom after elimination of the first, or `None` if the
-    /// inertia does not couple the two, see [`second_inverse`].
+    /// inertia does not couple the two, see [`inverse_of_second_ldl_pivot`].
     fn second_pivot_inverse(&self, first: &Spatial<'g>, second: &Spatial<'g>) -> Option<Expr<'g>> {
         let column = self.multiply_by_motion(first);
-        second_inverse(first.dot(&column), second.dot(&column), second.dot(&self.multiply_by_motion(second)))
+        inverse_of_second_ldl_pivot(
+            first.dot(&column),
+            second.dot(&column),
+            second.dot(&self.multiply_by_motion(second)),
+        )
     }
 
     /// Subtracts `U Uᵀ / D`. If the joint leaves a coordinate axis free, the row and column of that axis are
     /// then exactly zero.
-    fn eliminate_dof(&mut self, handle: &Eliminated<'g>) {
+    fn eliminate_dof(&mut self, handle: &EliminatedDof<'g>) {
         let (f, n) = (handle.column.linear, handle.column.angular);
         let outer_product = |a: Vec3<'g>, b: Vec3<'g>| Mat3::from_fn(|i, j| a[i] * b[j]);
         self.m = self.m - Sym3::from_upper(&outer_product(handle.scaled.linear, f));
@@ -206,13 +210,13 @@ impl<'g> Articulated<'g> {
         self.i = self.i - Sym3::from_upper(&outer_product(handle.scaled.angular, n));
         let zero = handle.r.zero();
         match handle.axis {
-            Some(Axis { entry: k @ 0..3, .. }) => {
+            Some(SpatialCoordinateAxis { entry: k @ 0..3, .. }) => {
                 for row in &mut self.h.0 {
                     row[k] = zero;
                 }
                 clear_row_and_column(&mut self.m, k);
             }
-            Some(Axis { entry, .. }) => {
+            Some(SpatialCoordinateAxis { entry, .. }) => {
                 self.h.0[entry - 3] = [zero; 3];
                 clear_row_and_column(&mut self.i, entry - 3);
             }
@@ -223,9 +227,9 @@ impl<'g> Articulated<'g> {
     /// Adds the inertia, transformed to the parent's origin and axes, to `sum`.
     ///
     /// `H' = H + [p]× M`, `I' = I − H [p]× − (H' [p]×)ᵀ`.
-    fn add_to_parent(self, joint: &Joint<'g>, sum: &Articulated<'g>) -> Articulated<'g> {
+    fn add_to_parent(self, joint: &Joint<'g>, sum: &ArticulatedInertia<'g>) -> ArticulatedInertia<'g> {
         let m = joint.rotation.sym_to_parent(self.m);
-        let h = joint.rotation.mat_to_parent(self.h);
+        let h = joint.rotation.tensor_in_parent_axes(self.h);
         let i = joint.rotation.sym_to_parent(self.i);
         let p = Mat3::skew(joint.translation);
         let moved = h + p * m.full_matrix();
@@ -238,7 +242,7 @@ impl<'g> Articulated<'g> {
         };
         let sum_over_lanes = |e| joint.lane_sum(e);
         let moved = Mat3::from_fn(|i, j| sum_over_lanes(moved.0[i][j]));
-        Articulated {
+        ArticulatedInertia {
             m: sum.m + m.map(sum_over_lanes),
             h: sum.h + moved,
             i: sum.i + (i - shift).map(sum_over_lanes),

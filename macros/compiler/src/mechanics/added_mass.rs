@@ -10,7 +10,7 @@
 
 use super::crba::Matrix;
 use crate::expr::Expr;
-use crate::kinematics::differentiated_gradient;
+use crate::kinematics::cached_velocity_gradient;
 use crate::mechanism::Model;
 
 /// Returns the effective mass matrix: `mass` minus the coefficients of the forces that are linear in
@@ -18,7 +18,7 @@ use crate::mechanism::Model;
 pub fn effective_mass_matrix<'g>(model: &Model<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
     let mut m = mass.clone();
     for force in &model.acceleration_forces {
-        for (i, d) in differentiated_gradient(model, force.rate) {
+        for (i, d) in cached_velocity_gradient(model, force.rate) {
             for (k, factor) in &force.factors {
                 m[i][*k] -= d * *factor;
             }
@@ -28,11 +28,11 @@ pub fn effective_mass_matrix<'g>(model: &Model<'g>, mass: &Matrix<'g>) -> Matrix
 }
 
 /// Subtracts the forces that are linear in accelerations, evaluated at the accelerations `a`, from `tau`.
-pub fn subtract_from_forces<'g>(model: &Model<'g>, a: &[Expr<'g>], tau: &mut [Expr<'g>]) {
+pub fn subtract_acceleration_forces<'g>(model: &Model<'g>, a: &[Expr<'g>], tau: &mut [Expr<'g>]) {
     for force in &model.acceleration_forces {
         let terms = force.factors.iter().map(|(k, factor)| *factor * a[*k]);
         let value = terms.fold(model.graph.zero(), |sum, term| sum + term);
-        for (i, d) in differentiated_gradient(model, force.rate) {
+        for (i, d) in cached_velocity_gradient(model, force.rate) {
             tau[i] -= value * d;
         }
     }

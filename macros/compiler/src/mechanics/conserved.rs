@@ -8,7 +8,7 @@ use crate::diag::Diagnostics;
 use crate::expr::eval::Tape;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Symbol, Vec3};
-use crate::kinematics::redundancy::Basis;
+use crate::kinematics::redundancy::OrthonormalRowBasis;
 use crate::kinematics::{Joint, Rows, mobility, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
@@ -26,7 +26,7 @@ const DEPENDENT: f64 = 1e-6;
 
 /// Conserved quantity of a mechanism: its name and its value.
 #[derive(Clone)]
-pub struct Conserved<'g> {
+pub struct ConservedQuantity<'g> {
     /// Name of the conserved quantity, as shown to the user.
     pub name: String,
     /// Value of the quantity as an expression of the state.
@@ -35,7 +35,7 @@ pub struct Conserved<'g> {
 
 /// Returns independent conserved quantities, the simplest first. The list is empty for mechanisms with
 /// sliding or unilateral contacts, and if no configuration that satisfies the constraints is found.
-pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
+pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<ConservedQuantity<'g>> {
     let rubs = model.constraints.iter().any(|c| !c.friction.is_empty()) || !model.contacts.is_empty();
     if model.nv() == 0 || rubs {
         return Vec::new();
@@ -50,7 +50,7 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
         let state = SampledState::random_state(model, &motion, q, *seed, k as u64);
         let Some(rates) = state.and_then(|state| {
             gradients.push(state.value_gradients(&tape));
-            state.values_are_constant(&motion, &tape)
+            state.constant_value_flags(&motion, &tape)
         }) else {
             return Vec::new();
         };
@@ -59,7 +59,8 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
     if places.is_empty() {
         return Vec::new();
     }
-    let mut bases: Vec<Basis> = gradients.iter().map(|_| Basis::default()).collect();
+    let mut bases: Vec<OrthonormalRowBasis> =
+        gradients.iter().map(|_| OrthonormalRowBasis::default()).collect();
     let mut adds = |k: usize| {
         let mut any = false;
         for (basis, gradients) in bases.iter_mut().zip(&gradients) {
@@ -73,24 +74,27 @@ pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<
 }
 
 /// Returns all quantities of a mechanism that may be conserved, such as the momenta of its coordinates.
-fn candidate_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
+fn candidate_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<ConservedQuantity<'g>> {
     let v = velocity_symbols(model);
     let p = momentum::generalized_momentum(model, joints, &v);
     let kinetic = energy::kinetic_energy(model, joints, &v);
     let potential = energy::potential_energy(model, joints);
-    let mut all = vec![Conserved { name: "energy".to_string(), value: kinetic + potential }];
+    let mut all = vec![ConservedQuantity { name: "energy".to_string(), value: kinetic + potential }];
     if model.time {
         let power = p.iter().zip(&v).fold(model.graph.zero(), |sum, (p, v)| sum + *p * *v);
-        all.push(Conserved { name: "Jacobi's integral".to_string(), value: power - kinetic + potential });
+        all.push(ConservedQuantity {
+            name: "Jacobi's integral".to_string(),
+            value: power - kinetic + potential,
+        });
     }
     for (p, (name, _)) in p.iter().zip(&model.velocities) {
-        all.push(Conserved { name: format!("momentum of {name}"), value: *p });
+        all.push(ConservedQuantity { name: format!("momentum of {name}"), value: *p });
     }
     let whole = momentum::centroidal_momentum(model, joints, &v);
     let center = energy::center_of_mass(model, joints);
     let mut add = |what: &str, vector: Vec3<'g>, about: &str| {
         for (axis, value) in ["x", "y", "z"].into_iter().zip(vector.0) {
-            all.push(Conserved { name: format!("{what} momentum along {axis}{about}"), value });
+            all.push(ConservedQuantity { name: format!("{what} momentum along {axis}{about}"), value });
         }
     };
     add("linear", whole.linear, "");
@@ -192,13 +196,14 @@ impl SampledState {
         let (mass, rest) = values.split_at(nv * nv);
         let (bias, rest) = rest.split_at(nv);
         let (jacobian, rest) = rest.split_at(nc * nv);
-        let entry_of_system = |i: usize, j: usize| match (i < nv, j < nv) {
+        let entry_of_constrained_system = |i: usize, j: usize| match (i < nv, j < nv) {
             (true, true) => mass[i * nv + j],
             (true, false) => jacobian[(j - nv) * nv + i],
             (false, true) => jacobian[(i - nv) * nv + j],
             (false, false) => 0.0,
         };
-        let system = (0..nv + nc).map(|i| (0..nv + nc).map(|j| entry_of_system(i, j)).collect()).collect();
+        let system =
+            (0..nv + nc).map(|i| (0..nv + nc).map(|j| entry_of_constrained_system(i, j)).collect()).collect();
         let right = bias.iter().chain(&rest[nc..]).map(|x| -x).collect();
         let mut a = solve_linear_system(system, right);
         a.truncate(nv);
@@ -233,7 +238,7 @@ impl SampledState {
     }
 
     /// Returns for each value whether it is constant along the motion, or `None` if the motion is not finite.
-    fn values_are_constant(&self, motion: &NumericMotion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
+    fn constant_value_flags(&self, motion: &NumericMotion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
         let (q, v) = self.state_derivatives(motion);
         let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
         let whole = self.directional_derivatives(tape, 1.0, &q, &v);
@@ -243,11 +248,11 @@ impl SampledState {
             self.directional_derivatives(tape, 0.0, &no_q, &v),
         ];
         let now = self.tape_values(tape);
-        let is_constant_entry = |k: usize| {
+        let is_conserved_entry = |k: usize| {
             let size: f64 = parts.iter().map(|part| part[k].abs()).sum();
             whole[k].abs() <= LEFT * size + ROUNDING * now[k].abs()
         };
-        v.iter().all(|a| a.is_finite()).then(|| (0..now.len()).map(is_constant_entry).collect())
+        v.iter().all(|a| a.is_finite()).then(|| (0..now.len()).map(is_conserved_entry).collect())
     }
 
     /// Returns for each value its gradient with respect to all entries of the configuration, then of the

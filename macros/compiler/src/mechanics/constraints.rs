@@ -16,7 +16,7 @@ use super::friction;
 use super::ldl::{self, solve_in_order};
 use crate::expr::{Expr, Function};
 use crate::kinematics::{Joint, velocity_gradients};
-use crate::mechanism::{Model, Pivot, Quantity, Supplied};
+use crate::mechanism::{ConstraintPivot, Model, Quantity, SuppliedQuantity};
 
 /// Returns `J`, with a row for each constraint and a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
@@ -53,7 +53,7 @@ pub fn constraint_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 /// Returns accelerations and multipliers for forces `τ − h` and biases `J̇ v`, then measures of their
 /// reliability: the pivot of each constraint, and the value of that pivot before the elimination of other
 /// constraints reduced it.
-pub fn solve_constrained<'g>(
+pub fn solve_constrained_dynamics<'g>(
     mass: &Matrix<'g>,
     jacobian: &Matrix<'g>,
     force: Vec<Expr<'g>>,
@@ -62,7 +62,7 @@ pub fn solve_constrained<'g>(
     let nv = mass.len();
     let k = constrained_system_matrix(mass, jacobian);
     let (order, _) = elimination_order(&k, nv, &[]);
-    solve_in_order(k, constrained_right_side(force, bias), &order, nv).with_reliability(nv)
+    solve_in_order(k, constrained_right_side(force, bias), &order, nv).accelerations_with_reliability(nv)
 }
 
 /// Returns the right side of the equations of motion with constraints: forces, followed by the negative
@@ -116,8 +116,10 @@ pub fn constraint_forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr
 }
 
 /// Returns the constraint multipliers as symbols for arguments of generated functions.
-pub fn multiplier_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.constraints.len()).map(|k| Quantity::Given(Supplied::Multiplier, k).expr(model.graph)).collect()
+pub fn multiplier_argument_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    (0..model.constraints.len())
+        .map(|k| Quantity::Given(SuppliedQuantity::Multiplier, k).expr(model.graph))
+        .collect()
 }
 
 /// Returns the approximate number of products in the elimination of constraints.
@@ -145,14 +147,15 @@ pub fn constrained_system_matrix<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -
 
 /// Solves for accelerations and multipliers by independent velocities (Kane and Levinson, *Dynamics: Theory
 /// and Applications*, 1985; the projection `Nᵀ M N` of Gibbs, Appell and Kane), with the same results as
-/// [`solve_constrained`]. The dependent velocities are eliminated with the given pivots, `a = N s + a₀`, then
-/// `Nᵀ M N s = Nᵀ (τ − h − M a₀)`. The multipliers follow from the residuals of the dependent equations.
-pub fn solve_by_speeds<'g>(
+/// [`solve_constrained_dynamics`]. The dependent velocities are eliminated with the given pivots,
+/// `a = N s + a₀`, then `Nᵀ M N s = Nᵀ (τ − h − M a₀)`. The multipliers follow from the residuals of the
+/// dependent equations.
+pub fn solve_by_independent_velocities<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
     force: &[Expr<'g>],
     bias: Vec<Expr<'g>>,
-    pivots: &[Pivot],
+    pivots: &[ConstraintPivot],
 ) -> Vec<Expr<'g>> {
     let (g, nv) = (model.graph, model.nv());
     let pivots: Vec<(usize, usize)> = pivots.iter().map(|p| (p.constraint, p.velocity.0)).collect();
@@ -163,9 +166,13 @@ pub fn solve_by_speeds<'g>(
     right.iter_mut().zip(bias).for_each(|(row, b)| row.push(-b));
     let (solved, sizes) = eliminate_rows(rows.clone(), right, &pivots);
     let column = |c: usize| -> Vec<Expr<'g>> {
-        let independent_velocity = |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
+        let independent_velocity_derivative =
+            |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
         let component_of_velocity = |k: usize| {
-            pivots.iter().find(|(_, j)| *j == k).map_or(independent_velocity(k), |(row, _)| solved[*row][c])
+            pivots
+                .iter()
+                .find(|(_, j)| *j == k)
+                .map_or(independent_velocity_derivative(k), |(row, _)| solved[*row][c])
         };
         (0..nv).map(component_of_velocity).collect()
     };
@@ -267,17 +274,20 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
     (order, products)
 }
 
-/// Returns the forces and biases of the equations of motion as the symbols that [`solve_constrained`] takes
-/// as arguments at run time.
-pub fn argument_symbols<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+/// Returns the forces and biases of the equations of motion as the symbols that
+/// [`solve_constrained_dynamics`] takes as arguments at run time.
+pub fn force_and_bias_symbols<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (nv, nc) = (model.nv(), model.constraints.len());
-    let argument_expressions =
+    let supplied_argument_symbols =
         |block, n: usize| (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect();
-    (argument_expressions(Supplied::Force, nv), argument_expressions(Supplied::Bias, nc))
+    (
+        supplied_argument_symbols(SuppliedQuantity::Force, nv),
+        supplied_argument_symbols(SuppliedQuantity::Bias, nc),
+    )
 }
 
 /// First derivatives of the terms that constraints add to the equations of motion.
-pub struct FirstOrder<'g> {
+pub struct ConstraintTermDerivatives<'g> {
     /// Derivatives of the constraint forces `Jᵀ λ` at constant multipliers.
     pub forces: ForceDerivatives<'g>,
     /// Derivatives of `J a + b` at the accelerations `a`.
@@ -287,10 +297,10 @@ pub struct FirstOrder<'g> {
 }
 
 /// Returns the derivatives at the accelerations `a`; the multipliers are argument symbols.
-pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
+pub fn constraint_first_derivatives<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> ConstraintTermDerivatives<'g> {
     let rows = jacobian(model);
     let zero = model.graph.zero();
-    let forces = constraint_forces(model, &multiplier_symbols(model));
+    let forces = constraint_forces(model, &multiplier_argument_symbols(model));
     let rate_along_accelerations =
         |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
     let accelerations: Vec<Expr<'g>> = rows
@@ -298,7 +308,7 @@ pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
         .zip(constraint_biases(model))
         .map(|(row, bias)| rate_along_accelerations(row) + bias)
         .collect();
-    FirstOrder {
+    ConstraintTermDerivatives {
         forces: symbolic::force_derivatives(model, &forces),
         accelerations: symbolic::force_derivatives(model, &accelerations),
         rates: symbolic::force_derivatives(model, &constraint_velocities(model)).by_q,

@@ -1,11 +1,11 @@
 //! Mass matrix by the composite-rigid-body algorithm (Walker and Orin 1982; Featherstone 2008, ch. 6).
 
 use super::inertances;
-use super::shared_motions::SharedMotions;
+use super::shared_motions::SharedPartialVelocities;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial, map_spatial};
 use crate::mechanism::{Inertia, Model};
-use crate::vectorise::{LaneGroup, Paths, Visitor};
+use crate::vectorise::{LaneGroup, PathsToRoot, PropagationVisitor};
 
 /// Square matrix of expressions, stored by rows.
 pub type Matrix<'g> = Vec<Vec<Expr<'g>>>;
@@ -18,31 +18,32 @@ pub fn mass_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
 /// Returns the mass matrix `M(q)`, both triangles, with up to `most` columns computed in the SIMD lanes of
 /// one expression.
 pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Matrix<'g> {
-    let paths = Paths::new(joints, most);
+    let paths = PathsToRoot::new(joints, most);
     let dofs =
         joints.iter().enumerate().flat_map(|(k, joint)| (0..joint.dofs.len()).map(move |row| (k, row)));
     let matrix = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let (composites, shared) = (composite_inertias(model, joints), SharedMotions::new(model, joints));
-    let mut columns = Columns { joints, dofs: dofs.collect(), composites, shared, matrix };
+    let (composites, shared) =
+        (composite_inertias(model, joints), SharedPartialVelocities::new(model, joints));
+    let mut columns = MassMatrixVisitor { joints, dofs: dofs.collect(), composites, shared, matrix };
     paths.propagate_to_root(&mut columns);
-    let Columns { composites, shared, matrix: mut m, .. } = columns;
-    shared.add_masses(&composites, &mut m);
-    inertances::add_to_mass_matrix(model, &mut m);
+    let MassMatrixVisitor { composites, shared, matrix: mut m, .. } = columns;
+    shared.add_mass_matrix_entries(&composites, &mut m);
+    inertances::add_inertances_to_mass_matrix(model, &mut m);
     m
 }
 
 /// Visitor that adds the entries of the mass matrix: of each degree of freedom with itself, with the earlier
 /// degrees of freedom of its joint, and with those of all ancestors.
-struct Columns<'a, 'g> {
+struct MassMatrixVisitor<'a, 'g> {
     joints: &'a [Joint<'g>],
     /// Joint, and index of the degree of freedom in the joint.
     dofs: Vec<(usize, usize)>,
     composites: Vec<Inertia<'g>>,
-    shared: SharedMotions<'g>,
+    shared: SharedPartialVelocities<'g>,
     matrix: Matrix<'g>,
 }
 
-impl<'g> Columns<'_, 'g> {
+impl<'g> MassMatrixVisitor<'_, 'g> {
     fn add(&mut self, own: &Dof<'g>, other: &Dof<'g>, entry: Expr<'g>) {
         let entry = entry * entry.num(own.ratio * other.ratio);
         self.matrix[own.index][other.index] += entry;
@@ -52,15 +53,15 @@ impl<'g> Columns<'_, 'g> {
     }
 }
 
-impl<'g> Visitor<'g> for Columns<'_, 'g> {
+impl<'g> PropagationVisitor<'g> for MassMatrixVisitor<'_, 'g> {
     type Item = Spatial<'g>;
 
     fn start(&mut self, dof: usize) -> Spatial<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
-        if self.shared.contains_link(link) {
-            // A link in `SharedMotions` is placed on the ground, so no ancestor has entries with it.
-            // `SharedMotions` adds its own entries.
+        if self.shared.stores_velocities_of_link(link) {
+            // A link in `SharedPartialVelocities` is placed on the ground, so no ancestor has entries with
+            // it. `SharedPartialVelocities` adds its own entries.
             return own.subspace;
         }
         let wrench = momentum(&self.composites[link], &own.subspace);
@@ -73,7 +74,7 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
     fn visit(&mut self, group: &LaneGroup<Spatial<'g>>) {
         let joints = self.joints;
         for other in &joints[group.link].dofs {
-            let subspace = map_spatial(&other.subspace, |c| group.repeat_for_members(c));
+            let subspace = map_spatial(&other.subspace, |c| group.repeat_for_group_members(c));
             for (dof, entry) in group.lanes_of_members(subspace.dot(&group.item)) {
                 let (link, row) = self.dofs[dof];
                 self.add(&joints[link].dofs[row], other, entry);

@@ -11,10 +11,10 @@ use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
-/// Implements `Propagated` for a struct whose listed fields are propagated.
+/// Implements `PropagatedQuantity` for a struct whose listed fields are propagated.
 macro_rules! impl_propagated {
     ($name:ident { $($field:ident),+ }) => {
-        impl<'g> Propagated<'g> for $name<'g> {
+        impl<'g> PropagatedQuantity<'g> for $name<'g> {
             fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
                 $name { $($field: self.$field.zip_with(&other.$field, f)),+ }
             }
@@ -37,7 +37,7 @@ pub mod symbolic;
 mod trunk;
 
 pub use factor::Factor;
-pub use trunk::{Inverse, Trunk, divided_inverse_terms};
+pub use trunk::{Inverse, Trunk, inverse_terms_for_runtime_loops};
 
 /// Derivatives of forces: a row for each entry of `τ`, a column for each velocity.
 pub struct ForceDerivatives<'g> {
@@ -48,7 +48,7 @@ pub struct ForceDerivatives<'g> {
 }
 
 /// The equations of motion linearised about a state: `M δv̇ + ∂q δq + ∂v δv = δτ`.
-pub struct Linearized<'g> {
+pub struct LinearizedEquations<'g> {
     /// Derivatives of inverse dynamics, minus the state derivatives of the input forces.
     pub forces: ForceDerivatives<'g>,
     /// Derivatives `∂τ/∂u` of the input forces; no columns if `τ` itself is the input.
@@ -82,7 +82,7 @@ pub fn inverse_dynamics<'g>(
         && has_constant_subspaces(model)
     {
         let mut found = analytic::inverse_dynamics(model, joints, &v, a, most);
-        symbolic::add_passive_forces(model, &mut found);
+        symbolic::add_passive_force_derivatives(model, &mut found);
         return found;
     }
     let symbols = acceleration_symbols(model);
@@ -110,13 +110,13 @@ pub fn forward_dynamics<'g>(
     mass: &Matrix<'g>,
     tau: &[Expr<'g>],
     method: DerivationMethod,
-) -> Linearized<'g> {
+) -> LinearizedEquations<'g> {
     let factor = Factor::new(mass, joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None);
     let r = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
     let accelerations = factor.solve_factored(r);
     let forces = inverse_dynamics(model, joints, &accelerations, method);
-    Linearized { forces, by_u: Vec::new(), inverse: factor.inverse(), accelerations }
+    LinearizedEquations { forces, by_u: Vec::new(), inverse: factor.inverse(), accelerations }
 }
 
 /// Linearises the equations of motion about the motion under the inputs, whose forces `tau` may depend on the
@@ -127,12 +127,12 @@ pub fn linearize_equations<'g>(
     mass: &Matrix<'g>,
     tau: &[Expr<'g>],
     method: DerivationMethod,
-) -> Linearized<'g> {
+) -> LinearizedEquations<'g> {
     let mut found = forward_dynamics(model, joints, mass, tau, method);
     let by_state = symbolic::force_derivatives(model, tau);
     subtract_matrix(&mut found.forces.by_q, &by_state.by_q);
     subtract_matrix(&mut found.forces.by_v, &by_state.by_v);
-    found.by_u = symbolic::by_input(model, tau);
+    found.by_u = symbolic::input_derivatives_of_expressions(model, tau);
     found
 }
 

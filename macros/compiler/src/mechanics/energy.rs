@@ -3,7 +3,7 @@
 use super::crba::{composite_inertias, momentum};
 use super::inertances;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, coordinate_position, twists};
+use crate::kinematics::{Joint, coordinate_in_terms_of_q, twists};
 use crate::mechanism::Model;
 
 /// Returns the kinetic energy: half of twist times momentum, summed over the links, plus that of inerters.
@@ -41,7 +41,7 @@ pub fn potential_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g>
     let (_, moment) = mass_and_moment(model, joints);
     let mut energy = -model.gravity.dot(moment);
     for spring in &model.springs {
-        let stretch = coordinate_position(model, &spring.on) - spring.free;
+        let stretch = coordinate_in_terms_of_q(model, &spring.on) - spring.free;
         energy += spring.stiffness * 0.5 * stretch.square();
     }
     model.potentials.iter().fold(energy, |sum, e| sum + *e)

@@ -3,8 +3,8 @@
 
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, Spatial, change_axes, differentiated_gradient, symbols_in};
-use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
+use crate::kinematics::{Joint, Spatial, cached_velocity_gradient, express_in_link_axes, symbols_in};
+use crate::mechanism::{Input, LinkId, Model, Quantity, SumOfLinkVectors};
 
 /// Returns the generalized forces of the inputs, `τ(q, u)`.
 pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
@@ -39,7 +39,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
         let alone = substitute_symbols(load.force, &|s| is_input(s).then(|| g.zero()));
         let by_inputs = load.force - alone;
         if !by_inputs.is_zero() {
-            for (k, d) in differentiated_gradient(model, load.rate) {
+            for (k, d) in cached_velocity_gradient(model, load.rate) {
                 tau[k] += by_inputs * d;
             }
         }
@@ -59,9 +59,9 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
 /// Returns a direction in the axes of a link, transformed through the axes of the nearest common ancestor.
 fn direction_in_link<'g>(
     joints: &[Joint<'g>],
-    direction: &Direction<'g>,
+    direction: &SumOfLinkVectors<'g>,
     link: LinkId,
     zero: Vec3<'g>,
 ) -> Vec3<'g> {
-    direction.iter().fold(zero, |sum, (from, v)| sum + change_axes(joints, *v, *from, Some(link)))
+    direction.iter().fold(zero, |sum, (from, v)| sum + express_in_link_axes(joints, *v, *from, Some(link)))
 }

@@ -6,7 +6,7 @@
 
 use crate::expr::{Expr, Graph, Mat3, Vec3};
 use crate::kinematics::{Joint, Spatial};
-use crate::mechanism::{Model, NamedFrame, Pose, Quantity, Supplied};
+use crate::mechanism::{Model, NamedFrame, Pose, Quantity, SuppliedQuantity};
 
 /// Placement of a frame in the ground: rotation matrix and position.
 #[derive(Clone, Copy)]
@@ -40,19 +40,21 @@ impl<'g> Placement<'g> {
 }
 
 /// Returns three entries of a function argument as a vector.
-fn vector_argument<'g>(model: &Model<'g>, block: Supplied, first: usize) -> Vec3<'g> {
+fn vector_argument<'g>(model: &Model<'g>, block: SuppliedQuantity, first: usize) -> Vec3<'g> {
     Vec3(std::array::from_fn(|k| Quantity::Given(block, first + k).expr(model.graph)))
 }
 
 /// Returns the placement of the parent, which is the first part of its motion in the arguments.
 fn parent_placement_argument<'g>(model: &Model<'g>) -> Placement<'g> {
-    let [a, b, c, position] = [0, 3, 6, 9].map(|first| vector_argument(model, Supplied::Parent, first));
+    let [a, b, c, position] =
+        [0, 3, 6, 9].map(|first| vector_argument(model, SuppliedQuantity::Parent, first));
     Placement { rotation: Mat3([a.0, b.0, c.0]), position }
 }
 
 /// Returns six entries of the motion of the parent as a spatial vector.
 fn spatial_argument<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
-    let [linear, angular] = [first, first + 3].map(|first| vector_argument(model, Supplied::Parent, first));
+    let [linear, angular] =
+        [first, first + 3].map(|first| vector_argument(model, SuppliedQuantity::Parent, first));
     Spatial { linear, angular }
 }
 
@@ -83,7 +85,7 @@ pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placeme
 
 /// Returns the twist of a link from its parent's (6 arguments, none for a root).
 pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
-    let own = joint.total_relative_twist(model, v);
+    let own = joint.twist_with_prescribed_motion(model, v);
     match joint.parent {
         None => own,
         Some(_) => joint.twist_to_child(&spatial_argument(model, 0)).plus(&own),
@@ -130,9 +132,9 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
 
 /// Returns the columns of a frame's Jacobian for the degrees of freedom of one link: the twist of the frame
 /// per unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
-pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
+pub fn frame_jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
     let placement = parent_placement_argument(model);
-    let arm = vector_argument(model, Supplied::Origin, 0) - placement.position;
+    let arm = vector_argument(model, SuppliedQuantity::Origin, 0) - placement.position;
     joint
         .dofs
         .iter()

@@ -23,7 +23,7 @@ use super::crba::Matrix;
 use super::ldl::Solution;
 use crate::expr::{Expr, Function};
 use crate::kinematics::velocity_gradients;
-use crate::mechanism::{Model, Quantity, Supplied};
+use crate::mechanism::{Model, Quantity, SuppliedQuantity};
 
 /// Returns the constraints whose multipliers are normal forces of sliding contacts with friction.
 pub fn sliding_contact_constraints(model: &Model<'_>) -> Vec<usize> {
@@ -33,7 +33,7 @@ pub fn sliding_contact_constraints(model: &Model<'_>) -> Vec<usize> {
 
 /// Returns `T`, with a row for each constraint and a column for each velocity.
 pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
-    let friction_row = |c: &crate::mechanism::Constraint<'g>| {
+    let friction_jacobian_row = |c: &crate::mechanism::Constraint<'g>| {
         let mut row = vec![model.graph.zero(); model.nv()];
         let rates: Vec<Expr<'g>> = c.friction.iter().map(|d| d.rate).collect();
         for (gradient, drag) in velocity_gradients(&rates).into_iter().zip(&c.friction) {
@@ -41,11 +41,11 @@ pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
         }
         row
     };
-    model.constraints.iter().map(friction_row).collect()
+    model.constraints.iter().map(friction_jacobian_row).collect()
 }
 
 /// Returns accelerations and multipliers for forces `τ − h` and biases, then measures of their reliability,
-/// as [`super::constraints::solve_constrained`] does. The signs `σ` are arguments.
+/// as [`super::constraints::solve_constrained_dynamics`] does. The signs `σ` are arguments.
 pub fn solve_with_friction<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
@@ -57,18 +57,19 @@ pub fn solve_with_friction<'g>(
     let (friction, last) = (jacobian_of_friction(model), sliding_contact_constraints(model));
     let mut k = constrained_system_matrix(mass, &rows);
     for (n, row) in last.iter().enumerate() {
-        let side = Quantity::Given(Supplied::Side, n).expr(model.graph);
+        let side = Quantity::Given(SuppliedQuantity::Side, n).expr(model.graph);
         for (equation, drag) in k.iter_mut().zip(&friction[*row]) {
             equation[nv + row] += side * *drag;
         }
     }
     let (order, _) = elimination_order(&k, nv, &last);
-    eliminate_in_order(k, constrained_right_side(force, bias), &order, nv).with_reliability(nv)
+    solve_by_ordered_elimination(k, constrained_right_side(force, bias), &order, nv)
+        .accelerations_with_reliability(nv)
 }
 
 /// Solves `m x = r` by elimination in a given order. Also returns the magnitudes that the elimination of the
 /// first `first` indices has subtracted from each diagonal entry.
-fn eliminate_in_order<'g>(
+fn solve_by_ordered_elimination<'g>(
     mut m: Matrix<'g>,
     mut r: Vec<Expr<'g>>,
     order: &[usize],

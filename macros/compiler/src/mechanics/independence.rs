@@ -11,7 +11,7 @@ use crate::mechanism::{Model, Quantity};
 const TOLERANCE: f64 = 1e-8;
 
 /// Linear combination of columns: pairs of an index and a factor.
-pub type Combination = Vec<(usize, f64)>;
+pub type ColumnCombination = Vec<(usize, f64)>;
 
 /// Result of the test of one column for linear independence.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,31 +19,33 @@ pub enum ColumnTest {
     /// Column that is linearly independent of its predecessors.
     Own,
     /// This combination of independent predecessors; empty if the column is zero.
-    Combined(Combination),
+    Combined(ColumnCombination),
 }
 
 /// Classifies columns of equal length. A column whose factors depend on the parameters counts as independent.
 pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<ColumnTest> {
-    let one = orthogonalise_columns(&column_values(model, columns, 0));
+    let one = orthogonalise_columns(&sampled_column_values(model, columns, 0));
     if model.parameters.is_empty() {
         return one;
     }
-    let other = orthogonalise_columns(&column_values(model, columns, 1));
-    let part_if_agreed = |(one, other): (ColumnTest, ColumnTest)| match (&one, &other) {
-        (ColumnTest::Combined(a), ColumnTest::Combined(b)) if !has_same_combination(a, b) => ColumnTest::Own,
+    let other = orthogonalise_columns(&sampled_column_values(model, columns, 1));
+    let combined_part_if_equal = |(one, other): (ColumnTest, ColumnTest)| match (&one, &other) {
+        (ColumnTest::Combined(a), ColumnTest::Combined(b)) if !are_equal_linear_combinations(a, b) => {
+            ColumnTest::Own
+        }
         _ => one,
     };
-    one.into_iter().zip(other).map(part_if_agreed).collect()
+    one.into_iter().zip(other).map(combined_part_if_equal).collect()
 }
 
-fn has_same_combination(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
+fn are_equal_linear_combinations(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
     let is_nearly_equal = |x: f64, y: f64| (x - y).abs() <= 1e-6 * (1.0 + x.abs());
     a.len() == b.len() && a.iter().zip(b).all(|((i, x), (j, y))| i == j && is_nearly_equal(*x, *y))
 }
 
 /// Returns the values of each column at random states, for one choice of parameters. The number of values per
 /// column exceeds the number of columns.
-fn column_values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f64>> {
+fn sampled_column_values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f64>> {
     let all: Vec<Expr<'_>> = columns.concat();
     let height = columns.first().map_or(1, Vec::len).max(1);
     let states = columns.len().div_ceil(height) + 4;
@@ -72,7 +74,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<ColumnTest> {
     let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
     // Orthonormal vectors, each with its combination of independent columns.
-    let mut base: Vec<(Vec<f64>, Combination)> = Vec::new();
+    let mut base: Vec<(Vec<f64>, ColumnCombination)> = Vec::new();
     let mut parts = Vec::with_capacity(columns.len());
     for (k, column) in columns.iter().enumerate() {
         let size = dot(column, column).sqrt();
@@ -95,7 +97,7 @@ fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<ColumnTest> {
         }
         let left = dot(&rest, &rest).sqrt();
         if left > TOLERANCE * size {
-            let mut of: Combination =
+            let mut of: ColumnCombination =
                 (0..k).filter(|i| combination[*i] != 0.0).map(|i| (i, -combination[i] / left)).collect();
             of.push((k, 1.0 / left));
             base.push((rest.iter().map(|r| r / left).collect(), of));

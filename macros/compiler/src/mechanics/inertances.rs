@@ -7,7 +7,7 @@ use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::Model;
 
 /// Adds the contributions of inerters to the mass matrix.
-pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
+pub fn add_inertances_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
         for (i, d) in &gradient {
@@ -20,7 +20,7 @@ pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
 
 /// Adds the forces of the inertances to `tau`: the velocity terms, and the acceleration terms if `a` is
 /// given.
-pub fn add_to_forces<'g>(model: &Model<'g>, a: Option<&[Expr<'g>]>, tau: &mut [Expr<'g>]) {
+pub fn add_inerter_forces<'g>(model: &Model<'g>, a: Option<&[Expr<'g>]>, tau: &mut [Expr<'g>]) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
         let mut acceleration = time_derivative(model.configuration_space(), element.rate);
@@ -42,7 +42,7 @@ pub fn kinetic_energy<'g>(model: &Model<'g>) -> Expr<'g> {
 }
 
 /// Adds the generalized momentum of the inerters to a momentum.
-pub fn add_to_momentum<'g>(model: &Model<'g>, p: &mut [Expr<'g>]) {
+pub fn add_inerter_momentum<'g>(model: &Model<'g>, p: &mut [Expr<'g>]) {
     for element in &model.inertances {
         for (k, d) in velocity_gradient(element.rate) {
             p[k] += element.inertance * element.rate * d;
@@ -51,7 +51,7 @@ pub fn add_to_momentum<'g>(model: &Model<'g>, p: &mut [Expr<'g>]) {
 }
 
 /// Adds the velocity term of the inerters to the rate of the momentum: `b ṡ J̇ᵀ`.
-pub fn add_to_momentum_rate<'g>(model: &Model<'g>, rate: &mut [Expr<'g>]) {
+pub fn add_inerter_momentum_rate<'g>(model: &Model<'g>, rate: &mut [Expr<'g>]) {
     for element in &model.inertances {
         for (k, d) in velocity_gradient(element.rate) {
             rate[k] += element.inertance * element.rate * time_derivative(model.configuration_space(), d);

@@ -10,14 +10,14 @@
 
 use super::crba::Matrix;
 use super::velocity_symbols;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::{Expr, Mat3, Vec3};
-use crate::kinematics::{Joint, configuration_rate, coordinate_position};
+use crate::kinematics::{Joint, configuration_rate, coordinate_in_terms_of_q};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Chart, InV, Model, Quantity};
 
 /// The energies and the equations of motion derived from them.
-pub struct Lagrange<'g> {
+pub struct LagrangeEquations<'g> {
     /// Kinetic energy of the mechanism.
     pub kinetic: Expr<'g>,
     /// Potential energy of the mechanism.
@@ -34,15 +34,16 @@ pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 }
 
 /// Derives Lagrange's equations in closed form by differentiating the energies.
-pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
+pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> LagrangeEquations<'g> {
     let g = model.graph;
     let v = velocity_symbols(model);
     let rates = configuration_rates(model);
-    let mut by_q: Vec<Derivative<'g>> = (0..model.nq())
-        .map(|k| Derivative::with_respect_to(Quantity::Configuration(k).symbol(), g))
+    let mut by_q: Vec<DirectionalDerivative<'g>> = (0..model.nq())
+        .map(|k| DirectionalDerivative::with_respect_to(Quantity::Configuration(k).symbol(), g))
         .collect();
-    let mut by_v: Vec<Derivative<'g>> =
-        (0..model.nv()).map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g)).collect();
+    let mut by_v: Vec<DirectionalDerivative<'g>> = (0..model.nv())
+        .map(|k| DirectionalDerivative::with_respect_to(Quantity::Velocity(k).symbol(), g))
+        .collect();
     let (kinetic, potential) = kinetic_and_potential_energy(model, joints, &rates, &mut by_q);
     let momenta: Vec<Expr<'g>> = by_v.iter_mut().map(|d| d.differentiate(kinetic)).collect();
     let mass_matrix: Matrix<'g> =
@@ -56,12 +57,12 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     for (bias, passive) in bias.iter_mut().zip(dissipative_forces(model)) {
         *bias += passive;
     }
-    Lagrange { kinetic, potential, mass_matrix, bias }
+    LagrangeEquations { kinetic, potential, mass_matrix, bias }
 }
 
 /// Returns the time derivative `Σ ∂e/∂q q̇ + ∂e/∂t` of an expression.
-fn time_derivative<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Expr<'g> {
-    let mut sum = Derivative::with_respect_to(Quantity::Time.symbol(), e.graph()).differentiate(e);
+fn time_derivative<'g>(rates: &[Expr<'g>], by_q: &mut [DirectionalDerivative<'g>], e: Expr<'g>) -> Expr<'g> {
+    let mut sum = DirectionalDerivative::with_respect_to(Quantity::Time.symbol(), e.graph()).differentiate(e);
     for (rate, d) in rates.iter().zip(by_q) {
         sum += d.differentiate(e) * *rate;
     }
@@ -73,7 +74,7 @@ fn time_derivative<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<
 fn subtract_tangent_gradient<'g>(
     rates: &[Expr<'g>],
     dl_dq: &[Expr<'g>],
-    by_v: &mut [Derivative<'g>],
+    by_v: &mut [DirectionalDerivative<'g>],
     bias: &mut [Expr<'g>],
 ) {
     for (k, d) in by_v.iter_mut().enumerate() {
@@ -115,7 +116,7 @@ fn kinetic_and_potential_energy<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     rates: &[Expr<'g>],
-    by_q: &mut [Derivative<'g>],
+    by_q: &mut [DirectionalDerivative<'g>],
 ) -> (Expr<'g>, Expr<'g>) {
     let g = model.graph;
     let mut frames: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
@@ -141,7 +142,7 @@ fn kinetic_and_potential_energy<'g>(
         potential -= model.gravity.dot(p * inertia.mass + r * inertia.moment);
     }
     for spring in &model.springs {
-        let stretch = coordinate_position(model, &spring.on) - spring.free;
+        let stretch = coordinate_in_terms_of_q(model, &spring.on) - spring.free;
         potential += spring.stiffness * 0.5 * stretch.square();
     }
     for energy in &model.potentials {

@@ -24,7 +24,7 @@ pub struct Solution<'g> {
 impl<'g> Solution<'g> {
     /// Returns the accelerations, of which there are `nv`, and the multipliers, then measures of the
     /// reliability of the multipliers: their pivots, and the amounts that the elimination has subtracted.
-    pub fn with_reliability(mut self, nv: usize) -> Vec<Expr<'g>> {
+    pub fn accelerations_with_reliability(mut self, nv: usize) -> Vec<Expr<'g>> {
         for multiplier in &mut self.x[nv..] {
             *multiplier = -*multiplier;
         }
@@ -87,15 +87,16 @@ pub fn solve_in_order<'g>(
 pub fn pivot_inverses<'g>(m: &Matrix<'g>, order: &[usize]) -> Vec<Expr<'g>> {
     let permuted_entry = |i: usize, j: usize| m[order[i]][order[j]];
     let Some(a) = order.first().map(|_| permuted_entry(0, 0)) else { return Vec::new() };
-    let second =
-        (order.len() > 1).then(|| second_inverse(a, permuted_entry(0, 1), permuted_entry(1, 1))).flatten();
+    let second = (order.len() > 1)
+        .then(|| inverse_of_second_ldl_pivot(a, permuted_entry(0, 1), permuted_entry(1, 1)))
+        .flatten();
     std::iter::once(a.num(1.0) / a).chain(second).collect()
 }
 
 /// Returns the inverse of the second pivot of a symmetric matrix `[a b; b c]`,
 /// `1 / (c − b² / a) = a / (a c − b²)`, which does not depend on the inverse of the first pivot. Returns
 /// `None` for `b = 0`.
-pub fn second_inverse<'g>(a: Expr<'g>, b: Expr<'g>, c: Expr<'g>) -> Option<Expr<'g>> {
+pub fn inverse_of_second_ldl_pivot<'g>(a: Expr<'g>, b: Expr<'g>, c: Expr<'g>) -> Option<Expr<'g>> {
     (!b.is_zero()).then(|| a / (a * c - b * b))
 }
 

@@ -1,14 +1,14 @@
-//! Contact functions with the identical limbs of a mechanism in SIMD lanes, as in [`Limbs`].
+//! Contact functions with the identical limbs of a mechanism in SIMD lanes, as in [`VectorisedMechanism`].
 
 use super::crba::Matrix;
 use crate::expr::Expr;
-use crate::vectorise::{LimbRows, Limbs, Merge};
+use crate::vectorise::{LaneMerger, LimbRows, VectorisedMechanism};
 
 /// Contacts of identical limbs, each limb with the same number of contact velocities.
 pub struct LimbContacts<'a, 'g> {
-    limbs: &'a Limbs<'g>,
+    limbs: &'a VectorisedMechanism<'g>,
     groups: Vec<LimbRows>,
-    merge: Merge<'g>,
+    merge: LaneMerger<'g>,
     /// Number of contact velocities of all contacts.
     count: usize,
 }
@@ -17,13 +17,13 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     /// Groups the contact velocities with the given Jacobian rows. Returns `None` unless each contact
     /// velocity depends on one limb of a group of identical limbs, and all limbs of a group have the same
     /// number of them.
-    pub fn new(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
+    pub fn new(limbs: &'a VectorisedMechanism<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
         let groups = limbs.limb_rows(jacobian)?;
-        Some(LimbContacts { limbs, groups, merge: Merge::new(limbs.model.graph), count: jacobian.len() })
+        Some(LimbContacts { limbs, groups, merge: LaneMerger::new(limbs.model.graph), count: jacobian.len() })
     }
 
     /// Returns, for each group of limbs, the indices of the contact velocities of each limb.
-    pub fn contacts_of_limbs(&self) -> impl Iterator<Item = Vec<Vec<usize>>> {
+    pub fn limb_contact_velocity_indices(&self) -> impl Iterator<Item = Vec<Vec<usize>>> {
         self.groups.iter().map(|group| {
             (0..group.width).map(|lane| group.rows.iter().map(|row| row[lane]).collect()).collect()
         })
@@ -31,7 +31,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
 
     /// Merges values, one for each contact velocity, into SIMD lanes. Returns `None` if the expressions of
     /// the limbs differ in structure.
-    pub fn merge_values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
+    pub fn merge_contact_values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let mut out = values.to_vec();
         for row in self.groups.iter().flat_map(|group| &group.rows) {
             let all = self.merge.merge_lanes(&row.iter().map(|i| values[*i]).collect::<Vec<_>>())?;
@@ -59,12 +59,12 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
     }
 
     /// Returns the sum of square matrices over the velocities, one matrix for each limb, in the groups of
-    /// [`contacts_of_limbs`](Self::contacts_of_limbs).
+    /// [`limb_contact_velocity_indices`](Self::limb_contact_velocity_indices).
     pub fn sum_limb_matrices(&mut self, groups: &[Vec<Matrix<'g>>]) -> Option<Matrix<'g>> {
         let places: Vec<(usize, Option<usize>)> = self.limbs.velocity_indices_and_lanes().collect();
         let mut sum: Option<Matrix<'g>> = None;
         for lanes in groups {
-            let all = self.limbs.merged_squares(lanes, &mut self.merge)?;
+            let all = self.limbs.merged_square_matrices(lanes, &mut self.merge)?;
             let entry_of_lane_pair =
                 |(i, row): (usize, Option<usize>), (j, column): (usize, Option<usize>)| {
                     let entry = all[i][j];

@@ -1,23 +1,24 @@
-//! Responses to impulses at contacts with the identical limbs of a mechanism in SIMD lanes, as in [`Limbs`].
+//! Responses to impulses at contacts with the identical limbs of a mechanism in SIMD lanes, as in
+//! [`VectorisedMechanism`].
 
 use super::crba::{Matrix, mass_matrix};
 use super::ldl::elimination_order;
 use crate::expr::Expr;
-use crate::vectorise::{LimbRows, Limbs, join_lanes};
+use crate::vectorise::{LimbRows, VectorisedMechanism, join_lanes};
 use std::collections::BTreeMap;
 
 /// Contact velocities of the limbs of one group of identical limbs.
-struct ContactFamily<'g> {
+struct LimbGroupContactVelocities<'g> {
     /// First velocity of the group's limbs, which identifies the group.
     group: usize,
     /// Number of identical limbs in the group.
     width: usize,
-    rows: Vec<ResponseRow<'g>>,
+    rows: Vec<LimbContactResponse<'g>>,
 }
 
 /// One contact velocity of each identical limb, in SIMD lanes.
-struct ResponseRow<'g> {
-    /// Reduced row `L⁻ᵀ g` over the velocities of [`Limbs`], in SIMD lanes.
+struct LimbContactResponse<'g> {
+    /// Reduced row `L⁻ᵀ g` over the velocities of [`VectorisedMechanism`], in SIMD lanes.
     reduced: Vec<Expr<'g>>,
     /// Entries of `M⁻¹ g` for the trunk and for the limb of the contact velocity.
     own: Vec<Expr<'g>>,
@@ -32,7 +33,7 @@ struct ContactLocation {
 }
 
 /// Factorisation `M = Lᵀ D L`, with limbs in lanes.
-struct LimbFactor<'g> {
+struct LaneMassFactorisation<'g> {
     /// Velocities in elimination order: from the leaves to the root.
     order: Vec<usize>,
     /// Off-diagonal entries of the factor `L`, a row for each velocity.
@@ -46,9 +47,12 @@ struct LimbFactor<'g> {
 /// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of the contact Jacobian `G`. Returns
 /// `None` unless each row depends on one limb of a group of identical limbs, and all limbs of a group have
 /// the same number of rows.
-pub fn limb_contact_responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
+pub fn limb_contact_responses<'g>(
+    limbs: &VectorisedMechanism<'g>,
+    rows: &[Vec<Expr<'g>>],
+) -> Option<Vec<Expr<'g>>> {
     let groups = limbs.limb_rows(rows)?;
-    let factor = LimbFactor::new(limbs, limbs.group_of_each_velocity());
+    let factor = LaneMassFactorisation::new(limbs, limbs.group_of_each_velocity());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
     for LimbRows { group, width, rows: numbers } in groups {
         for (row, lanes) in numbers.iter().enumerate() {
@@ -58,16 +62,16 @@ pub fn limb_contact_responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> 
         }
         let all = numbers.iter().map(|lanes| {
             let lane_rows: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
-            factor.solve_contact_row(limbs.side_by_side(&lane_rows), group)
+            factor.solve_contact_row(limbs.merge_into_lanes(&lane_rows), group)
         });
-        families.push(ContactFamily { group, width, rows: all.collect() });
+        families.push(LimbGroupContactVelocities { group, width, rows: all.collect() });
     }
     let places: Vec<ContactLocation> = places.into_values().collect();
     let mut out = Vec::new();
     for place in &places {
-        out.extend(
-            limbs.scatter_from_lanes(|index, lane| factor.velocity_response(&families, *place, index, lane)),
-        );
+        out.extend(limbs.scatter_lanes_to_velocities(|index, lane| {
+            factor.velocity_change_per_impulse(&families, *place, index, lane)
+        }));
     }
     for i in 0..places.len() {
         out.extend(
@@ -78,13 +82,13 @@ pub fn limb_contact_responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> 
 }
 
 /// Rotates `n` lanes: lane `k` of the result is lane `k + by` modulo `n`.
-fn rotate_lanes(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
+fn cyclically_shifted_lanes(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
     let lanes: Vec<Expr<'_>> = (0..n).map(|k| e.lane((k + by) % n)).collect();
     join_lanes(&lanes)
 }
 
-impl<'g> LimbFactor<'g> {
-    fn new(limbs: &Limbs<'g>, groups: Vec<Option<usize>>) -> LimbFactor<'g> {
+impl<'g> LaneMassFactorisation<'g> {
+    fn new(limbs: &VectorisedMechanism<'g>, groups: Vec<Option<usize>>) -> LaneMassFactorisation<'g> {
         let mut m: Matrix<'g> = mass_matrix(&limbs.model, &limbs.joints);
         let order = elimination_order(&limbs.joints, m.len());
         let (mut rows, mut inverse) = (vec![Vec::new(); m.len()], Vec::new());
@@ -105,11 +109,11 @@ impl<'g> LimbFactor<'g> {
                 rows[k].push((i, factor));
             }
         }
-        LimbFactor { order, rows, inverse, groups }
+        LaneMassFactorisation { order, rows, inverse, groups }
     }
 
     /// Solves for one contact velocity of each limb of a group, whose Jacobian entries `g` are in SIMD lanes.
-    fn solve_contact_row(&self, g: Vec<Expr<'g>>, group: usize) -> ResponseRow<'g> {
+    fn solve_contact_row(&self, g: Vec<Expr<'g>>, group: usize) -> LimbContactResponse<'g> {
         let mut reduced = g;
         for &k in &self.order {
             for (i, factor) in &self.rows[k] {
@@ -121,34 +125,37 @@ impl<'g> LimbFactor<'g> {
             let start = reduced[k] * self.inverse[k];
             own[k] = self.rows[k].iter().fold(start, |x, (i, factor)| x - *factor * own[*i]);
         }
-        ResponseRow { reduced, own }
+        LimbContactResponse { reduced, own }
     }
 
     /// Returns the change of a velocity, in its own lane, per unit impulse along a contact velocity.
-    fn velocity_response(
+    fn velocity_change_per_impulse(
         &self,
-        families: &[ContactFamily<'g>],
+        families: &[LimbGroupContactVelocities<'g>],
         at: ContactLocation,
         index: usize,
         lane: usize,
     ) -> Expr<'g> {
-        let ContactFamily { group, width, rows } = &families[at.family];
+        let LimbGroupContactVelocities { group, width, rows } = &families[at.family];
         let own = &rows[at.row].own;
         match self.groups[index] {
             None => own[index].lane(at.lane),
             Some(of) if of == *group && lane == at.lane => own[index],
-            Some(of) if of == *group => {
-                self.velocity_from_trunk(index, &|k| rotate_lanes(own[k], *width, width + at.lane - lane))
-            }
-            Some(_) => self.velocity_from_trunk(index, &|k| own[k].lane(at.lane)),
+            Some(of) if of == *group => self.limb_velocity_change_from_trunk(index, &|k| {
+                cyclically_shifted_lanes(own[k], *width, width + at.lane - lane)
+            }),
+            Some(_) => self.limb_velocity_change_from_trunk(index, &|k| own[k].lane(at.lane)),
         }
     }
 
     /// Returns the change of a limb's velocity that results from the velocity changes `trunk` of the trunk.
-    fn velocity_from_trunk(&self, index: usize, trunk: &dyn Fn(usize) -> Expr<'g>) -> Expr<'g> {
+    fn limb_velocity_change_from_trunk(&self, index: usize, trunk: &dyn Fn(usize) -> Expr<'g>) -> Expr<'g> {
         self.rows[index].iter().fold(self.inverse[index].zero(), |x, (i, factor)| {
-            let value =
-                if self.groups[*i].is_none() { trunk(*i) } else { self.velocity_from_trunk(*i, trunk) };
+            let value = if self.groups[*i].is_none() {
+                trunk(*i)
+            } else {
+                self.limb_velocity_change_from_trunk(*i, trunk)
+            };
             x - *factor * value
         })
     }
@@ -156,7 +163,7 @@ impl<'g> LimbFactor<'g> {
     /// Returns the change of one contact velocity per unit impulse along another.
     fn delassus_entry(
         &self,
-        families: &[ContactFamily<'g>],
+        families: &[LimbGroupContactVelocities<'g>],
         a: ContactLocation,
         b: ContactLocation,
     ) -> Expr<'g> {
@@ -183,7 +190,8 @@ impl<'g> LimbFactor<'g> {
                 [x[k], y[k]]
             })
             .lane(a.lane),
-            _ => sum_over_velocities(&is_in_trunk, &|k| [x[k], rotate_lanes(y[k], n, by)]).lane(a.lane),
+            _ => sum_over_velocities(&is_in_trunk, &|k| [x[k], cyclically_shifted_lanes(y[k], n, by)])
+                .lane(a.lane),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::energy::center_of_mass;
 use super::frames::{Placement, spatial_components};
 use super::inertances;
 use super::rnea::link_wrenches;
-use super::shared_motions::SharedMotions;
+use super::shared_motions::SharedPartialVelocities;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
 use crate::mechanics::passive::passive_forces;
@@ -34,9 +34,9 @@ fn accumulate_wrenches<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>)
 
 fn project_wrenches<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
     let mut out = vec![model.graph.zero(); model.nv()];
-    let shared = SharedMotions::new(model, joints);
+    let shared = SharedPartialVelocities::new(model, joints);
     for (_, (joint, wrench)) in
-        joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.contains_link(*k))
+        joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.stores_velocities_of_link(*k))
     {
         for dof in &joint.dofs {
             out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);
@@ -50,7 +50,7 @@ fn project_wrenches<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spa
 pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let momenta = composite_momenta(model, joints, &twists(model, joints, v));
     let mut p = project_wrenches(model, joints, &momenta);
-    inertances::add_to_momentum(model, &mut p);
+    inertances::add_inerter_momentum(model, &mut p);
     p
 }
 
@@ -60,7 +60,7 @@ pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Ex
 pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let twists = twists(model, joints, v);
     let momenta = composite_momenta(model, joints, &twists);
-    let weights = accumulate_wrenches(joints, link_weights(model, joints));
+    let weights = accumulate_wrenches(joints, link_weight_wrenches(model, joints));
     let wrenches: Vec<Spatial<'g>> = (0..joints.len())
         .map(|k| {
             let (t, f) = (&twists[k], &momenta[k]);
@@ -72,16 +72,16 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
         .collect();
     let mut rate = project_wrenches(model, joints, &wrenches);
     // Contribution of a subspace that is not constant: Ṡᵀ F.
-    let shared = SharedMotions::by_rates(model, joints);
+    let shared = SharedPartialVelocities::shared_subspace_rates(model, joints);
     shared.add_forces(&momenta, &mut rate);
     for (_, (joint, momentum)) in
-        joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.contains_link(*k))
+        joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.stores_velocities_of_link(*k))
     {
         for (dof, change) in joint.dofs.iter().zip(joint.drift.iter().flat_map(|d| &d.subspace_rates)) {
             rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);
         }
     }
-    inertances::add_to_momentum_rate(model, &mut rate);
+    inertances::add_inerter_momentum_rate(model, &mut rate);
     for (rate, passive_forces) in rate.iter_mut().zip(passive_forces(model, true)) {
         *rate -= passive_forces;
     }
@@ -89,7 +89,7 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
 }
 
 /// Returns the weight of each link as a wrench about the link's origin in its axes.
-fn link_weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
+fn link_weight_wrenches<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
     let mut gravity: Vec<Vec3<'g>> = Vec::new();
     for joint in joints {
         let parent = joint.parent.map_or(model.gravity, |p| gravity[p.0]);
@@ -105,11 +105,15 @@ fn link_weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>>
 
 /// Returns the total momentum in ground axes: linear, and angular about the centre of mass.
 pub fn centroidal_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
-    sum_about_center(model, joints, &composite_momenta(model, joints, &twists(model, joints, v)))
+    root_sum_about_center_of_mass(model, joints, &composite_momenta(model, joints, &twists(model, joints, v)))
 }
 
 /// Returns the sum of the roots' accumulated wrenches or momenta, in ground axes about the centre of mass.
-fn sum_about_center<'g>(model: &Model<'g>, joints: &[Joint<'g>], sums: &[Spatial<'g>]) -> Spatial<'g> {
+fn root_sum_about_center_of_mass<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    sums: &[Spatial<'g>],
+) -> Spatial<'g> {
     let mut sum = Spatial::zero(model);
     for (joint, wrench) in joints.iter().zip(sums).filter(|(joint, _)| joint.parent.is_none()) {
         sum = sum.plus(&joint.wrench_to_parent(wrench));
@@ -146,5 +150,5 @@ pub fn centroidal_momentum_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -
 pub fn centroidal_bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
     let weightless = Model { gravity: Vec3::zero(model.graph), ..model.clone() };
     let wrenches = link_wrenches(&weightless, joints, v, None);
-    sum_about_center(model, joints, &accumulate_wrenches(joints, wrenches))
+    root_sum_about_center_of_mass(model, joints, &accumulate_wrenches(joints, wrenches))
 }

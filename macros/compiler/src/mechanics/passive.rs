@@ -2,7 +2,9 @@
 
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Function};
-use crate::kinematics::{coordinate_position, coordinate_velocity, differentiated_gradient, energy_gradient};
+use crate::kinematics::{
+    cached_velocity_gradient, coordinate_in_terms_of_q, coordinate_velocity, energy_gradient,
+};
 use crate::mechanism::{Model, Quantity};
 
 /// Returns the generalized forces of springs, dashpots, friction, potentials and loads, with the sign of `h`:
@@ -15,7 +17,7 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
     let g = model.graph;
     let mut h = vec![g.zero(); model.nv()];
     for spring in &model.springs {
-        let stretch = coordinate_position(model, &spring.on) - spring.free;
+        let stretch = coordinate_in_terms_of_q(model, &spring.on) - spring.free;
         h[spring.on.v.0] += spring.stiffness * stretch * g.num(spring.on.ratio);
     }
     for energy in &model.potentials {
@@ -35,14 +37,15 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
             h[dry.on.v.0] += dry.friction * slip * g.num(dry.on.ratio);
         }
         for function in &model.dissipations {
-            for (k, d) in differentiated_gradient(model, *function) {
+            for (k, d) in cached_velocity_gradient(model, *function) {
                 h[k] += d;
             }
         }
         for load in &model.loads {
-            let no_input = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
-            let force = substitute_symbols(load.force, &no_input);
-            for (k, d) in differentiated_gradient(model, load.rate) {
+            let zero_for_input_symbol =
+                |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
+            let force = substitute_symbols(load.force, &zero_for_input_symbol);
+            for (k, d) in cached_velocity_gradient(model, load.rate) {
                 h[k] -= force * d;
             }
         }

@@ -37,11 +37,11 @@ pub fn control_power<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
 /// Returns the power of applied forces other than inputs and dissipative forces.
 pub fn disturbance_power<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
-    let without_inputs = |load: &Load<'g>| {
+    let force_without_inputs = |load: &Load<'g>| {
         substitute_symbols(load.force, &|s| {
             matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero())
         })
     };
     let applied = model.loads.iter().filter(|l| !l.dissipative);
-    applied.fold(g.zero(), |sum, load| sum + without_inputs(load) * load.rate)
+    applied.fold(g.zero(), |sum, load| sum + force_without_inputs(load) * load.rate)
 }

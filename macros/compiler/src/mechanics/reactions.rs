@@ -8,7 +8,7 @@ use super::{constraints, forces, rnea};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::{joints_of_model, symbols_in};
-use crate::mechanism::{Model, Quantity, Released, SolvedSide};
+use crate::mechanism::{ClosedFormJoint, Model, Quantity, ReleasedMechanism};
 
 /// Number of components of a joint's reaction: force, torque.
 const SIX: usize = 6;
@@ -26,11 +26,11 @@ pub fn replace_reactions<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -
         _ => None,
     };
     let Some(released) = &model.released else {
-        let all = constraints::multiplier_symbols(model);
+        let all = constraints::multiplier_argument_symbols(model);
         return replace_all(e, &|s| multiplier_of_symbol(s, &all));
     };
-    let (held, multipliers) = on_released_coordinates(model, released, touched);
-    let reaction_of_symbol = |s: Symbol| {
+    let (held, multipliers) = forces_fixing_released_joints(model, released, touched);
+    let expression_of_reaction_symbol = |s: Symbol| {
         let Quantity::Reaction(k) = Quantity::from_symbol(s) else { return None };
         if k >= Quantity::MULTIPLIERS {
             return multiplier_of_symbol(s, &multipliers);
@@ -40,13 +40,13 @@ pub fn replace_reactions<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -
         reaction_of_multipliers(model, released, &multipliers, joint, component)
             .or_else(|| Some(held[SIX * index_among_released_joints()? + component]))
     };
-    replace_all(e, &reaction_of_symbol)
+    replace_all(e, &expression_of_reaction_symbol)
 }
 
 /// Returns one component of the reaction of a joint that closes a loop; `None` for other joints.
 fn reaction_of_multipliers<'g>(
     model: &Model<'g>,
-    released: &Released<'g>,
+    released: &ReleasedMechanism<'g>,
     multipliers: &[Expr<'g>],
     joint: usize,
     component: usize,
@@ -74,21 +74,22 @@ fn is_released_coordinate(model: &Model<'_>, s: Symbol) -> bool {
 
 /// Returns the forces that fix the coordinates of released joints at zero, and the multipliers of all
 /// constraints.
-fn on_released_coordinates<'g>(
+fn forces_fixing_released_joints<'g>(
     model: &Model<'g>,
-    released: &Released<'g>,
+    released: &ReleasedMechanism<'g>,
     touched: bool,
 ) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (g, open) = (model.graph, &released.model);
     let joints = joints_of_model(open);
-    let value_with_closed_joints = |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
+    let quantity_or_zero_if_released =
+        |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
     let v: Vec<Expr<'g>> =
-        (0..open.nv()).map(|k| value_with_closed_joints(k, Quantity::Velocity(k))).collect();
+        (0..open.nv()).map(|k| quantity_or_zero_if_released(k, Quantity::Velocity(k))).collect();
     let a: Vec<Expr<'g>> =
-        (0..open.nv()).map(|k| value_with_closed_joints(k, Quantity::Acceleration(k))).collect();
+        (0..open.nv()).map(|k| quantity_or_zero_if_released(k, Quantity::Acceleration(k))).collect();
     let mut forces_needed = rnea::inverse_dynamics(open, &joints, &v, Some(&a));
     let inputs = forces::generalized_forces(open, &joints);
-    let mut multipliers = constraints::multiplier_symbols(open);
+    let mut multipliers = constraints::multiplier_argument_symbols(open);
     multipliers.truncate(model.constraints.len());
     let held = constraints::constraint_forces(open, &multipliers);
     for (k, force) in forces_needed.iter_mut().enumerate() {
@@ -116,22 +117,25 @@ fn on_released_coordinates<'g>(
 /// forces on the released coordinates, and `rows` are their changes per unit of each multiplier. The
 /// multipliers make the forces along the motions of the joints zero for which the loops are solved.
 fn closed_form_multipliers<'g>(
-    released: &Released<'g>,
+    released: &ReleasedMechanism<'g>,
     needed: &[Expr<'g>],
     rows: &Matrix<'g>,
 ) -> Vec<Expr<'g>> {
     let g = released.model.graph;
-    let axis_component = |side: &SolvedSide<'g>, forces: &[Expr<'g>]| {
+    let reaction_along_axis = |side: &ClosedFormJoint<'g>, forces: &[Expr<'g>]| {
         let at = released.joints.iter().position(|j| *j == side.joint)?;
         let first = SIX * at + if side.turns { 3 } else { 0 };
         Some((0..3).fold(g.zero(), |sum, k| sum + side.axis[k] * forces[first + k]))
     };
-    let axis_components = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
-        released.model.solved.iter().filter_map(|side| axis_component(side, forces)).collect()
+    let reaction_components_along_axes = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
+        released.model.solved.iter().filter_map(|side| reaction_along_axis(side, forces)).collect()
     };
     // Equations by side, with their right sides last. Two successive rows and columns belong to one loop.
-    let columns: Vec<Vec<Expr<'g>>> =
-        rows.iter().map(|row| axis_components(row)).chain([axis_components(needed)]).collect();
+    let columns: Vec<Vec<Expr<'g>>> = rows
+        .iter()
+        .map(|row| reaction_components_along_axes(row))
+        .chain([reaction_components_along_axes(needed)])
+        .collect();
     let sides = columns.last().map_or(0, Vec::len);
     let mut m: Matrix<'g> = (0..sides).map(|k| columns.iter().map(|column| column[k]).collect()).collect();
     for k in (0..sides).step_by(2) {

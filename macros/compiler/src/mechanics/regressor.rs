@@ -2,7 +2,7 @@
 //! frame in which mass properties are declared (Atkeson, An and Hollerbach 1986). Springs, friction and other
 //! elements are excluded.
 
-use super::rnea::{link_motions, newton_euler};
+use super::rnea::{link_motions, newton_euler_wrench};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, LinkId, Model, Pose};
@@ -54,15 +54,15 @@ pub fn regressor_columns<'g>(
 ) -> Vec<Vec<Expr<'g>>> {
     let g = model.graph;
     let states = link_motions(model, joints, v, Some(a));
-    let subspaces = partial_twists(model, joints);
+    let subspaces = partial_twists_of_links(model, joints);
     let mut columns = Vec::with_capacity(wanted.len());
     let mut at: Option<(usize, Vec<(usize, Spatial<'g>)>)> = None;
     for &(index, parameter) in wanted {
         let site = &sites[index];
-        let state = states[site.link.0].motion_in_frame(&site.pose);
+        let state = states[site.link.0].motion_of_fixed_frame(&site.pose);
         let mut unit = [g.zero(); COUNT];
         unit[parameter] = g.one();
-        let wrench = newton_euler(&inertia_from_parameters(unit), &state);
+        let wrench = newton_euler_wrench(&inertia_from_parameters(unit), &state);
         let seen = match at.take().filter(|(known, _)| *known == index) {
             Some((_, seen)) => seen,
             None => subspaces[site.link.0].iter().map(|(k, s)| (*k, twist_in_frame(&site.pose, s))).collect(),
@@ -78,7 +78,7 @@ pub fn regressor_columns<'g>(
 }
 
 /// Returns for each link its twist per unit of each velocity, in the link's axes.
-fn partial_twists<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spatial<'g>)>> {
+fn partial_twists_of_links<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spatial<'g>)>> {
     let mut all: Vec<Vec<(usize, Spatial<'g>)>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let carried = joint.parent.map_or(&[][..], |p| &all[p.0]);

@@ -2,14 +2,18 @@
 
 use super::crba::Matrix;
 use crate::expr::Symbol;
-use crate::expr::eval::{Rounded, Tape};
+use crate::expr::eval::{Tape, ValueWithRoundingError};
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
 /// Returns the entries of `v` at which the factorisation of the mass matrix fails, from the root on. Several
 /// random configurations are tested. The result is empty if the factorisation succeeds in one of them. If
 /// some entries fail in all configurations, only those are returned.
-pub fn singular_velocities(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>) -> Vec<usize> {
+pub fn singular_mass_matrix_entries(
+    model: &Model<'_>,
+    joints: &[Joint<'_>],
+    mass: &Matrix<'_>,
+) -> Vec<usize> {
     let mut found = failing_pivots(model, joints, mass, 0);
     for seed in 1..3 {
         if found.is_empty() {
@@ -32,13 +36,13 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let n = model.nv();
     let q = random_configuration(model, seed);
     let entries: Vec<_> = mass.iter().flatten().copied().collect();
-    let whole: Vec<Vec<Rounded>> = Tape::new(&entries)
+    let whole: Vec<Vec<ValueWithRoundingError>> = Tape::new(&entries)
         .evaluate_with_rounding(&|s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
             _ => crate::expr::sample::sample_of_symbol(s, seed),
         })
         .chunks(n.max(1))
-        .map(<[Rounded]>::to_vec)
+        .map(<[ValueWithRoundingError]>::to_vec)
         .collect();
     let mut m: Vec<Vec<f64>> =
         whole.iter().map(|row| row.iter().map(|entry| entry.value).collect()).collect();
@@ -55,7 +59,10 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     for (step, &k) in order.iter().enumerate() {
         // Random parameters may give an inertia that no body has. A pivot may then be negative, but it is
         // still different from zero.
-        let pivot = Rounded { value: m[k][k], error: rounding_error_of_motion(&whole, &m, &eliminated, k) };
+        let pivot = ValueWithRoundingError {
+            value: m[k][k],
+            error: rounding_error_of_motion(&whole, &m, &eliminated, k),
+        };
         if pivot.may_be_zero() {
             failing.push(k);
             continue;
@@ -74,7 +81,7 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
 /// Returns `|z|ᵀ E |z|` of the motion `z` whose velocity `k` is 1, where `left` is the matrix `M` reduced by
 /// elimination.
 fn rounding_error_of_motion(
-    whole: &[Vec<Rounded>],
+    whole: &[Vec<ValueWithRoundingError>],
     left: &[Vec<f64>],
     eliminated: &[usize],
     k: usize,

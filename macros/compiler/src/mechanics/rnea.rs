@@ -2,7 +2,7 @@
 //! ch. 5). The acceleration of the points of a link is given by one matrix, `U = [ẇ]× + [w]×[w]×`
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
-use super::shared_motions::SharedMotions;
+use super::shared_motions::SharedPartialVelocities;
 use super::{added_mass, inertances};
 use crate::expr::{Expr, Function, Mat3, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
@@ -18,14 +18,14 @@ pub fn inverse_dynamics<'g>(
 ) -> Vec<Expr<'g>> {
     let mut wrenches = link_wrenches(model, joints, v, a);
     let mut tau = passive_forces(model, true);
-    inertances::add_to_forces(model, a, &mut tau);
+    inertances::add_inerter_forces(model, a, &mut tau);
     if let Some(a) = a {
-        added_mass::subtract_from_forces(model, a, &mut tau);
+        added_mass::subtract_acceleration_forces(model, a, &mut tau);
     }
-    let shared = SharedMotions::new(model, joints);
+    let shared = SharedPartialVelocities::new(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
-        for dof in joint.dofs.iter().filter(|_| !shared.contains_link(k)) {
+        for dof in joint.dofs.iter().filter(|_| !shared.stores_velocities_of_link(k)) {
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
@@ -45,7 +45,7 @@ pub fn link_wrenches<'g>(
     a: Option<&[Expr<'g>]>,
 ) -> Vec<Spatial<'g>> {
     let states = link_motions(model, joints, v, a);
-    model.links.iter().zip(&states).map(|(link, state)| newton_euler(&link.inertia, state)).collect()
+    model.links.iter().zip(&states).map(|(link, state)| newton_euler_wrench(&link.inertia, state)).collect()
 }
 
 /// Motion of a link: angular velocity, its products, angular acceleration, `U`, acceleration of the origin.
@@ -76,7 +76,7 @@ impl<'g> State<'g> {
     }
 
     /// Returns the motion of a frame that is fixed in the link.
-    pub(super) fn motion_in_frame(&self, pose: &Pose<'g>) -> State<'g> {
+    pub(super) fn motion_of_fixed_frame(&self, pose: &Pose<'g>) -> State<'g> {
         let vector_in_child = |v| pose.rotation.to_child(v);
         State::new(
             vector_in_child(self.w),
@@ -99,7 +99,7 @@ pub(super) fn link_motions<'g>(
     let mut states: Vec<State<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let parent = joint.parent.map_or(ground, |p| states[p.0]);
-        let rate = joint.total_relative_twist(model, v);
+        let rate = joint.twist_with_prescribed_motion(model, v);
         let w_parent = joint.rotation.to_child(parent.w);
         let mut dw = joint.rotation.to_child(parent.dw) + w_parent.cross(rate.angular);
         // Translation in the joint: Coriolis acceleration, and the rotation of a velocity given in link axes.
@@ -120,13 +120,13 @@ pub(super) fn link_motions<'g>(
 }
 
 /// Returns the wrench that produces a body's acceleration, about the link's origin.
-pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
+pub(super) fn newton_euler_wrench<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
     let (i, u) = (&inertia.tensor, &s.u.0);
     // Component k of I ẇ + w × I w, collected by the entries of I; (k, l, m) cyclic.
     let mut moment = inertia.moment.cross(s.a);
     for k in 0..3 {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        moment.0[k] += diagonal_moment(i, s, k) + i.entry(l, m) * (s.squares[l] - s.squares[m])
+        moment.0[k] += euler_moment_component(i, s, k) + i.entry(l, m) * (s.squares[l] - s.squares[m])
             - i.entry(k, l) * u[m][k]
             + i.entry(k, m) * u[l][k];
     }
@@ -135,7 +135,7 @@ pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<
 
 /// Returns `I_kk ẇ_k + (I_mm − I_ll) w_l w_m`. In terms of the second moments `P` of mass this is
 /// `P_ll U_ml − P_mm U_lm`. The form with fewer terms is used.
-fn diagonal_moment<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
+fn euler_moment_component<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
     let [own, next, last] = [k, l, m].map(|k| i.diagonal[k]);
     if own.is_constant() && next.is_constant() && last.is_constant() {

@@ -57,7 +57,7 @@ pub fn cyclic_coordinates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<us
 }
 
 /// Routhian and velocities of the cyclic coordinates at given momenta.
-pub struct Solved<'g> {
+pub struct RouthianAtMomenta<'g> {
     /// Routhian `R = T(v, 0) − ½ (p − π)·w − U`.
     pub routhian: Expr<'g>,
     /// Velocities `w` of the cyclic coordinates.
@@ -71,9 +71,9 @@ pub fn solve_cyclic_velocities<'g>(
     joints: &[Joint<'g>],
     cyclic: &[usize],
     solve: &mut dyn FnMut(Vec<Expr<'g>>) -> Option<Vec<Expr<'g>>>,
-) -> Option<Solved<'g>> {
+) -> Option<RouthianAtMomenta<'g>> {
     let g = model.graph;
-    let others = with_cyclic_velocities(model, cyclic, &vec![g.zero(); cyclic.len()]);
+    let others = velocities_with_cyclic_replaced(model, cyclic, &vec![g.zero(); cyclic.len()]);
     let given = replace_velocities(&momentum::generalized_momentum(model, joints, &others), &others);
     let p = cyclic.iter().enumerate().map(|(c, k)| Quantity::Momentum(c).expr(g) - given[*k]);
     let p: Vec<Expr<'g>> = p.collect();
@@ -81,7 +81,7 @@ pub fn solve_cyclic_velocities<'g>(
     let kinetic = energy::kinetic_energy(model, joints, &velocity_symbols(model));
     let lagrangian = replace_velocities(&[kinetic - energy::potential_energy(model, joints)], &others)[0];
     let twice = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, w)| sum + *p * *w);
-    Some(Solved { routhian: lagrangian - twice * 0.5, velocity })
+    Some(RouthianAtMomenta { routhian: lagrangian - twice * 0.5, velocity })
 }
 
 /// Derives Routh's equations, from which the cyclic coordinates are eliminated.
@@ -95,9 +95,9 @@ pub fn derive<'g>(
     let own = matrix_block(mass, &cyclic, &cyclic);
     let mut solve = |r: Vec<Expr<'g>>| Some(solve_linear_system(&own, r));
     let found = solve_cyclic_velocities(model, joints, &cyclic, &mut solve);
-    let Solved { routhian, velocity } =
-        found.unwrap_or_else(|| Solved { routhian: g.zero(), velocity: Vec::new() });
-    let all = with_cyclic_velocities(model, &cyclic, &velocity);
+    let RouthianAtMomenta { routhian, velocity } =
+        found.unwrap_or_else(|| RouthianAtMomenta { routhian: g.zero(), velocity: Vec::new() });
+    let all = velocities_with_cyclic_replaced(model, &cyclic, &velocity);
     // M_rr a + M_rc b = f_r and M_cr a + M_cc b = f_c, with b eliminated.
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let bias =
@@ -122,7 +122,7 @@ pub fn derive<'g>(
 
 /// Returns the symbols of all velocities, where the velocities of the cyclic coordinates are replaced by
 /// `velocity`.
-pub fn with_cyclic_velocities<'g>(
+pub fn velocities_with_cyclic_replaced<'g>(
     model: &Model<'g>,
     cyclic: &[usize],
     velocity: &[Expr<'g>],

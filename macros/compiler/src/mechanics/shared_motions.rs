@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Partial velocities of links that are placed by expressions, for links that share at least one partial
 /// velocity with another link. A shared partial velocity is stored once. The list is empty if no two links
 /// share one.
-pub struct SharedMotions<'g> {
+pub struct SharedPartialVelocities<'g> {
     motions: Vec<SharedMotion<'g>>,
     /// True for each link that shares a partial velocity with another link.
     concerned: Vec<bool>,
@@ -28,24 +28,26 @@ struct SharedMotion<'g> {
     links: Vec<usize>,
 }
 
-impl<'g> SharedMotions<'g> {
+impl<'g> SharedPartialVelocities<'g> {
     /// Collects the motion subspaces that several links share.
-    pub fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
-        SharedMotions::collect_motions(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
+    pub fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedPartialVelocities<'g> {
+        SharedPartialVelocities::collect_shared_motions(model, joints, |joint, dof| {
+            Some(joint.dofs[dof].subspace)
+        })
     }
 
     /// Collects the time derivatives of motion subspaces that several links share.
-    pub fn by_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
-        SharedMotions::collect_motions(model, joints, |joint, dof| {
+    pub fn shared_subspace_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedPartialVelocities<'g> {
+        SharedPartialVelocities::collect_shared_motions(model, joints, |joint, dof| {
             joint.drift.as_ref()?.subspace_rates.get(dof).copied()
         })
     }
 
-    fn collect_motions(
+    fn collect_shared_motions(
         model: &Model<'g>,
         joints: &[Joint<'g>],
         along: impl Fn(&Joint<'g>, usize) -> Option<Spatial<'g>>,
-    ) -> SharedMotions<'g> {
+    ) -> SharedPartialVelocities<'g> {
         let mut motions: Vec<SharedMotion<'g>> = Vec::new();
         let mut known: BTreeMap<(usize, u64, Vec<Id>), usize> = BTreeMap::new();
         // Wrenches of links with a parent are transmitted to the parent, and identical limbs are summed in
@@ -76,11 +78,11 @@ impl<'g> SharedMotions<'g> {
         }
         motions.iter_mut().for_each(|motion| motion.links.retain(|k| concerned[*k]));
         motions.retain(|motion| !motion.links.is_empty());
-        SharedMotions { motions, concerned }
+        SharedPartialVelocities { motions, concerned }
     }
 
     /// Returns true for a link whose partial velocities are stored in this collection.
-    pub fn contains_link(&self, link: usize) -> bool {
+    pub fn stores_velocities_of_link(&self, link: usize) -> bool {
         self.concerned[link]
     }
 
@@ -97,7 +99,7 @@ impl<'g> SharedMotions<'g> {
 
     /// Adds the entries of the mass matrix between the partial velocities of these links, given all links'
     /// inertias.
-    pub fn add_masses(&self, inertias: &[Inertia<'g>], m: &mut Matrix<'g>) {
+    pub fn add_mass_matrix_entries(&self, inertias: &[Inertia<'g>], m: &mut Matrix<'g>) {
         let mut sums: BTreeMap<Vec<usize>, Inertia<'g>> = BTreeMap::new();
         for (k, one) in self.motions.iter().enumerate() {
             for other in &self.motions[..=k] {

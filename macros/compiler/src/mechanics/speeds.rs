@@ -14,7 +14,7 @@ use super::{acceleration_symbols, constraints, generalized_force_symbols, veloci
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::time_derivative;
-use crate::mechanism::{Chart, Gradients, InV, Model, Quantity, Speeds, Supplied};
+use crate::mechanism::{Chart, DerivativeCache, InV, Model, Quantity, Speeds, SuppliedQuantity};
 use std::rc::Rc;
 
 /// Kind of a function's results, which determines their transformation to generalized speeds.
@@ -46,7 +46,7 @@ pub enum ResultKind {
 }
 
 /// Transformation of a mechanism from joint velocities to generalized speeds.
-pub struct InSpeeds<'g> {
+pub struct SpeedTransformation<'g> {
     /// Model of the mechanism formulated in joint velocities.
     pub native: Model<'g>,
     /// The mechanism in which everything that contains velocities is expressed in generalized speeds:
@@ -63,9 +63,9 @@ pub struct InSpeeds<'g> {
     efforts: Vec<Expr<'g>>,
 }
 
-impl<'g> InSpeeds<'g> {
+impl<'g> SpeedTransformation<'g> {
     /// Returns the transformation for a mechanism with generalized speeds; `None` for a mechanism without.
-    pub fn new(model: &Model<'g>) -> Option<InSpeeds<'g>> {
+    pub fn new(model: &Model<'g>) -> Option<SpeedTransformation<'g>> {
         let speeds = model.speeds.clone()?;
         let g = model.graph;
         let native = Model { speeds: None, velocities: speeds.velocities.clone(), ..model.clone() };
@@ -76,10 +76,11 @@ impl<'g> InSpeeds<'g> {
         let a = acceleration_symbols(model);
         let accelerations =
             matrix_times_vector(&speeds.rates, &a).iter().zip(&change).map(|(a, c)| *a + *c).collect();
-        let efforts = multiply_transposed(&speeds.of_rates, &generalized_force_symbols(model));
-        let model = Model { gradients: Gradients::default(), passive: None, ..model.clone() };
-        let mut found = InSpeeds { native, model, speeds, rates, accelerations, change, efforts };
-        found.convert_constraints();
+        let efforts =
+            multiply_transposed(&speeds.velocity_to_speed_matrix, &generalized_force_symbols(model));
+        let model = Model { gradients: DerivativeCache::default(), passive: None, ..model.clone() };
+        let mut found = SpeedTransformation { native, model, speeds, rates, accelerations, change, efforts };
+        found.convert_constraints_to_speeds();
         found.convert_contacts();
         for k in 0..found.model.outputs.len() {
             found.model.outputs[k].values = found.express_in_speeds(&found.native.outputs[k].values);
@@ -87,7 +88,7 @@ impl<'g> InSpeeds<'g> {
         Some(found)
     }
 
-    fn convert_constraints(&mut self) {
+    fn convert_constraints_to_speeds(&mut self) {
         let rows = constraints::jacobian(&self.native);
         let native = &self.native.constraints;
         let rates: Vec<Expr<'g>> = native.iter().map(|c| c.rate).collect();
@@ -124,11 +125,11 @@ impl<'g> InSpeeds<'g> {
 
     /// Transforms joint velocities, already expressed in speeds, to the speeds: `Y v`.
     pub fn speeds_of_velocities(&self, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        matrix_times_vector(&self.speeds.of_rates, v)
+        matrix_times_vector(&self.speeds.velocity_to_speed_matrix, v)
     }
 
     /// Transforms joint accelerations to the rates of the speeds: `Y (v̇ − Ż u)`.
-    pub fn rates_of_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn speed_rates_from_accelerations(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let relative: Vec<Expr<'g>> =
             self.express_in_speeds(e).iter().zip(&self.change).map(|(a, change)| *a - *change).collect();
         self.speeds_of_velocities(&relative)
@@ -136,21 +137,21 @@ impl<'g> InSpeeds<'g> {
 
     /// Expresses `e` in generalized speeds. The given forces in `e` are generalized forces of the joints; the
     /// given forces of the result are generalized forces of the speeds.
-    pub fn with_given_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.replace_arguments(e, |k| Quantity::Given(Supplied::Force, k))
+    pub fn forces_in_generalized_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.replace_covector_symbols(e, |k| Quantity::Given(SuppliedQuantity::Force, k))
     }
 
     /// Expresses `e` in generalized speeds. The given momenta in `e` are momenta of the joints; the given
     /// momenta of the result are momenta of the speeds.
-    pub fn replace_momenta(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.replace_arguments(e, Quantity::Momentum)
+    pub fn momenta_in_generalized_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.replace_covector_symbols(e, Quantity::Momentum)
     }
 
-    fn replace_arguments(&self, e: &[Expr<'g>], argument: fn(usize) -> Quantity) -> Vec<Expr<'g>> {
+    fn replace_covector_symbols(&self, e: &[Expr<'g>], argument: fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let symbols: Vec<_> = (0..self.model.nv()).map(|k| argument(k).symbol()).collect();
         let own: Vec<Expr<'g>> = symbols.iter().map(|s| g.symbol(*s)).collect();
-        let native = multiply_transposed(&self.speeds.of_rates, &own);
+        let native = multiply_transposed(&self.speeds.velocity_to_speed_matrix, &own);
         replace_all(&self.express_in_speeds(e), &|s| {
             symbols.iter().position(|known| *known == s).and_then(|k| native.get(k)).copied()
         })
@@ -163,7 +164,7 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Transforms the results of a function in joint velocities to generalized speeds.
-    pub fn transform_results(&self, role: ResultKind, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn results_in_generalized_speeds(&self, role: ResultKind, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let n = self.model.nv();
         match role {
             ResultKind::Scalars => self.express_in_speeds(e),
@@ -180,11 +181,13 @@ impl<'g> InSpeeds<'g> {
                 let (solution, added) = e.split_at(e.len().saturating_sub(n * answers));
                 let (first, rest) = solution.split_at(n.min(solution.len()));
                 let mut out = match role {
-                    ResultKind::Answers(_) => self.speeds_of_velocities(&self.with_given_forces(first)),
-                    _ => self.rates_of_speeds(first),
+                    ResultKind::Answers(_) => {
+                        self.speeds_of_velocities(&self.forces_in_generalized_speeds(first))
+                    }
+                    _ => self.speed_rates_from_accelerations(first),
                 };
                 out.extend(match role {
-                    ResultKind::Answers(_) => self.with_given_forces(rest),
+                    ResultKind::Answers(_) => self.forces_in_generalized_speeds(rest),
                     _ => self.express_in_speeds(rest),
                 });
                 self.express_in_speeds(added)
@@ -196,7 +199,7 @@ impl<'g> InSpeeds<'g> {
             ResultKind::InverseMetric => {
                 entries_by_column(&self.inverse_mass_matrix(&square_from_columns(e, n)))
             }
-            ResultKind::Columns(rows) => self.columns_by_speed(e, rows),
+            ResultKind::Columns(rows) => self.multiply_columns_by_speed_matrix(e, rows),
             ResultKind::Responses(impulses) => {
                 let (added, rest) = e.split_at((n * impulses).min(e.len()));
                 let added = self.express_in_speeds(added);
@@ -227,16 +230,21 @@ impl<'g> InSpeeds<'g> {
 
     /// Returns the inverse mass matrix of the speeds, `Y M⁻¹ Yᵀ`.
     pub fn inverse_mass_matrix(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
-        let rows: Matrix<'g> =
-            inverse.iter().map(|row| matrix_times_vector(&self.speeds.of_rates, row)).collect();
+        let rows: Matrix<'g> = inverse
+            .iter()
+            .map(|row| matrix_times_vector(&self.speeds.velocity_to_speed_matrix, row))
+            .collect();
         transposed_matrix(
-            &transposed_matrix(&rows).iter().map(|c| matrix_times_vector(&self.speeds.of_rates, c)).collect(),
+            &transposed_matrix(&rows)
+                .iter()
+                .map(|c| matrix_times_vector(&self.speeds.velocity_to_speed_matrix, c))
+                .collect(),
         )
     }
 
     /// Multiplies a matrix, given column by column with a column for each joint velocity, by `Z` from the
     /// right; returns it column by column.
-    fn columns_by_speed(&self, e: &[Expr<'g>], rows: usize) -> Vec<Expr<'g>> {
+    fn multiply_columns_by_speed_matrix(&self, e: &[Expr<'g>], rows: usize) -> Vec<Expr<'g>> {
         let written = self.express_in_speeds(e);
         let columns: Vec<&[Expr<'g>]> = written.chunks(rows.max(1)).collect();
         let by_row: Matrix<'g> = (0..rows)
@@ -251,8 +259,9 @@ impl<'g> InSpeeds<'g> {
     /// Returns the time derivative `Ż` of the velocity transformation.
     fn transformation_rates(&self) -> Matrix<'g> {
         let space = self.model.configuration_space();
-        let rates_of_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
-        self.speeds.rates.iter().map(rates_of_row).collect()
+        let time_derivatives_of_row =
+            |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
+        self.speeds.rates.iter().map(time_derivatives_of_row).collect()
     }
 
     /// Returns `Zᵀ (C Z + M Ż)`, a Coriolis matrix in generalized speeds. `Ṁ_u − 2 C_u` is skew-symmetric if
@@ -270,12 +279,12 @@ impl<'g> InSpeeds<'g> {
     /// Returns the rate of generalized momenta from the rate and the momenta in joint velocities:
     /// `ṗ_u = Zᵀ ṗ + Żᵀ p`.
     pub fn momentum_rate(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.momentum_rate_of_written(&self.express_in_speeds(rate), &self.express_in_speeds(momentum))
+        self.momentum_rate_in_speeds(&self.express_in_speeds(rate), &self.express_in_speeds(momentum))
     }
 
     /// Returns the rate of generalized momenta from the rate and the momenta of the joints that are already
     /// expressed in speeds.
-    pub fn momentum_rate_of_written(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn momentum_rate_in_speeds(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let turned = multiply_transposed(&self.transformation_rates(), momentum);
         let own = multiply_transposed(&self.speeds.rates, rate);
         own.into_iter().zip(turned).map(|(own, turned)| own + turned).collect()
@@ -292,13 +301,13 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Returns the indices of the joint velocities that speeds replace.
-    pub fn replaced_velocities(&self) -> Vec<usize> {
+    pub fn replaced_velocity_indices(&self) -> Vec<usize> {
         self.speeds.replaced.iter().map(|v| v.0).collect()
     }
 
     /// Returns `Y`, which gives the speeds as functions of the joint velocities.
-    pub fn of_rates(&self) -> &Matrix<'g> {
-        &self.speeds.of_rates
+    pub fn velocity_to_speed_matrix(&self) -> &Matrix<'g> {
+        &self.speeds.velocity_to_speed_matrix
     }
 
     /// Returns `Z`, which gives the joint velocities as functions of the speeds.
@@ -321,9 +330,10 @@ impl<'g> InSpeeds<'g> {
             .iter()
             .map(|row| multiply_transposed(&self.speeds.rates, &self.express_in_speeds(row)))
             .collect();
-        let entry_of_sum = |i: usize, j: usize| native[i][j] + changes[i][j] - rates[i][j];
+        let variational_entry = |i: usize, j: usize| native[i][j] + changes[i][j] - rates[i][j];
         let n = self.model.nv();
-        let by_column: Matrix<'g> = (0..n).map(|j| (0..n).map(|i| entry_of_sum(i, j)).collect()).collect();
+        let by_column: Matrix<'g> =
+            (0..n).map(|j| (0..n).map(|i| variational_entry(i, j)).collect()).collect();
         transposed_matrix(&by_column.iter().map(|column| self.speeds_of_velocities(column)).collect())
     }
 }

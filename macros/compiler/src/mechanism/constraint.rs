@@ -23,7 +23,7 @@ pub struct Constraint<'g> {
     /// Quantity measured by `residual`; without a residual, the quantity whose time derivative is `rate`.
     pub measure: Measure,
     /// Forces and torques per unit of its multiplier in a joint that closes a loop.
-    pub transmits: Vec<Transmission<'g>>,
+    pub transmits: Vec<ReactionComponent<'g>>,
     /// Index of the group of constraints that are components of the same vector. The magnitude of a component
     /// is compared with the other components of its group.
     pub group: usize,
@@ -56,7 +56,7 @@ pub enum Measure {
 
 /// Component of the force or torque that a joint's parent exerts on its child.
 #[derive(Clone, Copy, Debug)]
-pub struct Transmission<'g> {
+pub struct ReactionComponent<'g> {
     /// Index of the joint that transmits the force or torque.
     pub joint: usize,
     /// True if the reaction component is a torque, false for a force.
@@ -68,7 +68,7 @@ pub struct Transmission<'g> {
 /// A joint for which a loop is solved in closed form. It rotates about an axis or slides along it; the axis
 /// is given in the joint's frame on the parent.
 #[derive(Clone, Debug)]
-pub struct SolvedSide<'g> {
+pub struct ClosedFormJoint<'g> {
     /// Index of the joint that closes the loop.
     pub joint: usize,
     /// True if the closing joint is a Pin, false for a Sleeve.
@@ -79,7 +79,7 @@ pub struct SolvedSide<'g> {
 
 /// Velocity that a constraint determines if generalized speeds are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pivot {
+pub struct ConstraintPivot {
     /// Index of the constraint whose multiplier is the reaction component.
     pub constraint: usize,
     /// Index of the velocity whose generalized force is the reaction component.

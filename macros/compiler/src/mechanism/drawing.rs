@@ -110,7 +110,7 @@ pub enum PieceKind {
 pub type Anchor<'g> = (Option<usize>, Pose<'g>);
 
 /// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
-pub fn anchor_of_pose<'g>(
+pub fn pose_relative_to_named_frame<'g>(
     frames: &[NamedFrame<'g>],
     link: Option<LinkId>,
     pose: &Pose<'g>,

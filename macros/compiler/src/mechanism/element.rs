@@ -51,19 +51,19 @@ pub enum Input<'g> {
         /// Point of application of the input force, in link axes.
         point: Vec3<'g>,
         /// Direction of the input force.
-        along: Direction<'g>,
+        along: SumOfLinkVectors<'g>,
     },
     /// Input that is a torque on a link.
     Torque {
         /// Link on which the input torque acts.
         link: LinkId,
         /// Direction of the input torque.
-        about: Direction<'g>,
+        about: SumOfLinkVectors<'g>,
     },
 }
 
 /// A sum of vectors, each in the axes of a link (`None`: of the ground).
-pub type Direction<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
+pub type SumOfLinkVectors<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
 
 /// A force and the velocity on which it does work. Its power is `force × rate`, and it contributes
 /// `force × ∂rate/∂v` to the generalized forces.

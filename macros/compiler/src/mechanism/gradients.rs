@@ -12,7 +12,7 @@ pub type Gradient<'g> = Vec<(usize, Expr<'g>)>;
 
 /// Cached derivatives of the expressions of a model, shared by copies of the model.
 #[derive(Clone, Debug, Default)]
-pub struct Gradients(Rc<RefCell<GradientCache>>);
+pub struct DerivativeCache(Rc<RefCell<GradientCache>>);
 
 /// Indices of velocities and derivatives with respect to them, for each expression.
 type GradientTable = BTreeMap<Id, Vec<(usize, Id)>>;
@@ -25,9 +25,9 @@ struct GradientCache {
     charts: Vec<Chart>,
 }
 
-impl Gradients {
+impl DerivativeCache {
     /// Returns the cached gradient of an energy in a configuration space, or computes it with `find`.
-    pub fn gradient_of_energy<'g>(
+    pub fn cached_energy_gradient<'g>(
         &self,
         charts: &[Chart],
         energy: Expr<'g>,
@@ -43,7 +43,11 @@ impl Gradients {
 
     /// Returns the cached derivatives of an expression with respect to the velocities, or computes them with
     /// `find`.
-    pub fn by_velocity<'g>(&self, e: Expr<'g>, find: impl FnOnce() -> Gradient<'g>) -> Gradient<'g> {
+    pub fn cached_velocity_derivatives<'g>(
+        &self,
+        e: Expr<'g>,
+        find: impl FnOnce() -> Gradient<'g>,
+    ) -> Gradient<'g> {
         cached_or_computed(&mut self.0.borrow_mut().by_velocities, e, find)
     }
 }

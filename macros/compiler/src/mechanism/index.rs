@@ -20,7 +20,7 @@ impl InQ {
     }
 
     /// Returns the range of `count` entries of `q` that begins with this index.
-    pub fn and_next(self, count: usize) -> Range<usize> {
+    pub fn range_of_entries(self, count: usize) -> Range<usize> {
         self.0..self.0 + count
     }
 }
@@ -32,7 +32,7 @@ impl InV {
     }
 
     /// Returns the range of `count` entries of `v` that begins with this index.
-    pub fn and_next(self, count: usize) -> Range<usize> {
+    pub fn range_of_entries(self, count: usize) -> Range<usize> {
         self.0..self.0 + count
     }
 }

@@ -34,7 +34,7 @@ impl<'g> Inertia<'g> {
     ///
     /// With `h` the first moment of `other` in these axes and `s = h + m p / 2`, the parallel-axis theorem
     /// adds `2 (p · s) 1 − (p sᵀ + s pᵀ)`.
-    pub fn add_placed_inertia(
+    pub fn sum_with_placed_inertia(
         &self,
         other: &Inertia<'g>,
         rotation: &Rotation<'g>,

@@ -22,24 +22,28 @@ mod requirement;
 mod speeds;
 mod units;
 
-pub use constraint::{Constraint, Freedom, FrictionTerm, Measure, Pivot, SolvedSide, Transmission};
+pub use constraint::{
+    ClosedFormJoint, Constraint, ConstraintPivot, Freedom, FrictionTerm, Measure, ReactionComponent,
+};
 pub use contact::Contact;
 pub use drawing::{Piece, PieceKind, Role};
-pub use element::{AccelerationForce, CoulombFriction, Dashpot, Direction, Inertance, Input, Load, Spring};
-pub use equilibrium::{DRY_FRICTION, Equilibrium, RestingState};
-pub use gradients::{Gradient, Gradients};
+pub use element::{
+    AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring, SumOfLinkVectors,
+};
+pub use equilibrium::{DRY_FRICTION, Equilibrium, FirstOrderStateAtRest};
+pub use gradients::{DerivativeCache, Gradient};
 pub use index::{InQ, InV};
 pub use inertia::Inertia;
 pub use limit::Limit;
 pub use link::{Link, LinkId, NamedFrame, Space};
-pub use model::{Diagram, Model, Origin, OutputValue, Released, Uses};
+pub use model::{Diagram, Model, Origin, OutputExpression, ReleasedMechanism, UsedQuantities};
 pub use motion::{Chart, Coordinate, Motion};
 pub use passive::PassiveForces;
 pub use polytope::{
     PAIR_FEATURES, PAIR_POSE, POINT_FEATURES, Polytope, PolytopeEdge, PolytopeFace, PolytopePair,
 };
 pub use pose::Pose;
-pub use quantity::{Quantity, Supplied};
+pub use quantity::{Quantity, SuppliedQuantity};
 pub use requirement::{Requirement, Rule};
 pub use speeds::Speeds;
 pub use units::Units;

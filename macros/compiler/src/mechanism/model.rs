@@ -1,11 +1,11 @@
 //! Model of a whole mechanism, which all later stages read.
 
-use super::constraint::{Constraint, Freedom, Pivot, SolvedSide};
+use super::constraint::{ClosedFormJoint, Constraint, ConstraintPivot, Freedom};
 use super::contact::Contact;
 use super::drawing::Piece;
 use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
 use super::equilibrium::Equilibrium;
-use super::gradients::Gradients;
+use super::gradients::DerivativeCache;
 use super::inertia::Inertia;
 use super::limit::Limit;
 use super::link::{Link, NamedFrame, Space};
@@ -48,7 +48,7 @@ pub struct Model<'g> {
     /// Coordinate charts of the configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
     /// Cache of the generalized forces of elements with energies.
-    pub gradients: Gradients,
+    pub gradients: DerivativeCache,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
     /// Name of every entry of `v`, with the place of the joint.
@@ -99,16 +99,16 @@ pub struct Model<'g> {
     pub redundant: Vec<String>,
     /// Pivots for elimination of the dependent velocities, in elimination order, if independent velocities
     /// are to be used.
-    pub dependent: Option<Vec<Pivot>>,
+    pub dependent: Option<Vec<ConstraintPivot>>,
     /// Joints for which loops are solved in closed form, two for each loop.
-    pub solved: Vec<SolvedSide<'g>>,
+    pub solved: Vec<ClosedFormJoint<'g>>,
     /// Numbers of independent coordinates and velocities of the mechanism.
     pub freedom: Freedom,
     /// Outputs of the mechanism.
-    pub outputs: Vec<OutputValue<'g>>,
+    pub outputs: Vec<OutputExpression<'g>>,
     /// Copy of the mechanism in which each joint whose reaction is an output has six degrees of freedom;
     /// these coordinates come last.
-    pub released: Option<Rc<Released<'g>>>,
+    pub released: Option<Rc<ReleasedMechanism<'g>>>,
     /// Units of parameters, coordinates, inputs, outputs and constraints.
     pub units: Units,
 }
@@ -116,7 +116,7 @@ pub struct Model<'g> {
 /// A mechanism with released joints. The forces that fix the released coordinates at zero are the reactions
 /// of the joints.
 #[derive(Clone)]
-pub struct Released<'g> {
+pub struct ReleasedMechanism<'g> {
     /// Model of the mechanism in which the joints are released.
     pub model: Model<'g>,
     /// Indices of the released joints, in the order of their coordinates.
@@ -125,7 +125,7 @@ pub struct Released<'g> {
 
 /// An output expression, which becomes a generated function.
 #[derive(Clone, Debug)]
-pub struct OutputValue<'g> {
+pub struct OutputExpression<'g> {
     /// Name of the output function.
     pub name: String,
     /// Components of the output: one, three or nine; nine for each action of a free-body diagram.
@@ -166,7 +166,7 @@ pub enum Origin {
 
 /// Quantities that a value depends on in addition to the configuration and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Uses {
+pub struct UsedQuantities {
     /// True if the output depends on velocities.
     pub velocities: bool,
     /// True if the output depends on accelerations.
@@ -197,7 +197,7 @@ impl<'g> Model<'g> {
     }
 
     /// Returns the bounds of all coordinate limits, in their order.
-    pub fn limit_values(&self) -> Vec<Expr<'g>> {
+    pub fn coordinate_limit_bounds(&self) -> Vec<Expr<'g>> {
         self.limits.iter().flat_map(|limit| limit.bounds()).flatten().collect()
     }
 

@@ -78,9 +78,9 @@ impl Motion<'_> {
         match self {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }
-            | Motion::Helix { coordinate, .. } => coordinate.q.and_next(1),
-            Motion::Ball { q, .. } => q.and_next(4),
-            Motion::Free { q, .. } => q.and_next(7),
+            | Motion::Helix { coordinate, .. } => coordinate.q.range_of_entries(1),
+            Motion::Ball { q, .. } => q.range_of_entries(4),
+            Motion::Free { q, .. } => q.range_of_entries(7),
             Motion::Placed => 0..0,
         }
     }
@@ -119,7 +119,7 @@ impl Motion<'_> {
 
     /// Returns an identifier of each kind of motion that identical limbs may have. Motions of one kind have
     /// the same number of degrees of freedom, and a constant subspace.
-    pub fn kind_in_limbs(&self) -> Option<usize> {
+    pub fn limb_motion_kind(&self) -> Option<usize> {
         match self {
             Motion::Turn { .. } => Some(1),
             Motion::Slide { .. } => Some(2),

@@ -47,12 +47,18 @@ impl<'g> PassiveForces<'g> {
 
     /// Returns the derivatives of the force symbols with respect to the configuration along the direction of
     /// a velocity.
-    pub fn changes_by_configuration(&self, velocity: usize) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
+    pub fn force_symbol_position_derivatives(
+        &self,
+        velocity: usize,
+    ) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
         self.passive_force_derivatives(0, velocity)
     }
 
     /// Returns the derivatives of the force symbols with respect to a velocity.
-    pub fn changes_by_velocity(&self, velocity: usize) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
+    pub fn velocity_derivatives_of_forces(
+        &self,
+        velocity: usize,
+    ) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
         self.passive_force_derivatives(1, velocity)
     }
 

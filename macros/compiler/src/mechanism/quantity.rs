@@ -20,7 +20,7 @@ pub enum Quantity {
     /// The time, s.
     Time,
     /// An entry of an argument of a generated function: an intermediate result that the caller supplies.
-    Given(Supplied, usize),
+    Given(SuppliedQuantity, usize),
     /// Generalized momentum, in Hamilton's and Routh's equations.
     Momentum(usize),
     /// The deviation of a coordinate, or of a state after these, in linear equations.
@@ -51,7 +51,7 @@ pub enum Quantity {
 
 /// Intermediate results that callers of generated functions supply as arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Supplied {
+pub enum SuppliedQuantity {
     /// Applied forces minus bias forces, one entry for each velocity.
     Force,
     /// Bias terms of the constraint accelerations, `J̇ v + …`.
@@ -84,10 +84,10 @@ pub enum Supplied {
     ContactForces,
 }
 
-impl Supplied {
+impl SuppliedQuantity {
     /// All kinds of values whose symbols are ordered with those of momenta.
-    const ALL: [Supplied; Supplied::ResultFactor as usize] = {
-        use Supplied::*;
+    const ALL: [SuppliedQuantity; SuppliedQuantity::ResultFactor as usize] = {
+        use SuppliedQuantity::*;
         [
             Force,
             Bias,
@@ -132,9 +132,9 @@ impl Quantity {
             Quantity::Input(k) => (5, k),
             Quantity::Time => (6, 0),
             Quantity::Laplace => (6, 1),
-            Quantity::Given(Supplied::ResultFactor, k) => (13, k),
+            Quantity::Given(SuppliedQuantity::ResultFactor, k) => (13, k),
             Quantity::ContactFeature(k) => (14, k),
-            Quantity::ContactForce(k) | Quantity::Given(Supplied::ContactForces, k) => (12, k),
+            Quantity::ContactForce(k) | Quantity::Given(SuppliedQuantity::ContactForces, k) => (12, k),
             Quantity::Given(block, k) => (7, block as usize * Quantity::GIVEN + k),
             Quantity::Momentum(k) => (7, Quantity::MOMENTA + k),
             Quantity::Deviation(k) => (7, Quantity::DEVIATIONS + k),
@@ -167,8 +167,8 @@ impl Quantity {
             7 if index >= Quantity::DEVIATIONS => Quantity::Deviation(index - Quantity::DEVIATIONS),
             7 if index >= Quantity::MOMENTA => Quantity::Momentum(index - Quantity::MOMENTA),
             7 => {
-                let block = Supplied::ALL.get(index / Quantity::GIVEN).copied();
-                Quantity::Given(block.unwrap_or(Supplied::State), index % Quantity::GIVEN)
+                let block = SuppliedQuantity::ALL.get(index / Quantity::GIVEN).copied();
+                Quantity::Given(block.unwrap_or(SuppliedQuantity::State), index % Quantity::GIVEN)
             }
             8 => Quantity::Prepared(index),
             9 => Quantity::Reaction(index),
@@ -176,7 +176,7 @@ impl Quantity {
             11 => Quantity::PassiveDerivative(index),
             12 => Quantity::ContactForce(index),
             14 => Quantity::ContactFeature(index),
-            _ => Quantity::Given(Supplied::ResultFactor, index),
+            _ => Quantity::Given(SuppliedQuantity::ResultFactor, index),
         }
     }
 
@@ -210,9 +210,10 @@ mod tests {
             Quantity::ContactFeature,
         ];
         let all = indexed.into_iter().flat_map(|quantity| [0, 1, 255, 65_535].map(quantity));
-        let given =
-            Supplied::ALL.into_iter().flat_map(|block| [0, 1, 16_383].map(|k| Quantity::Given(block, k)));
-        let factors = [0, 1, 65_535].map(|k| Quantity::Given(Supplied::ResultFactor, k));
+        let given = SuppliedQuantity::ALL
+            .into_iter()
+            .flat_map(|block| [0, 1, 16_383].map(|k| Quantity::Given(block, k)));
+        let factors = [0, 1, 65_535].map(|k| Quantity::Given(SuppliedQuantity::ResultFactor, k));
         let displacements = (0..3).map(Quantity::Displacement);
         let single = [Quantity::Time, Quantity::Laplace, Quantity::Stretch];
         for quantity in all.chain(given).chain(factors).chain(displacements).chain(single) {

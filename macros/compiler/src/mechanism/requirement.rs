@@ -42,7 +42,7 @@ pub enum Rule {
 
 impl Rule {
     /// Returns the name of the validation rule in the runtime.
-    pub fn rule_name(self) -> &'static str {
+    pub fn runtime_rule_name(self) -> &'static str {
         match self {
             Rule::Finite => "Finite",
             Rule::Mass => "Mass",

@@ -11,7 +11,7 @@ use crate::expr::{Expr, Graph};
 #[derive(Clone, Debug)]
 pub struct Speeds<'g> {
     /// Matrix `Y` of the speeds in terms of the joint velocities, row by row.
-    pub of_rates: Vec<Vec<Expr<'g>>>,
+    pub velocity_to_speed_matrix: Vec<Vec<Expr<'g>>>,
     /// Matrix `Z` of the joint velocities in terms of the speeds, row by row.
     pub rates: Vec<Vec<Expr<'g>>>,
     /// Indices of the joint velocities that declared speeds replace.

@@ -1,6 +1,6 @@
 //! Candidates for the frame of a link, among which a pass chooses.
 
-use super::motions::{FrameFreedom, frame_freedom};
+use super::motions::{FrameFreedom, freedom_of_link_frame};
 use super::number::{
     IDENTITY, Mass, NumericFrame, Vector, axis_rotation, column, cross, dot, matrix_times_vector,
     multiply_transposed, norm, round_noise_to_zero, transpose, unit_axis,
@@ -29,7 +29,7 @@ impl Site {
     /// numeric.
     pub fn from_link(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
         let (place, mass) = (NumericFrame::from_pose(&link.placement), Mass::from_inertia(&link.inertia));
-        let free = frame_freedom(&link.motion);
+        let free = freedom_of_link_frame(&link.motion);
         let numeric = place.is_some() && (mass.is_some() || free_parameters);
         let place = place.filter(|_| !matches!(link.motion, Motion::Placed));
         Site {
@@ -70,7 +70,7 @@ pub fn candidate_frames(sites: &[Site], k: usize, chosen: &[Vec<NumericFrame>]) 
     match sites[k].freedom {
         FrameFreedom::None => vec![NumericFrame::IDENTITY],
         FrameFreedom::Turn { k: a, .. } => {
-            let list = choices_of_revolute(sites, k, a, chosen);
+            let list = frame_choices_of_revolute_joint(sites, k, a, chosen);
             let mut places = Vec::new();
             for angle in &list.angles {
                 let rotation = axis_rotation(a, *angle);
@@ -86,12 +86,12 @@ pub fn candidate_frames(sites: &[Site], k: usize, chosen: &[Vec<NumericFrame>]) 
     }
 }
 
-fn child_sites(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
+fn indices_of_child_sites(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
     (k + 1..sites.len()).filter(move |c| sites[*c].parent == Some(k))
 }
 
 /// Candidate angles and shifts of a link's frame about and along the joint axis.
-struct Choices {
+struct CandidateAnglesAndShifts {
     /// Index of the coordinate axis about which the frame is rotated.
     a: usize,
     angles: Vec<f64>,
@@ -100,29 +100,29 @@ struct Choices {
     reach: f64,
 }
 
-impl Choices {
+impl CandidateAnglesAndShifts {
     /// Adds the angle, reduced by right angles to within 45°, that aligns an axis of the frame with the
     /// component of a vector normal to the joint's axis. Right angles cost nothing.
-    fn add_heading(&mut self, v: Vector) {
+    fn add_alignment_angle(&mut self, v: Vector) {
         let (x, y) = (v[(self.a + 1) % 3], v[(self.a + 2) % 3]);
         if round_noise_to_zero(libm::hypot(x, y), norm(v)) == 0.0 {
             return;
         }
         let angle = libm::atan2(y, x);
         let rest = angle - (angle / FRAC_PI_2).round() * FRAC_PI_2;
-        push_distinct(&mut self.angles, round_noise_to_zero(rest, 2.0 * angle.abs()), 1.0);
+        push_if_distinct(&mut self.angles, round_noise_to_zero(rest, 2.0 * angle.abs()), 1.0);
     }
 
     /// Adds a shift of the origin, computed from lengths of magnitude `scale`, if it is within reach.
     fn add_shift(&mut self, s: f64, scale: f64) {
         if s.abs() <= self.reach {
-            push_distinct(&mut self.shifts, round_noise_to_zero(s, scale), scale);
+            push_if_distinct(&mut self.shifts, round_noise_to_zero(s, scale), scale);
         }
     }
 }
 
 /// Adds a number, computed from numbers of magnitude `scale`, unless it is in the list.
-fn push_distinct(list: &mut Vec<f64>, x: f64, scale: f64) {
+fn push_if_distinct(list: &mut Vec<f64>, x: f64, scale: f64) {
     if list.len() < MAX_CANDIDATES
         && !list.iter().any(|y| round_noise_to_zero(x - y, 4.0 * (scale + x.abs())) == 0.0)
     {
@@ -130,9 +130,15 @@ fn push_distinct(list: &mut Vec<f64>, x: f64, scale: f64) {
     }
 }
 
-fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<NumericFrame>]) -> Choices {
-    let mut list = Choices { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
-    for c in child_sites(sites, k) {
+fn frame_choices_of_revolute_joint(
+    sites: &[Site],
+    k: usize,
+    a: usize,
+    chosen: &[Vec<NumericFrame>],
+) -> CandidateAnglesAndShifts {
+    let mut list =
+        CandidateAnglesAndShifts { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
+    for c in indices_of_child_sites(sites, k) {
         if let Some(place) = &sites[c].place {
             align_with_child(&mut list, &sites[c], place, &chosen[c]);
         }
@@ -144,15 +150,15 @@ fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Numeric
         list.add_shift(-back[a], norm(back));
         let own = column(&place.rotation, a);
         for r in 0..3 {
-            list.add_heading(multiply_transposed(&place.rotation, cross(unit_axis(r), own)));
+            list.add_alignment_angle(multiply_transposed(&place.rotation, cross(unit_axis(r), own)));
         }
     }
     if let Some(mass) = &sites[k].mass {
         let component_normal_to_axis = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
         let (moment, products) =
             (component_normal_to_axis(mass.moment), component_normal_to_axis(column(&mass.tensor, a)));
-        list.add_heading(moment);
-        list.add_heading(products);
+        list.add_alignment_angle(moment);
+        list.add_alignment_angle(products);
         // The shift at which the product of inertia along the first moment vanishes.
         if norm(moment) > 0.0 {
             list.add_shift(-dot(products, moment) / dot(moment, moment), 0.0);
@@ -162,7 +168,12 @@ fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Numeric
 }
 
 /// Adds the shift to the common normal with a child's axis, and the angle that points along it.
-fn align_with_child(list: &mut Choices, child: &Site, place: &NumericFrame, chosen: &[NumericFrame]) {
+fn align_with_child(
+    list: &mut CandidateAnglesAndShifts,
+    child: &Site,
+    place: &NumericFrame,
+    chosen: &[NumericFrame],
+) {
     let (a, p) = (list.a, place.translation);
     let scale = norm(p);
     let direction = child.joint_axis();
@@ -174,7 +185,7 @@ fn align_with_child(list: &mut Choices, child: &Site, place: &NumericFrame, chos
         let (side, away) = (component_normal_to_axis(u), component_normal_to_axis(p));
         if round_noise_to_zero(norm(side), 1.0) != 0.0 {
             list.add_shift(p[a] - u[a] * dot(away, side) / dot(side, side), scale);
-            list.add_heading(cross(unit_axis(a), u));
+            list.add_alignment_angle(cross(unit_axis(a), u));
         }
     }
     match direction {
@@ -189,7 +200,7 @@ fn align_with_child(list: &mut Choices, child: &Site, place: &NumericFrame, chos
         }
         None => list.add_shift(p[a], scale),
     }
-    list.add_heading(p);
+    list.add_alignment_angle(p);
 }
 
 /// Returns candidate frames of a sliding link: oriented like itself, its parent or a child, and at their
@@ -201,7 +212,7 @@ fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<Nu
         rotations.push(transpose(&place.rotation));
         points.push(multiply_transposed(&place.rotation, place.translation).map(|c| -c));
     }
-    for place in child_sites(sites, k).filter_map(|c| sites[c].place.as_ref()) {
+    for place in indices_of_child_sites(sites, k).filter_map(|c| sites[c].place.as_ref()) {
         rotations.push(place.rotation);
         points.push(place.translation);
     }

@@ -29,7 +29,7 @@ pub fn cheapest_joint_placement(
     parent: &NumericFrame,
     frame: &NumericFrame,
 ) -> Option<(f64, NumericFrame, f64)> {
-    let plain = site.place.as_ref()?.transform_between(parent, frame);
+    let plain = site.place.as_ref()?.compose_from_other_to_next(parent, frame);
     let mut best = (placement_cost(site, &plain, frame), plain, 0.0);
     if let FrameFreedom::Turn { k, offset: true } = site.freedom {
         for (rotation, angle) in sparse_alignments(&plain.rotation, k) {
@@ -101,9 +101,9 @@ fn sparse_alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
 }
 
 /// Returns the cost of the mass properties resolved in a frame.
-pub fn mass_cost(site: &Site, frame: &NumericFrame) -> f64 {
+pub fn cost_of_mass_properties(site: &Site, frame: &NumericFrame) -> f64 {
     let Some(mass) = &site.mass else { return 0.0 };
-    let seen = mass.mass_in_frame(frame);
+    let seen = mass.mass_properties_in_frame(frame);
     let along = match site.freedom {
         FrameFreedom::Turn { k, .. } => k,
         _ => 3,

@@ -10,11 +10,11 @@ use super::candidates::{Site, candidate_frames};
 use super::cost;
 use super::motions::{FrameFreedom, motion_in_frame};
 use super::number::{Mass, NumericFrame, norm};
-use crate::mechanism::{Direction, Inertia, Input, Link, Model, Pose};
+use crate::mechanism::{Inertia, Input, Link, Model, Pose, SumOfLinkVectors};
 
 /// New frame that was chosen for one link.
 #[derive(Clone, Copy)]
-struct ChosenFrame {
+struct ChosenLinkFrame {
     /// New frame of the link relative to the old one.
     frame: NumericFrame,
     /// The joint's frame relative to the parent's new frame.
@@ -25,13 +25,13 @@ struct ChosenFrame {
 
 /// Chooses and applies the frames of links with these sizes.
 pub fn choose_link_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool) {
-    let sites = sites_of_links(model, sizes, free_parameters);
+    let sites = frame_choice_data_of_links(model, sizes, free_parameters);
     let Some(frames) = choose_frames(&sites) else { return };
-    let steps: Vec<Option<ChosenFrame>> = (0..sites.len())
+    let steps: Vec<Option<ChosenLinkFrame>> = (0..sites.len())
         .map(|k| {
             let parent = sites[k].parent.map_or(NumericFrame::IDENTITY, |p| frames[p]);
             let (_, placement, offset) = cost::cheapest_joint_placement(&sites[k], &parent, &frames[k])?;
-            Some(ChosenFrame { frame: frames[k], placement, offset })
+            Some(ChosenLinkFrame { frame: frames[k], placement, offset })
         })
         .collect();
     apply_frame_choice(model, &sites, &steps);
@@ -39,21 +39,22 @@ pub fn choose_link_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters:
 
 /// Returns the size of every link: the maximum of the distances of its joint from the parent's origin plus
 /// its radius of gyration, and of its children's joints, as far as these are numeric.
-pub fn link_sizes(model: &Model<'_>) -> Vec<f64> {
+pub fn characteristic_link_sizes(model: &Model<'_>) -> Vec<f64> {
     let places: Vec<Option<NumericFrame>> =
         model.links.iter().map(|link| NumericFrame::from_pose(&link.placement)).collect();
-    let distance_to_link = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
-    let size_of_link = |(k, link): (usize, &Link<'_>)| {
+    let distance_of_link_from_origin =
+        |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
+    let link_length_scale = |(k, link): (usize, &Link<'_>)| {
         let children =
             (k + 1..model.links.len()).filter(|c| model.links[*c].parent.is_some_and(|p| p.0 == k));
         let masses = Mass::from_inertia(&link.inertia).map_or(0.0, |mass| mass.root_mean_square_radius());
-        children.map(distance_to_link).fold(distance_to_link(k) + masses, f64::max)
+        children.map(distance_of_link_from_origin).fold(distance_of_link_from_origin(k) + masses, f64::max)
     };
-    model.links.iter().enumerate().map(size_of_link).collect()
+    model.links.iter().enumerate().map(link_length_scale).collect()
 }
 
 /// Returns the data that the choice of frames depends on.
-fn sites_of_links(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
+fn frame_choice_data_of_links(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
     let site_of_link = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
     let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(site_of_link).collect();
     for k in 0..sites.len() {
@@ -75,24 +76,24 @@ fn choose_frames(sites: &[Site]) -> Option<Vec<NumericFrame>> {
     let mut costs: Vec<Vec<f64>> = vec![Vec::new(); sites.len()];
     for k in (0..sites.len()).rev() {
         choices[k] = candidate_frames(sites, k, &choices);
-        costs[k] = choices[k].iter().map(|frame| cost::mass_cost(&sites[k], frame)).collect();
+        costs[k] = choices[k].iter().map(|frame| cost::cost_of_mass_properties(&sites[k], frame)).collect();
         for child in (k + 1..sites.len()).filter(|c| sites[*c].parent == Some(k)) {
             for (c, frame) in choices[k].iter().enumerate() {
-                costs[k][c] += best_candidate(&sites[child], frame, &choices[child], &costs[child]).1;
+                costs[k][c] += best_frame_candidate(&sites[child], frame, &choices[child], &costs[child]).1;
             }
         }
     }
     let mut frames: Vec<NumericFrame> = Vec::with_capacity(sites.len());
     for k in 0..sites.len() {
         let parent = sites[k].parent.map_or(NumericFrame::IDENTITY, |p| frames[p]);
-        frames.push(choices[k][best_candidate(&sites[k], &parent, &choices[k], &costs[k]).0]);
+        frames.push(choices[k][best_frame_candidate(&sites[k], &parent, &choices[k], &costs[k]).0]);
     }
     Some(frames)
 }
 
 /// Returns the index of the best candidate of a link for a parent's frame, and its cost including all
 /// descendants.
-fn best_candidate(
+fn best_frame_candidate(
     site: &Site,
     parent: &NumericFrame,
     choices: &[NumericFrame],
@@ -109,7 +110,7 @@ fn best_candidate(
     best
 }
 
-fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<ChosenFrame>]) {
+fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<ChosenLinkFrame>]) {
     let g = model.graph;
     for (link, (site, step)) in model.links.iter_mut().zip(sites.iter().zip(steps)) {
         let Some(step) = step else { continue };
@@ -118,22 +119,22 @@ fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option
             continue;
         }
         link.inertia = match &site.mass {
-            Some(mass) => mass.mass_in_frame(&step.frame).inertia_expressions(g),
+            Some(mass) => mass.mass_properties_in_frame(&step.frame).inertia_expressions(g),
             None => {
                 let back = step.frame.frame_to_pose(g).inverse();
-                Inertia::zero(g).add_placed_inertia(&link.inertia, &back.rotation, back.translation)
+                Inertia::zero(g).sum_with_placed_inertia(&link.inertia, &back.rotation, back.translation)
             }
         };
         motion_in_frame(&mut link.motion, &step.frame.frame_to_pose(g), step.offset);
     }
     let back =
         steps.iter().map(|s| s.as_ref().map_or(Pose::identity(g), |s| s.frame.frame_to_pose(g).inverse()));
-    move_contents(model, &back.collect::<Vec<_>>());
+    move_contents_to_new_frames(model, &back.collect::<Vec<_>>());
 }
 
 /// Transforms everything that is fixed in the links to their new frames; `back` holds the old frames relative
 /// to the new ones.
-pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
+pub fn move_contents_to_new_frames<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
     // All fields are listed, so that rustc asks about each new one. Expressions of the state, such as those
     // of loads and outputs, do not depend on the link frames any more; the drawing is placed in named frames.
     let Model {
@@ -197,7 +198,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
     }
 }
 
-fn rotate_direction<'g>(direction: &mut Direction<'g>, back: &[Pose<'g>]) {
+fn rotate_direction<'g>(direction: &mut SumOfLinkVectors<'g>, back: &[Pose<'g>]) {
     for (link, v) in direction {
         if let Some(link) = link {
             *v = back[link.0].rotation.to_parent(*v);

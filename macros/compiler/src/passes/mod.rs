@@ -13,10 +13,10 @@ mod parallel;
 mod regroup;
 mod slide;
 
-pub use frames::{choose_link_frames, link_sizes};
-pub use motions::Gauge;
-pub use parallel::in_common_axes;
-pub use regroup::{Regroup, regroup_inertias};
+pub use frames::{characteristic_link_sizes, choose_link_frames};
+pub use motions::VanishingMomentConvention;
+pub use parallel::variants_in_common_axes;
+pub use regroup::{RegroupOptions, move_inertias_to_parents};
 
 /// Selection of the passes over the model that run.
 #[derive(Clone, Copy, Debug)]
@@ -69,11 +69,11 @@ pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>>
     let mut start = model.clone();
     if passes.regroup {
         // Frames are chosen by the mass properties that remain.
-        regroup_inertias(&mut start, Regroup::default());
+        move_inertias_to_parents(&mut start, RegroupOptions::default());
     }
     if passes.frames {
         slide::slide_frames(&mut start);
-        choose_link_frames(&mut start, &link_sizes(model), passes.free_parameters);
+        choose_link_frames(&mut start, &characteristic_link_sizes(model), passes.free_parameters);
     }
     let joints = joints_of_model(&start);
     if !passes.regroup {
@@ -86,7 +86,7 @@ pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>>
             continue;
         }
         let mut model = start.clone();
-        regroup_inertias(&mut model, Regroup { gauge, to_children, symbolic });
+        move_inertias_to_parents(&mut model, RegroupOptions { gauge, to_children, symbolic });
         add(&mut variants, Variant { model, joints: joints.clone(), for_inverse_dynamics: to_children });
     }
     if !passes.frames {
@@ -101,13 +101,13 @@ const EXHAUSTIVE_VELOCITIES: usize = 18;
 
 /// Distributions: gauge, masses also to children, symbolic properties too, tried for any number of
 /// velocities.
-const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
-    (Gauge::Second, false, false, true),
-    (Gauge::First, false, false, false),
-    (Gauge::Second, false, true, true),
-    (Gauge::Second, true, false, true),
-    (Gauge::First, true, false, false),
-    (Gauge::Flat, true, false, true),
+const DISTRIBUTIONS: [(VanishingMomentConvention, bool, bool, bool); 6] = [
+    (VanishingMomentConvention::Second, false, false, true),
+    (VanishingMomentConvention::First, false, false, false),
+    (VanishingMomentConvention::Second, false, true, true),
+    (VanishingMomentConvention::Second, true, false, true),
+    (VanishingMomentConvention::First, true, false, false),
+    (VanishingMomentConvention::Flat, true, false, true),
 ];
 
 /// Adds a variant to the list unless an equal one is in it.

@@ -25,7 +25,7 @@ pub enum FrameFreedom {
 }
 
 /// Returns the freedom to choose the frame of a link with this motion, or `None` if it is fixed.
-pub fn frame_freedom(motion: &Motion<'_>) -> Option<FrameFreedom> {
+pub fn freedom_of_link_frame(motion: &Motion<'_>) -> Option<FrameFreedom> {
     match motion {
         Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: true }),
         Motion::Helix { axis, .. } => coordinate_axis(*axis).map(|k| FrameFreedom::Turn { k, offset: false }),
@@ -58,7 +58,7 @@ fn shift_coordinate(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
 /// Convention that makes a moment of inertia of a revolute link vanish. The joint's axis is `k`; the others
 /// are `k + 1` and `k + 2`, cyclically.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Gauge {
+pub enum VanishingMomentConvention {
     /// Regrouping makes the moment of inertia about axis `k + 1` zero.
     First,
     /// Regrouping makes the moment of inertia about axis `k + 2` zero.
@@ -69,7 +69,7 @@ pub enum Gauge {
 }
 
 /// Returns the part of a link's mass properties that can be moved to the parent.
-pub fn movable_inertia<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
+pub fn movable_inertia<'g>(link: &Link<'g>, gauge: VanishingMomentConvention) -> Option<Inertia<'g>> {
     let Inertia { mass, moment, tensor } = link.inertia;
     let nothing = Inertia::zero(mass.graph());
     match &link.motion {
@@ -77,12 +77,12 @@ pub fn movable_inertia<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>>
             let k = coordinate_axis(*axis)?;
             let mut along = nothing.moment;
             along.0[k] = moment[k];
-            Some(Inertia { mass, moment: along, tensor: transverse_inertia(&tensor, k, gauge) })
+            Some(Inertia { mass, moment: along, tensor: equalise_transverse_moments(&tensor, k, gauge) })
         }
         Motion::Slide { .. } => Some(Inertia { tensor, ..nothing }),
         Motion::Helix { axis, .. } => {
             let k = coordinate_axis(*axis)?;
-            Some(Inertia { tensor: transverse_inertia(&tensor, k, gauge), ..nothing })
+            Some(Inertia { tensor: equalise_transverse_moments(&tensor, k, gauge), ..nothing })
         }
         Motion::Ball { .. } => Some(Inertia { mass, ..nothing }),
         Motion::Free { .. } | Motion::Placed => None,
@@ -91,13 +91,17 @@ pub fn movable_inertia<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>>
 
 /// Returns the inertia with equal moments about the two axes normal to `k` that makes the moment of the gauge
 /// vanish.
-fn transverse_inertia<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
+fn equalise_transverse_moments<'g>(
+    tensor: &Sym3<'g>,
+    k: usize,
+    gauge: VanishingMomentConvention,
+) -> Sym3<'g> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let d = &tensor.diagonal;
     let both = match gauge {
-        Gauge::First => d[i],
-        Gauge::Second => d[j],
-        Gauge::Flat => (d[i] + d[j] - d[k]) * 0.5,
+        VanishingMomentConvention::First => d[i],
+        VanishingMomentConvention::Second => d[j],
+        VanishingMomentConvention::Flat => (d[i] + d[j] - d[k]) * 0.5,
     };
     let mut out = Sym3::multiple_of_identity(both);
     out.diagonal[k] = both.zero();

@@ -17,7 +17,7 @@ pub fn round_noise_to_zero(x: f64, scale: f64) -> f64 {
 }
 
 /// Returns an entry of a rotation matrix, rounded to 0 or ±1 if it is next to it.
-fn clean_entry(x: f64) -> f64 {
+fn round_rotation_entry(x: f64) -> f64 {
     if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { round_noise_to_zero(x, 1.0) }
 }
 
@@ -37,7 +37,7 @@ pub fn norm(a: Vector) -> f64 {
 }
 
 /// Returns the vector `s a + b`.
-pub fn scaled_sum(s: f64, a: Vector, b: Vector) -> Vector {
+pub fn add_scaled_vector(s: f64, a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| s * a[k] + b[k])
 }
 
@@ -78,7 +78,7 @@ pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let (sin, cos) = libm::sincos(angle);
-    let (sin, cos) = (clean_entry(sin), clean_entry(cos));
+    let (sin, cos) = (round_rotation_entry(sin), round_rotation_entry(cos));
     let mut m = IDENTITY;
     (m[i][i], m[i][j], m[j][i], m[j][j]) = (cos, -sin, sin, cos);
     m
@@ -86,7 +86,7 @@ pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
 
 /// Rounds the entries of a rotation matrix that are within rounding errors of 0 or ±1.
 pub fn clean_rotation(m: &Matrix) -> Matrix {
-    m.map(|row| row.map(clean_entry))
+    m.map(|row| row.map(round_rotation_entry))
 }
 
 /// Frame with numeric pose relative to another frame.
@@ -104,23 +104,29 @@ impl NumericFrame {
 
     /// Returns a numeric pose whose rotation is orthogonal up to rounding, or `None`.
     pub fn from_pose(pose: &Pose<'_>) -> Option<NumericFrame> {
-        let rotation = clean_rotation(&pose.rotation.rotation_matrix().constant_entries()?);
+        let rotation = clean_rotation(&pose.rotation.rotation_matrix().entries_if_all_constant()?);
         let square = matrix_product(&transpose(&rotation), &rotation);
         let orthogonality_error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
         if (0..9).any(|k| orthogonality_error(k / 3, k % 3) > 4.0 * ROUNDING) {
             return None;
         }
-        Some(NumericFrame { rotation, translation: clean_vector(pose.translation.constant_components()?) })
+        Some(NumericFrame {
+            rotation,
+            translation: zero_rounding_errors_of_vector(pose.translation.constant_components()?),
+        })
     }
 
     /// Converts the numeric frame to a pose of expressions.
     pub fn frame_to_pose<'g>(&self, g: &'g Graph) -> Pose<'g> {
         let matrix = Mat3::from_fn(|i, j| g.num(self.rotation[i][j]));
-        Pose { rotation: Rotation::from_matrix(matrix), translation: Vec3::from_numbers(g, self.translation) }
+        Pose {
+            rotation: Rotation::from_matrix(matrix),
+            translation: Vec3::vector_from_constants(g, self.translation),
+        }
     }
 
     /// Returns the frame transformation `other⁻¹ self next`.
-    pub fn transform_between(&self, other: &NumericFrame, next: &NumericFrame) -> NumericFrame {
+    pub fn compose_from_other_to_next(&self, other: &NumericFrame, next: &NumericFrame) -> NumericFrame {
         let rotation =
             matrix_product(&transpose(&other.rotation), &matrix_product(&self.rotation, &next.rotation));
         let ahead = matrix_times_vector(&self.rotation, next.translation);
@@ -134,7 +140,7 @@ impl NumericFrame {
 }
 
 /// Replaces components of a vector that are rounding errors by zero.
-fn clean_vector(v: Vector) -> Vector {
+fn zero_rounding_errors_of_vector(v: Vector) -> Vector {
     let scale = norm(v);
     v.map(|c| round_noise_to_zero(c, scale))
 }
@@ -156,7 +162,7 @@ impl Mass {
         Some(Mass {
             mass: inertia.mass.constant_value()?,
             moment: inertia.moment.constant_components()?,
-            tensor: inertia.tensor.full_matrix().constant_entries()?,
+            tensor: inertia.tensor.full_matrix().entries_if_all_constant()?,
         })
     }
 
@@ -170,14 +176,14 @@ impl Mass {
     pub fn inertia_expressions<'g>(&self, g: &'g Graph) -> Inertia<'g> {
         Inertia {
             mass: g.num(self.mass),
-            moment: Vec3::from_numbers(g, self.moment),
+            moment: Vec3::vector_from_constants(g, self.moment),
             tensor: Sym3::from_upper(&Mat3::from_fn(|i, j| g.num(self.tensor[i][j]))),
         }
     }
 
     /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first
     /// moment `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
-    pub fn mass_in_frame(&self, place: &NumericFrame) -> Mass {
+    pub fn mass_properties_in_frame(&self, place: &NumericFrame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);
         let tensor: Matrix = std::array::from_fn(|i| {
@@ -187,23 +193,23 @@ impl Mass {
             })
         });
         let tensor = matrix_product(&transpose(r), &matrix_product(&tensor, r));
-        let moment = multiply_transposed(r, scaled_sum(-self.mass, p, h));
-        Mass { mass: self.mass, moment, tensor }.clean_small_moments()
+        let moment = multiply_transposed(r, add_scaled_vector(-self.mass, p, h));
+        Mass { mass: self.mass, moment, tensor }.round_moment_noise_to_zero()
     }
 
     /// Returns the mass properties together with a point mass at `p`.
-    pub fn plus_point(&self, mass: f64, p: Vector) -> Mass {
+    pub fn plus_point_mass(&self, mass: f64, p: Vector) -> Mass {
         let square = dot(p, p);
         let entry_of_point_inertia =
             |i: usize, j: usize| if i == j { square - p[i] * p[j] } else { -p[i] * p[j] };
         let tensor = std::array::from_fn(|i| {
             std::array::from_fn(|j| self.tensor[i][j] + mass * entry_of_point_inertia(i, j))
         });
-        Mass { mass: self.mass + mass, moment: scaled_sum(mass, p, self.moment), tensor }
+        Mass { mass: self.mass + mass, moment: add_scaled_vector(mass, p, self.moment), tensor }
     }
 
     /// Replaces first moments and products of inertia at rounding level by zero.
-    fn clean_small_moments(&self) -> Mass {
+    fn round_moment_noise_to_zero(&self) -> Mass {
         let size = self.tensor.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let cleaned_tensor_entry = |i: usize, j: usize| match i == j {
             true => self.tensor[i][j],
@@ -211,7 +217,7 @@ impl Mass {
         };
         Mass {
             mass: self.mass,
-            moment: clean_vector(self.moment),
+            moment: zero_rounding_errors_of_vector(self.moment),
             tensor: std::array::from_fn(|i| std::array::from_fn(|j| cleaned_tensor_entry(i, j))),
         }
     }

@@ -9,13 +9,13 @@
 use super::Variant;
 use super::motions::coordinate_axis;
 use crate::expr::{Expr, Rotation};
-use crate::kinematics::position_in;
+use crate::kinematics::coordinate_as_expression;
 use crate::mechanism::{Link, Model, Motion};
 
 /// Returns variants in which links on parallel joints are resolved in common axes; the list is empty if there
 /// are no such joints.
-pub fn in_common_axes<'g>(variants: &[Variant<'g>]) -> Vec<Variant<'g>> {
-    variants.iter().filter_map(with_common_axes).collect()
+pub fn variants_in_common_axes<'g>(variants: &[Variant<'g>]) -> Vec<Variant<'g>> {
+    variants.iter().filter_map(variant_with_common_axes).collect()
 }
 
 /// Maximum sine of the angle between axes that are treated as parallel. The equations in common axes are
@@ -25,7 +25,7 @@ const PARALLEL: f64 = 2.5e-13;
 
 /// Joint about or along a coordinate axis, in a chain of parallel joints.
 #[derive(Clone, Copy)]
-struct ChainMember {
+struct ParallelChainJoint {
     /// Index of the coordinate axis that is common to the chain.
     axis: usize,
     /// Index of the first link of the chain with parallel joint axes.
@@ -35,7 +35,7 @@ struct ChainMember {
     along: Option<f64>,
 }
 
-fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
+fn variant_with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
     let members = parallel_chain_members(&variant.model);
     if members.iter().all(Option::is_none) {
         return None;
@@ -50,7 +50,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         if let Some(above) = &above {
             joint.translation = above.to_parent(joint.translation);
         }
-        let Some(ChainMember { axis, along, .. }) = member else {
+        let Some(ParallelChainJoint { axis, along, .. }) = member else {
             joint.rotation = compose_rotations(above, &joint.rotation);
             angles.push(None);
             turned.push(None);
@@ -62,7 +62,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         joint.rotation = compose_rotations(above, &link.placement.rotation);
         let own = angle_about_axis(link, axis);
         let angle = own.map_or(carried, |own| Some(carried.map_or(own, |carried| carried + own)));
-        let turn = angle.map(|angle| Rotation::about_axis(axis, angle));
+        let turn = angle.map(|angle| Rotation::rotation_about_coordinate_axis(axis, angle));
         if let Some(turn) = &turn {
             link.inertia.moment = turn.to_parent(link.inertia.moment);
             link.inertia.tensor = turn.sym_to_parent(link.inertia.tensor);
@@ -75,8 +75,8 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
 
 /// Returns for each link its membership in a chain of parallel joints, at least two of which are revolute;
 /// `None` for other links.
-fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<ChainMember>> {
-    let mut members: Vec<Option<ChainMember>> = Vec::with_capacity(model.links.len());
+fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<ParallelChainJoint>> {
+    let mut members: Vec<Option<ParallelChainJoint>> = Vec::with_capacity(model.links.len());
     let mut turns = vec![0; model.links.len()];
     for (k, link) in model.links.iter().enumerate() {
         let member = axis_of_motion(link).map(|axis| {
@@ -90,7 +90,11 @@ fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<ChainMember>> {
                 let is_parallel = across.iter().all(|i| direction[*i].abs() <= PARALLEL);
                 (is_parallel && cosine.abs() == 1.0).then_some((cosine, above.first))
             });
-            ChainMember { axis, first: along.map_or(k, |(_, first)| first), along: along.map(|(c, _)| c) }
+            ParallelChainJoint {
+                axis,
+                first: along.map_or(k, |(_, first)| first),
+                along: along.map(|(c, _)| c),
+            }
         });
         if let (Some(member), Motion::Turn { .. }) = (member, &link.motion) {
             turns[member.first] += 1;
@@ -109,7 +113,7 @@ fn axis_of_motion(link: &Link<'_>) -> Option<usize> {
 /// Returns the angle by which a link rotates about a coordinate axis.
 fn angle_about_axis<'g>(link: &Link<'g>, axis: usize) -> Option<Expr<'g>> {
     let Motion::Turn { axis: direction, coordinate } = &link.motion else { return None };
-    let angle = position_in(direction[axis].graph(), coordinate);
+    let angle = coordinate_as_expression(direction[axis].graph(), coordinate);
     let backwards = direction[axis].constant_value().is_some_and(|c| c < 0.0);
     Some(if backwards { -angle } else { angle })
 }

@@ -7,16 +7,16 @@
 //! `z`, and equal moments of inertia about `x` and `y`. For a prismatic joint they are all moments of
 //! inertia, for a screw equal moments about `x` and `y`, for a ball joint a mass at its centre.
 
-use super::motions::{Gauge, coordinate_axis, movable_inertia};
+use super::motions::{VanishingMomentConvention, coordinate_axis, movable_inertia};
 use super::number::{Mass, NumericFrame};
 
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
 /// Options of the pass that regroups mass properties towards the base.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Regroup {
+pub struct RegroupOptions {
     /// Moment of inertia that the regrouping makes zero.
-    pub gauge: Gauge,
+    pub gauge: VanishingMomentConvention,
     /// Also moves mass to a child's origin, where that removes a component of the link's first moment.
     pub to_children: bool,
     /// Also moves symbolic mass properties to the parents, although that costs operations.
@@ -24,7 +24,10 @@ pub struct Regroup {
 }
 
 /// Moves all mass properties that can be moved from links to their parents.
-pub fn regroup_inertias(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: Regroup) {
+pub fn move_inertias_to_parents(
+    model: &mut Model<'_>,
+    RegroupOptions { gauge, to_children, symbolic }: RegroupOptions,
+) {
     for k in (0..model.links.len()).rev() {
         if to_children {
             move_mass_to_child(model, k);
@@ -32,19 +35,19 @@ pub fn regroup_inertias(model: &mut Model<'_>, Regroup { gauge, to_children, sym
         let link = &model.links[k];
         let target = link.parent.map_or(&model.still, |p| &model.links[p.0].inertia);
         if !(symbolic
-            || is_numeric_inertia(&link.inertia) && is_numeric_inertia(target) && has_numeric_place(link))
+            || is_numeric_inertia(&link.inertia) && is_numeric_inertia(target) && has_numeric_placement(link))
         {
             continue;
         }
         let Some(part) = movable_inertia(link, gauge) else { continue };
         let placement = link.placement.clone();
         let parent = link.parent;
-        model.links[k].inertia = remaining_inertia(&model.links[k], &part);
+        model.links[k].inertia = subtract_inertia_part(&model.links[k], &part);
         let target = match parent {
             Some(p) => &mut model.links[p.0].inertia,
             None => &mut model.still,
         };
-        *target = target.add_placed_inertia(&part, &placement.rotation, placement.translation);
+        *target = target.sum_with_placed_inertia(&part, &placement.rotation, placement.translation);
     }
 }
 
@@ -58,7 +61,7 @@ fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
     else {
         return;
     };
-    if !force_has_effect(model, k) {
+    if !link_force_has_own_effect(model, k) {
         return;
     }
     let g = model.graph;
@@ -88,7 +91,7 @@ fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
         if mass.abs() > total {
             continue;
         }
-        inertia = inertia.plus_point(-mass, p);
+        inertia = inertia.plus_point_mass(-mass, p);
         inertia.moment[i] = 0.0;
         other.mass = mass;
         model.links[c].inertia = other.inertia_expressions(g);
@@ -98,7 +101,7 @@ fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
 
 /// Returns true if the force on a link has an effect in addition to its moment: a revolute joint with a lever
 /// arm, or a prismatic joint, lies between the link and the root.
-fn force_has_effect(model: &Model<'_>, mut k: usize) -> bool {
+fn link_force_has_own_effect(model: &Model<'_>, mut k: usize) -> bool {
     loop {
         let link = &model.links[k];
         match (&link.motion, link.parent) {
@@ -117,15 +120,15 @@ fn force_has_effect(model: &Model<'_>, mut k: usize) -> bool {
 fn is_numeric_inertia(inertia: &Inertia<'_>) -> bool {
     inertia.mass.constant_value().is_some()
         && inertia.moment.constant_components().is_some()
-        && inertia.tensor.full_matrix().constant_entries().is_some()
+        && inertia.tensor.full_matrix().entries_if_all_constant().is_some()
 }
 
-fn has_numeric_place(link: &Link<'_>) -> bool {
+fn has_numeric_placement(link: &Link<'_>) -> bool {
     link.placement.translation.constant_components().is_some()
-        && link.placement.rotation.rotation_matrix().constant_entries().is_some()
+        && link.placement.rotation.rotation_matrix().entries_if_all_constant().is_some()
 }
 
-fn remaining_inertia<'g>(link: &Link<'g>, part: &Inertia<'g>) -> Inertia<'g> {
+fn subtract_inertia_part<'g>(link: &Link<'g>, part: &Inertia<'g>) -> Inertia<'g> {
     let Inertia { mass, moment, tensor } = link.inertia;
     Inertia { mass: mass - part.mass, moment: moment - part.moment, tensor: tensor - part.tensor }
 }

@@ -3,7 +3,7 @@
 //! parameter cost operations, but fewer than the shift saves.
 
 use super::cost::{LENGTH, PRODUCT};
-use super::frames::move_contents;
+use super::frames::move_contents_to_new_frames;
 use super::motions::coordinate_axis;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{Inertia, Link, Model, Motion, Pose};
@@ -18,13 +18,14 @@ pub fn slide_frames(model: &mut Model<'_>) {
         let back = step.inverse();
         let link = &mut model.links[k];
         link.placement = link.placement.compose_with(&step);
-        link.inertia = Inertia::zero(g).add_placed_inertia(&link.inertia, &back.rotation, back.translation);
+        link.inertia =
+            Inertia::zero(g).sum_with_placed_inertia(&link.inertia, &back.rotation, back.translation);
         for child in model.links.iter_mut().filter(|c| c.parent.is_some_and(|p| p.0 == k)) {
             child.placement = back.compose_with(&child.placement);
         }
         all[k] = back;
     }
-    move_contents(model, &all);
+    move_contents_to_new_frames(model, &all);
 }
 
 /// Returns the shift of link `k` that saves most operations, if a shift saves any.

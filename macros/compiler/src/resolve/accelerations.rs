@@ -1,9 +1,9 @@
 //! Quantities that depend on accelerations: time derivatives of velocity-dependent expressions, and forces
 //! that are linear in the accelerations.
 
-use super::quantities::{in_links, vector_value};
+use super::quantities::{vector_terms_by_link, vector_value};
 use super::resolved::ResolvedMatrix;
-use super::scope::{Allowed, Scope, Value};
+use super::scope::{AllowedQuantities, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{symbols_in, time_derivative, velocity_gradients};
@@ -12,7 +12,7 @@ use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the time derivative of a scalar expression along the motion.
-    pub fn rate_of_value(
+    pub fn resolve_time_derivative(
         &self,
         function: &Place,
         argument: &syntax::Expr,
@@ -35,7 +35,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `rate(vector / frame)`: the time derivative of a vector or a matrix in a frame, that is, of
     /// its components in that frame.
-    pub fn rate_in(
+    pub fn resolve_rate_in_frame(
         &self,
         function: &Place,
         argument: &syntax::Expr,
@@ -46,7 +46,7 @@ impl<'g> Scope<'_, 'g> {
             Value::Vector(terms) => terms,
             Value::Matrix(m) => {
                 let link = self.resolve_frame_link(frame, cx)?;
-                let entries = self.kinematics.matrix_in(m, link).entries;
+                let entries = self.kinematics.matrix_in_link_axes(m, link).entries;
                 let all: Vec<Expr<'g>> = entries.0.iter().flatten().copied().collect();
                 let rates = self.time_derivatives(function, &argument.place, &all, cx)?;
                 return Some(Value::Matrix(ResolvedMatrix {
@@ -61,7 +61,7 @@ impl<'g> Scope<'_, 'g> {
             }
         };
         let link = self.resolve_frame_link(frame, cx)?;
-        let components = self.kinematics.resolve(&in_links(terms), link, Vec3::zero(self.graph));
+        let components = self.kinematics.resolve(&vector_terms_by_link(terms), link, Vec3::zero(self.graph));
         let rates = self.time_derivatives(function, &argument.place, &components.0, cx)?;
         Some(vector_value(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
     }
@@ -109,13 +109,16 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let gradients = velocity_gradients(values);
-        let needed =
-            if gradients.iter().all(Vec::is_empty) { Allowed::Motion } else { Allowed::Acceleration };
+        let needed = if gradients.iter().all(Vec::is_empty) {
+            AllowedQuantities::Motion
+        } else {
+            AllowedQuantities::Acceleration
+        };
         let what = match needed {
-            Allowed::Motion => "a rate",
+            AllowedQuantities::Motion => "a rate",
             _ => "the rate of an expression of velocities",
         };
-        if !self.check_allowed(needed, what, function, cx) {
+        if !self.check_allowed_quantity(needed, what, function, cx) {
             return None;
         }
         let kinematics = &self.kinematics;

@@ -16,8 +16,8 @@ impl<'g> Scope<'_, 'g> {
             ));
             return None;
         }
-        let v = self.own_vector(e, cx)?;
-        let v = v.constant_components().map_or(v, |n| Vec3::from_numbers(self.graph, n));
+        let v = self.resolve_own_axes_vector(e, cx)?;
+        let v = v.constant_components().map_or(v, |n| Vec3::vector_from_constants(self.graph, n));
         let squared = v.dot(v);
         if v.is_zero() || always_equals(squared, 0.0) {
             cx.report_error(e.place.clone(), "this axis has no direction: it is zero")
@@ -28,7 +28,7 @@ impl<'g> Scope<'_, 'g> {
             return Some(v);
         }
         if normalise && let Some(n) = v.constant_components() {
-            return Some(Vec3::from_numbers(self.graph, normalise_vector(n)));
+            return Some(Vec3::vector_from_constants(self.graph, normalise_vector(n)));
         }
         let diagnostic = cx.report_error(e.place.clone(), "this axis is not of unit length");
         match v.constant_components() {
@@ -75,5 +75,5 @@ pub fn nearest_axis_and_rotation<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<
         let square: f64 = (0..3).map(|l| skew[i][l] * skew[l][j]).sum();
         graph.num(f64::from(u8::from(i == j)) + skew[i][j] + square / (1.0 + c))
     });
-    (Vec3::from_numbers(graph, nearest), Rotation::from_matrix(matrix))
+    (Vec3::vector_from_constants(graph, nearest), Rotation::from_matrix(matrix))
 }

@@ -2,26 +2,28 @@
 
 use super::accelerations::check_acceleration_forces;
 use super::builder::{Builder, MotionKnown};
-use super::chain::check_joint;
-use super::closed_form::find_solved_loops;
-use super::drawing::draw_mechanism;
+use super::chain::report_joint_argument_errors;
+use super::closed_form::find_closed_form_loops;
+use super::drawing::mechanism_drawing_pieces;
 use super::equilibria::resolve_equilibria;
-use super::forces::check_actions;
+use super::forces::resolve_coordinate_actions;
 use super::limit::resolve_limits;
 use super::masses::check_finite;
-use super::numbering::Numbering;
-use super::reaction::Release;
+use super::numbering::CoordinateNumbering;
+use super::reaction::ReleasedJoints;
 use super::requirements::gather_requirements;
-use super::scope::{Allowed, Axes, Context, Kinematics, Records, Scope, Value};
-use super::terms::find_dependencies;
-use super::tree::{find_tree, loop_closing_joints};
+use super::scope::{AllowedQuantities, Axes, Context, PlacedElements, ResolutionRecords, Scope, Value};
+use super::terms::set_signature_dependencies;
+use super::tree::{find_spanning_tree, loop_closing_joints};
 use super::{drive, reaction, units};
-use crate::diag::{Diagnostics, all_of};
+use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Graph, Vec3};
-use crate::kinematics::Partials;
+use crate::kinematics::CachedDerivatives;
 use crate::language::{Builtin, Callable};
-use crate::mechanism::{Constraint, Freedom, Gradients, Inertia, Model, Released, Rule, Units};
-use crate::syntax::{Description, GROUND, Inertias, Name};
+use crate::mechanism::{
+    Constraint, DerivativeCache, Freedom, Inertia, Model, ReleasedMechanism, Rule, Units,
+};
+use crate::syntax::{Description, GROUND, InertiaOption, Name};
 use std::rc::Rc;
 
 /// Maximum number of velocities of a mechanism. The generated code would be unreasonably large beyond it.
@@ -68,7 +70,7 @@ pub fn build_model<'g>(
             let found = released_model.outputs.iter().find(|other| other.name == output.name);
             found.into_iter().for_each(|found| output.clone_from(found));
         }
-        model.released = Some(Rc::new(Released { model: released_model, joints }));
+        model.released = Some(Rc::new(ReleasedMechanism { model: released_model, joints }));
     }
     Some(model)
 }
@@ -90,17 +92,20 @@ fn build<'g>(
         .add_help(DIVIDE_HELP);
         return None;
     }
-    let order = find_tree(description, &builder.jointed, &builder.scope, cx);
+    let order = find_spanning_tree(description, &builder.jointed, &builder.scope, cx);
     match &order {
-        Some(order) => builder.place_all(order, cx),
-        None => description.joints.iter().for_each(|joint| check_joint(&builder.scope, joint, cx)),
+        Some(order) => builder.place_all_elements(order, cx),
+        None => description
+            .joints
+            .iter()
+            .for_each(|joint| report_joint_argument_errors(&builder.scope, joint, cx)),
     }
     builder.add_masses(cx);
-    match order.and_then(|order| Some((order, builder.compute_motion()?))) {
-        Some((order, moving)) => builder.add_elements(&order.closing, moving, cx),
-        None => check_actions(&builder.scope, cx),
+    match order.and_then(|order| Some((order, builder.compute_link_motions()?))) {
+        Some((order, moving)) => builder.add_elements_to_links(&order.closing, moving, cx),
+        None => resolve_coordinate_actions(&builder.scope, cx),
     }
-    builder.check_unused(cx);
+    builder.report_unused_parameters(cx);
     builder.model.requirements = gather_requirements(&builder.scope, &builder.model);
     if cx.is_empty() && releasing.is_none() {
         let coordinates = &builder.scope.kinematics.coordinates;
@@ -124,7 +129,7 @@ fn empty_model<'g>(
         name: description.name.text.clone(),
         place: description.name.place.clone(),
         parameters: description.parameters.iter().map(|p| p.text.clone()).collect(),
-        kinematic: description.inertias == Inertias::None,
+        kinematic: description.inertias == InertiaOption::None,
         gravity,
         friction_speed,
         links: Vec::new(),
@@ -132,7 +137,7 @@ fn empty_model<'g>(
         time: false,
         velocity_inputs: false,
         charts: Vec::new(),
-        gradients: Gradients::default(),
+        gradients: DerivativeCache::default(),
         configuration: Vec::new(),
         velocities: Vec::new(),
         speeds: None,
@@ -187,16 +192,16 @@ impl<'a, 'g> Builder<'a, 'g> {
                 .collect(),
             driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count()
                 + drive::input_drives(description).count(),
-            context: Context::new(Allowed::Constant, None).into(),
-            kinematics: Kinematics::default(),
-            records: Records {
+            context: Context::new(AllowedQuantities::Constant, None).into(),
+            kinematics: PlacedElements::default(),
+            records: ResolutionRecords {
                 used: vec![false; description.parameters.len()],
                 used_tables: vec![false; description.tables.len()],
-                ..Records::default()
+                ..ResolutionRecords::default()
             }
             .into(),
         };
-        graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
+        graph.set_table_names(description.tables.iter().map(|table| table.name.text.clone()).collect());
         for name in all.filter(|n| n.text == GROUND) {
             let message = "the name `ground` is reserved for the fixed reference";
             cx.report_error(name.place.clone(), message).add_help(
@@ -204,7 +209,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             );
         }
         check_names(description, cx);
-        let gravity = description.gravity.as_ref().and_then(|e| read_gravity(e, &scope, cx));
+        let gravity = description.gravity.as_ref().and_then(|e| resolve_gravity_vector(e, &scope, cx));
         let friction_speed = match &description.friction_speed {
             Some(e) => scope.resolve_scalar(e, cx).unwrap_or(graph.one()),
             None => graph.num(FRICTION_SPEED),
@@ -215,34 +220,39 @@ impl<'a, 'g> Builder<'a, 'g> {
             cx.report_error(e.place.clone(), format!("this speed must be positive, but it is {s}"))
                 .add_help("Coulomb's law is smoothed below this speed; 0.01 is usual");
         }
-        scope.record_requirement(Rule::Positive, || "the speed of friction".to_string(), &[friction_speed]);
+        scope.record_parameter_condition(
+            Rule::Positive,
+            || "the speed of friction".to_string(),
+            &[friction_speed],
+        );
         let model = empty_model(graph, description, gravity.unwrap_or(Vec3::zero(graph)), friction_speed);
         let mut builder = Builder {
             scope,
             model,
             jointed,
             solved_loops: Vec::new(),
-            release: releasing.map(|(joints, retained)| Release::of_joints(joints, retained)),
+            release: releasing.map(|(joints, retained)| ReleasedJoints::of_joints(joints, retained)),
             moving_placements: Vec::new(),
             frame_links: Vec::new(),
             surfaces: Vec::new(),
-            partials: Partials::default(),
+            partials: CachedDerivatives::default(),
             group: 0,
             mobility: Diagnostics::new(),
         };
-        builder.number_coordinates(cx);
+        builder.assign_coordinate_indices(cx);
         builder
     }
 
     /// Numbers the entries of `q` and `v`, those of released joints last.
-    fn number_coordinates(&mut self, cx: &mut Diagnostics) {
+    fn assign_coordinate_indices(&mut self, cx: &mut Diagnostics) {
         let d = self.scope.description;
         let closing = loop_closing_joints(d);
-        self.solved_loops = find_solved_loops(d, &closing, cx);
-        let mut numbering = Numbering::of_description(d, (&closing, &self.solved_loops), cx);
+        self.solved_loops = find_closed_form_loops(d, &closing, cx);
+        let mut numbering =
+            CoordinateNumbering::number_description_coordinates(d, (&closing, &self.solved_loops), cx);
         if let Some(release) = &self.release {
             self.scope.kinematics.first_released = Some(numbering.next_coordinate());
-            numbering.add_released(d, release.joints);
+            numbering.add_released_coordinates(d, release.joints);
         }
         self.model.configuration = numbering.configuration;
         self.model.velocities = numbering.velocities;
@@ -252,34 +262,34 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Adds all elements to the placed links.
-    fn add_elements(&mut self, closing: &[usize], moving: MotionKnown, cx: &mut Diagnostics) {
+    fn add_elements_to_links(&mut self, closing: &[usize], moving: MotionKnown, cx: &mut Diagnostics) {
         self.add_drives(moving, cx);
         self.add_actions(moving, cx);
         self.model.limits = resolve_limits(&self.scope, &self.model, cx);
-        let solved = self.add_solved(cx);
+        let solved = self.record_loops_with_closed_form(cx);
         let constrained = self.add_constraints(closing, (moving, solved), cx);
         self.record_slipping_power();
         self.add_contacts(moving, cx);
         if self.release.is_none() {
             check_acceleration_forces(&self.model, cx);
         }
-        self.add_expressions(constrained, cx);
+        self.add_energies_and_outputs(constrained, cx);
         if self.release.is_none() {
             self.model.equilibria = resolve_equilibria(&self.scope, &self.model, cx);
         }
-        find_dependencies(&mut self.model);
+        set_signature_dependencies(&mut self.model);
         self.add_speeds(constrained, cx);
         self.add_frames();
         check_finite(&self.scope, &self.model, cx);
         if cx.is_empty() && self.scope.description.drawing {
             (self.model.drawing, self.model.heights) =
-                draw_mechanism(&self.scope, &self.model, &self.surfaces);
+                mechanism_drawing_pieces(&self.scope, &self.model, &self.surfaces);
         }
     }
 
     /// Reports unused parameters, which are most likely typing errors. A leading underscore marks a parameter
     /// that is unused intentionally.
-    fn check_unused(&self, cx: &mut Diagnostics) {
+    fn report_unused_parameters(&self, cx: &mut Diagnostics) {
         if !cx.is_empty() {
             return;
         }
@@ -297,7 +307,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             && rest.len() >= MAX_SEPARATE_REPORTS
         {
             let list: Vec<String> = unused.iter().map(|p| format!("`{}`", p.text)).collect();
-            cx.report_error(first.place.clone(), format!("unused parameters {}", all_of(&list)))
+            cx.report_error(first.place.clone(), format!("unused parameters {}", join_names_with_and(&list)))
                 .add_help("remove them, or begin their names with `_` to keep them for your own use");
             return;
         }
@@ -309,7 +319,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 }
 
 /// Reads gravity, which is a vector in ground axes.
-fn read_gravity<'g>(
+fn resolve_gravity_vector<'g>(
     e: &crate::syntax::Expr,
     scope: &Scope<'_, 'g>,
     cx: &mut Diagnostics,
@@ -341,7 +351,7 @@ fn check_names(description: &Description, cx: &mut Diagnostics) {
     let written = written.chain(description.coordinates.iter().map(|c| &c.name));
     let written = written.chain(description.definitions.iter().map(|d| &d.name));
     let joints = description.joints.iter().map(|joint| &joint.name);
-    for table in description.tables.iter().filter(|table| Callable::is_function(&table.name.text)) {
+    for table in description.tables.iter().filter(|table| Callable::is_function_name(&table.name.text)) {
         cx.report_error(
             table.name.place.clone(),
             format!("the name `{}` is taken by a function", table.name.text),
@@ -349,7 +359,7 @@ fn check_names(description: &Description, cx: &mut Diagnostics) {
         .add_help(format!("rename the table, for example `{}_table`", table.name.text));
     }
     for name in written.chain(joints) {
-        if Builtin::of_name(&name.text).is_some() && name.place.file.is_none() {
+        if Builtin::find_by_name(&name.text).is_some() && name.place.file.is_none() {
             cx.report_error(name.place.clone(), format!("the name `{}` is taken", name.text))
                 .add_help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
         }

@@ -3,11 +3,11 @@
 use super::closed_form::ClosedFormLoop;
 use super::contact::Surface;
 use super::holders::MovingPlacement;
-use super::reaction::Release;
-use super::scope::{Placed, PlacedKind, Scope};
+use super::reaction::ReleasedJoints;
+use super::scope::{Placed, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::Rotation;
-use crate::kinematics::{Partials, accelerations, joint_of_link, symbols_in, twists};
+use crate::kinematics::{CachedDerivatives, accelerations, joint_of_link, symbols_in, twists};
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
 use crate::syntax::Name;
 
@@ -23,7 +23,7 @@ pub struct Builder<'a, 'g> {
     /// Loops that are solved in closed form.
     pub solved_loops: Vec<ClosedFormLoop>,
     /// Joints that are released.
-    pub release: Option<Release<'a, 'g>>,
+    pub release: Option<ReleasedJoints<'a, 'g>>,
     /// Bodies and particles placed by a moving `at` or `frame`.
     pub moving_placements: Vec<MovingPlacement>,
     /// Links of frames that move relative to the link in which they are defined.
@@ -31,7 +31,7 @@ pub struct Builder<'a, 'g> {
     /// Surfaces of contacts and of pairs that roll or slip, for the drawing, with the names of the contacts.
     pub surfaces: Vec<(String, Surface<'g>)>,
     /// Partial derivatives of the poses of the links so far.
-    pub partials: Partials<'g>,
+    pub partials: CachedDerivatives<'g>,
     /// Index of the group of constraints that is being added.
     pub group: usize,
     /// Errors that depend on the motion, which are reported together with errors of units.
@@ -39,19 +39,19 @@ pub struct Builder<'a, 'g> {
 }
 
 /// Proof that the motion of all links is known, so that expressions with velocities can be read. Created only
-/// by [`Builder::compute_motion`].
+/// by [`Builder::compute_link_motions`].
 #[derive(Clone, Copy)]
 pub struct MotionKnown(());
 
 impl<'g> Builder<'_, 'g> {
     /// Returns the loop whose closed-form solution determines a joint's coordinate.
-    pub fn solving_loop(&self, j: usize) -> Option<&ClosedFormLoop> {
+    pub fn loop_that_solves_joint(&self, j: usize) -> Option<&ClosedFormLoop> {
         self.solved_loops.iter().find(|e| e.sides.contains(&j))
     }
 
     /// Adds a massless link for a placement that moves, and returns the link. A constant placement is
     /// returned unchanged.
-    pub fn link_if_moving(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
+    pub fn add_link_if_moving(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
         let moves = symbols_in(&pose.all_expressions())
             .into_iter()
             .any(|s| matches!(Quantity::from_symbol(s), Quantity::Configuration(_) | Quantity::Time));
@@ -76,19 +76,25 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Registers the placement of an element under its name.
-    pub fn register_placement(&mut self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
+    pub fn register_placement(
+        &mut self,
+        name: &str,
+        link: Option<LinkId>,
+        pose: Pose<'g>,
+        kind: PlacedElementKind,
+    ) {
         self.scope.kinematics.places.insert(name.to_string(), Placed { link, pose, kind });
     }
 
     /// Records a joint whose reactions can be outputs. They are resolved in the axes of a frame on a link.
-    pub fn record_transmission(&mut self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
+    pub fn record_joint_for_reactions(&mut self, j: usize, link: Option<LinkId>, rotation: &Rotation<'g>) {
         let name = self.scope.description.joints[j].name.text.clone();
         self.scope.kinematics.transmissions.insert(name, (j, link, rotation.clone()));
     }
 
     /// Computes twists and accelerations of the links, for expressions with velocities. Returns `None` if an
     /// element has not been placed.
-    pub fn compute_motion(&mut self) -> Option<MotionKnown> {
+    pub fn compute_link_motions(&mut self) -> Option<MotionKnown> {
         let places = &self.scope.kinematics.places;
         if !self.jointed.iter().all(|name| places.contains_key(&name.text)) {
             return None;

@@ -1,7 +1,7 @@
 //! Lengths of cables that wrap around spheres and cylinders.
 
 use super::call::Call;
-use super::scope::{Allowed, Context, Placed, Scope, Value};
+use super::scope::{AllowedQuantities, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::language::{Method, SurfaceId};
@@ -21,20 +21,20 @@ impl<'g> Scope<'_, 'g> {
     /// points have the distances `d_a` and `d_b` from the axis and the angle `θ` between them. The angle of
     /// contact is `φ = θ − acos(R / d_a) − acos(R / d_b)`. If it is positive, the cable consists of tangents
     /// and a helix, which is straight on the unrolled cylinder; otherwise the cable is straight.
-    pub fn resolve_cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_cable_length(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [points, surface] = call.take_arguments(cx)?;
         let ends = call.take_operands::<2>(points, cx)?;
-        if !self.check_allowed(Allowed::Placement, "`cable(…)`", call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Placement, "`cable(…)`", call.place, cx) {
             return None;
         }
-        let (frame, radius, axis) = self.cable_surface(surface, cx)?;
-        let [a, b] = ends.map(|end| self.current_place(end, cx));
+        let (frame, radius, axis) = self.pose_radius_and_axis_of_surface(surface, cx)?;
+        let [a, b] = ends.map(|end| self.placement_of_moving_point(end, cx));
         let (a, b) = (a?, b?);
         let kinematics = &self.kinematics;
-        let from_center = |p: &Placed<'g>| {
+        let position_from_center = |p: &Placed<'g>| {
             kinematics.resolve(&kinematics.position_between(p, &frame), frame.link, Vec3::zero(self.graph))
         };
-        let (a, b) = (from_center(&a), from_center(&b));
+        let (a, b) = (position_from_center(&a), position_from_center(&b));
         let (across, rise) = match axis {
             None => ([a, b], self.graph.zero()),
             Some(n) => {
@@ -44,7 +44,7 @@ impl<'g> Scope<'_, 'g> {
             }
         };
         for (end, p) in ends.into_iter().zip(across) {
-            check_outside(end, p, radius, axis.is_some(), cx)?;
+            report_cable_end_inside(end, p, radius, axis.is_some(), cx)?;
         }
         let [a, b] = across;
         let (sine, cosine) = match axis {
@@ -71,7 +71,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the pose, the radius and the axis of a sphere or cylinder; a sphere has no axis.
-    fn cable_surface(
+    fn pose_radius_and_axis_of_surface(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
@@ -107,16 +107,20 @@ impl<'g> Scope<'_, 'g> {
             }
         };
         let frame = self.resolve_placement(base, cx);
-        let constant_context = || Context::new(Allowed::Constant, None);
-        let value = self.in_context(constant_context(), |s| s.resolve_scalar(radius, cx))?;
+        let constant_context = || Context::new(AllowedQuantities::Constant, None);
+        let value = self.call_in_context(constant_context(), |s| s.resolve_scalar(radius, cx))?;
         if let Some(n) = value.constant_value().filter(|n| *n <= 0.0) {
             cx.report_error(radius.place.clone(), format!("this length must be positive, but it is {n}"))
                 .add_help("the direction of the axis selects the side of the cable");
             return None;
         }
-        self.record_requirement(Rule::Positive, || format!("the radius of a {}", word.text), &[value]);
+        self.record_parameter_condition(
+            Rule::Positive,
+            || format!("the radius of a {}", word.text),
+            &[value],
+        );
         let axis = match axis {
-            Some(axis) => Some(self.in_context(constant_context(), |s| s.unit_vector(axis, false, cx))?),
+            Some(axis) => Some(self.call_in_context(constant_context(), |s| s.unit_vector(axis, false, cx))?),
             None => None,
         };
         Some((frame?, value, axis))
@@ -124,7 +128,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 /// Reports an end of a cable that lies inside the surface in all configurations.
-fn check_outside(
+fn report_cable_end_inside(
     end: &syntax::Expr,
     across: Vec3<'_>,
     radius: Expr<'_>,

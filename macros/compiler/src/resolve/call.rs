@@ -22,7 +22,7 @@ impl<'a> Call<'a> {
     }
 
     /// Reports that the arguments of the function call are wrong.
-    pub fn reject_arguments<T>(&self, cx: &mut Diagnostics) -> Option<T> {
+    pub fn report_wrong_arguments<T>(&self, cx: &mut Diagnostics) -> Option<T> {
         let row = self.id.row();
         cx.report_error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes))
             .add_help(row.usage);
@@ -31,7 +31,7 @@ impl<'a> Call<'a> {
 
     /// Returns the arguments, or reports a wrong number of them.
     pub fn take_arguments<const N: usize>(&self, cx: &mut Diagnostics) -> Option<&'a [syntax::Expr; N]> {
-        self.arguments.try_into().ok().or_else(|| self.reject_arguments(cx))
+        self.arguments.try_into().ok().or_else(|| self.report_wrong_arguments(cx))
     }
 
     /// Returns the operands between the slashes of an argument, or reports a wrong number of them.
@@ -40,7 +40,7 @@ impl<'a> Call<'a> {
         argument: &'a syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<[&'a syntax::Expr; N]> {
-        flatten_slashes(argument).try_into().ok().or_else(|| self.reject_arguments(cx))
+        flatten_slashes(argument).try_into().ok().or_else(|| self.report_wrong_arguments(cx))
     }
 
     /// Returns the operands between the slashes of the only argument, `y / x / A`; empty if there are several

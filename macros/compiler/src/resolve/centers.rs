@@ -3,7 +3,7 @@
 
 use super::call::Call;
 use super::quantities::vector_value;
-use super::scope::{Allowed, Placed, PlacedKind, Scope, Terms, Value};
+use super::scope::{AllowedQuantities, Placed, PlacedElementKind, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Vec3};
@@ -25,7 +25,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `instant_center(body / frame)`: the vector from the body's origin to the point at rest,
     /// `ω × v / ω²`, with the velocity `v` of the origin.
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let RelativeMotion { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
+        let RelativeMotion { link, v, w, .. } = self.relative_motion(call, AllowedQuantities::Motion, cx)?;
         let square = w.dot(w);
         if !always_equals(w.dot(v), 0.0) {
             cx.report_error(
@@ -44,14 +44,14 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the
     /// screw axis (Mozzi, Chasles), `ω × v / ω²`.
     pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let RelativeMotion { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
+        let RelativeMotion { link, v, w, .. } = self.relative_motion(call, AllowedQuantities::Motion, cx)?;
         let square = w.dot(w);
         Some(vector_value(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// Resolves `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
     pub fn screw_pitch(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let RelativeMotion { v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
+        let RelativeMotion { v, w, .. } = self.relative_motion(call, AllowedQuantities::Motion, cx)?;
         let square = w.dot(w);
         Some(Value::Scalar(w.dot(v) / square))
     }
@@ -59,7 +59,8 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to
     /// the point without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
     pub fn acceleration_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let RelativeMotion { link, w, rates, .. } = self.relative_motion(call, Allowed::Acceleration, cx)?;
+        let RelativeMotion { link, w, rates, .. } =
+            self.relative_motion(call, AllowedQuantities::Acceleration, cx)?;
         let [a, alpha] = rates?;
         let square = w.dot(w);
         if !(is_always_zero(w.cross(alpha)) && always_equals(w.dot(a), 0.0)) {
@@ -78,16 +79,18 @@ impl<'g> Scope<'_, 'g> {
     fn relative_motion(
         &self,
         call: &Call<'_>,
-        allowed: Allowed,
+        allowed: AllowedQuantities,
         cx: &mut Diagnostics,
     ) -> Option<RelativeMotion<'g>> {
         let Ok([body, frame]) = <[_; 2]>::try_from(call.slash_operands()) else {
-            return call.reject_arguments(cx);
+            return call.report_wrong_arguments(cx);
         };
-        if !self.check_allowed(allowed, &format!("`{}(…)`", call.function_name()), call.place, cx) {
+        if !self.check_allowed_quantity(allowed, &format!("`{}(…)`", call.function_name()), call.place, cx)
+        {
             return None;
         }
-        let motion = self.motion_of(body, frame, allowed == Allowed::Acceleration, cx)?;
+        let motion =
+            self.motion_relative_to_frame(body, frame, allowed == AllowedQuantities::Acceleration, cx)?;
         if motion.w.is_zero() {
             cx.report_error(
                 body.place.clone(),
@@ -99,7 +102,7 @@ impl<'g> Scope<'_, 'g> {
         Some(motion)
     }
 
-    fn motion_of(
+    fn motion_relative_to_frame(
         &self,
         body: &syntax::Expr,
         frame: &syntax::Expr,
@@ -112,21 +115,24 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = &self.kinematics;
         let (link, zero) = (place.link, Vec3::zero(self.graph));
         // Any point fixed in the frame.
-        let from = Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedKind::Body };
-        let resolve_at_link = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
+        let from =
+            Placed { link: frame_link, pose: Pose::identity(self.graph), kind: PlacedElementKind::Body };
+        let resolve_in_link_axes = |terms: &Terms<'g>| kinematics.resolve(terms, link, zero);
         let rates = accelerates.then(|| {
-            let a = kinematics.acceleration_in(&place, &from, frame_link, self.graph);
+            let a = kinematics.relative_acceleration_in_frame(&place, &from, frame_link, self.graph);
             [
-                resolve_at_link(&a),
-                resolve_at_link(
-                    &kinematics.angular_acceleration_in(link, frame_link, frame_link, self.graph),
+                resolve_in_link_axes(&a),
+                resolve_in_link_axes(
+                    &kinematics.angular_acceleration_in_frame(link, frame_link, frame_link, self.graph),
                 ),
             ]
         });
         Some(RelativeMotion {
             link,
-            v: resolve_at_link(&kinematics.velocity_in(&place, &from, frame_link, self.graph)),
-            w: resolve_at_link(&kinematics.angular_velocity_in(link, frame_link, self.graph)),
+            v: resolve_in_link_axes(
+                &kinematics.relative_velocity_in_frame(&place, &from, frame_link, self.graph),
+            ),
+            w: resolve_in_link_axes(&kinematics.angular_velocity_in_frame(link, frame_link, self.graph)),
             rates,
         })
     }
@@ -138,14 +144,19 @@ impl<'g> Scope<'_, 'g> {
     pub fn center_of_percussion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [operands, axis] = call.take_arguments(cx)?;
         let [body, about] = call.take_operands(operands, cx)?;
-        if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", call.place, cx) {
+        if !self.check_allowed_quantity(
+            AllowedQuantities::Placement,
+            "`center_of_percussion(…)`",
+            call.place,
+            cx,
+        ) {
             return None;
         }
-        let body_with_mass = self.body_with_mass(body, cx)?;
-        let about = self.current_place(about, cx)?;
+        let resolve_body_with_mass = self.resolve_body_with_mass(body, cx)?;
+        let about = self.placement_of_moving_point(about, cx)?;
         let n = self.resolve_terms(axis, cx)?;
         let kinematics = &self.kinematics;
-        let (placed, (mass, com, central)) = &body_with_mass;
+        let (placed, (mass, com, central)) = &resolve_body_with_mass;
         if mass.is_zero() {
             cx.report_error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
                 .add_help("name a body with a `mass`");
@@ -178,7 +189,7 @@ impl<'g> Scope<'_, 'g> {
             .add_help("every impulse then loads the bearings: there is no centre of percussion");
             return None;
         }
-        let moment = self.inertia_about(&body_with_mass, &about, [&n, &n]);
+        let moment = self.inertia_about(&resolve_body_with_mass, &about, [&n, &n]);
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
         Some(vector_value(vec![(link, arm * share)]))
     }

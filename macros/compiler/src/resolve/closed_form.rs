@@ -3,17 +3,17 @@
 //! the other coordinates, by the intersection of two circles, or of a circle and a line (Bottema and Roth,
 //! *Theoretical Kinematics*, 1979, ch. XI). The argument `branch` selects one of the two assembly modes.
 
-use super::elementary::Elementary;
-use super::scope::{Placed, PlacedKind, Scope};
+use super::elementary::ElementaryMotion;
+use super::scope::{Placed, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Rotation, Vec3};
-use crate::kinematics::{change_axes, perpendicular_directions};
-use crate::mechanism::{LinkId, Pose, SolvedSide};
+use crate::kinematics::{express_in_link_axes, perpendicular_directions};
+use crate::mechanism::{ClosedFormJoint, LinkId, Pose};
 use crate::syntax::{Description, Endpoint, GROUND, Joint, JointKind};
 
 /// Side of a loop with its joint coordinate at zero, in the axes of the joint of the first side.
-struct Side<'g> {
+struct LoopSide<'g> {
     /// Origin of the joint, relative to that of the first joint.
     base: Vec3<'g>,
     /// Closing point of the loop, relative to the joint's origin.
@@ -35,7 +35,11 @@ const CLOSED_FORM_HELP: &str = "a loop is solved in closed form if a Pin closes 
                                 `branch` it is enforced by multipliers";
 
 /// Returns the loops whose closing joint has a `branch`, and reports joints for which that is not allowed.
-pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics) -> Vec<ClosedFormLoop> {
+pub fn find_closed_form_loops(
+    d: &Description,
+    closing: &[bool],
+    cx: &mut Diagnostics,
+) -> Vec<ClosedFormLoop> {
     let mut found: Vec<ClosedFormLoop> = Vec::new();
     for (j, joint) in d.joints.iter().enumerate() {
         let Some(branch) = &joint.branch else { continue };
@@ -44,7 +48,7 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
                 .add_help("a joint closes a loop if its child has an earlier joint");
             continue;
         }
-        let joint_holding_body = |end: &Endpoint| {
+        let tree_joint_of_child_body = |end: &Endpoint| {
             let is_holding_joint = |(k, other): &(usize, &Joint)| {
                 !closing[*k] && other.child.body.text == end.body.text && end.body.text != GROUND
             };
@@ -56,7 +60,8 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
                 && d.joints[*k].mimic.is_none()
                 && !is_in_other_loop(*k)
         };
-        let sides = [&joint.parent, &joint.child].map(|end| joint_holding_body(end).filter(can_be_solved));
+        let sides =
+            [&joint.parent, &joint.child].map(|end| tree_joint_of_child_body(end).filter(can_be_solved));
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
         if let [Some(a), Some(b)] = sides
             && joint.kind == JointKind::Pin
@@ -73,20 +78,20 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
 }
 
 /// Returns the joints for which loops are solved in closed form, with their axes.
-pub fn solved_sides<'g>(
+pub fn joints_solved_in_closed_form<'g>(
     scope: &Scope<'_, 'g>,
     loops: &[ClosedFormLoop],
     cx: &mut Diagnostics,
-) -> Vec<SolvedSide<'g>> {
+) -> Vec<ClosedFormJoint<'g>> {
     let solved_side_of_joint = |j: &usize| {
         let (_, axis) = joint_frame(scope, *j, cx)?;
-        Some(SolvedSide { joint: *j, turns: scope.description.joints[*j].kind == JointKind::Pin, axis })
+        Some(ClosedFormJoint { joint: *j, turns: scope.description.joints[*j].kind == JointKind::Pin, axis })
     };
     loops.iter().flat_map(|e| e.sides.iter()).map_while(solved_side_of_joint).collect()
 }
 
 /// Returns the child's joint frame in the parent's joint frame, for the solved joint coordinate.
-pub fn solved_pose<'g>(
+pub fn pose_across_solved_joint<'g>(
     scope: &Scope<'_, 'g>,
     solved: &ClosedFormLoop,
     j: usize,
@@ -105,11 +110,15 @@ pub fn solved_pose<'g>(
     let (first, second) = (sides[pin], sides[1 - pin]);
     let (frame, axis) = joint_frame(scope, first, cx)?;
     let ends = [&joint.parent, &joint.child];
-    let a = solved_side(scope, first, ends[pin], &frame, cx)?;
-    let b = solved_side(scope, second, ends[1 - pin], &frame, cx)?;
+    let a = side_of_closed_form_loop(scope, first, ends[pin], &frame, cx)?;
+    let b = side_of_closed_form_loop(scope, second, ends[1 - pin], &frame, cx)?;
     let (second_frame, second_axis) = joint_frame(scope, second, cx)?;
-    let normal =
-        in_frame(scope, &frame, second_frame.link, second_frame.pose.rotation.to_parent(second_axis));
+    let normal = vector_in_frame_axes(
+        scope,
+        &frame,
+        second_frame.link,
+        second_frame.pose.rotation.to_parent(second_axis),
+    );
     let is_always_zero = |e: Expr<'g>| always_equals(e, 0.0);
     let in_plane = match b.slide {
         None => normal.cross(axis).0.iter().all(|e| is_always_zero(*e)),
@@ -151,48 +160,54 @@ fn rotation_pose<'g>(scope: &Scope<'_, 'g>, axis: Vec3<'g>, angle: Expr<'g>) -> 
 /// Returns the frame of a joint on its parent, and its axis in that frame.
 fn joint_frame<'g>(scope: &Scope<'_, 'g>, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
     let joint = &scope.description.joints[j];
-    let (link, pose) = scope.joint_parent(&joint.parent.body, cx)?;
+    let (link, pose) = scope.placement_of_joint_parent(&joint.parent.body, cx)?;
     let pose = pose.compose_with(&scope.frame_of_endpoint(&joint.parent, cx)?);
     let axis = match scope.motions_of_joint(joint, cx)?.first()? {
-        Elementary::Turn(axis) | Elementary::Slide(axis) => *axis,
+        ElementaryMotion::Turn(axis) | ElementaryMotion::Slide(axis) => *axis,
         _ => return None,
     };
-    Some((Placed { link, pose, kind: PlacedKind::Body }, axis))
+    Some((Placed { link, pose, kind: PlacedElementKind::Body }, axis))
 }
 
-fn solved_side<'g>(
+fn side_of_closed_form_loop<'g>(
     scope: &Scope<'_, 'g>,
     j: usize,
     end: &Endpoint,
     frame: &Placed<'g>,
     cx: &mut Diagnostics,
-) -> Option<Side<'g>> {
+) -> Option<LoopSide<'g>> {
     let joint = &scope.description.joints[j];
     let (joint_frame, axis) = joint_frame(scope, j, cx)?;
     let on_child = scope.frame_of_endpoint(&joint.child, cx)?;
     let closing = scope.frame_of_endpoint(end, cx)?.translation;
     let point = on_child.inverse().transform_point(closing);
-    let in_first_frame = |v| in_frame(scope, frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
+    let in_first_frame =
+        |v| vector_in_frame_axes(scope, frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
     let terms = scope.kinematics.position_between(&joint_frame, frame);
     let zero = Vec3::zero(scope.graph);
-    let base = terms.iter().fold(zero, |sum, (link, v)| sum + in_frame(scope, frame, *link, *v));
+    let base = terms.iter().fold(zero, |sum, (link, v)| sum + vector_in_frame_axes(scope, frame, *link, *v));
     let slide = (joint.kind == JointKind::Sleeve).then(|| in_first_frame(axis));
-    Some(Side { base, point: in_first_frame(point), slide })
+    Some(LoopSide { base, point: in_first_frame(point), slide })
 }
 
 /// Transforms a vector from the axes of a link to those of a frame. Released joints are treated as
 /// closed: the solution is that of the original mechanism.
-fn in_frame<'g>(scope: &Scope<'_, 'g>, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
-    let v = change_axes(&scope.kinematics.joints, v, link, frame.link);
+fn vector_in_frame_axes<'g>(
+    scope: &Scope<'_, 'g>,
+    frame: &Placed<'g>,
+    link: Option<LinkId>,
+    v: Vec3<'g>,
+) -> Vec3<'g> {
+    let v = express_in_link_axes(&scope.kinematics.joints, v, link, frame.link);
     let v = frame.pose.rotation.to_child(v);
-    scope.with_released_at_zero(&v.0).try_into().map_or(v, Vec3)
+    scope.with_released_coordinates_zero(&v.0).try_into().map_or(v, Vec3)
 }
 
 /// Returns the point in the plane of the loop at which both sides meet, relative to the origin of the first
 /// joint.
 fn closing_point<'g>(
-    a: &Side<'g>,
-    b: &Side<'g>,
+    a: &LoopSide<'g>,
+    b: &LoopSide<'g>,
     branch: Expr<'g>,
     planar: &dyn Fn(Vec3<'g>) -> [Expr<'g>; 2],
 ) -> [Expr<'g>; 2] {

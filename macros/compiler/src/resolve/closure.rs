@@ -1,13 +1,15 @@
 //! Constraint rows of joints that close loops.
 
-use super::elementary::Elementary;
+use super::elementary::ElementaryMotion;
 use super::rows::ConstraintRows;
-use super::scope::{Placed, PlacedKind, Scope};
+use super::scope::{Placed, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::jet::{self, Jet, Moving, Relative};
-use crate::kinematics::{AXES, change_axes, normalised_or_zero, perpendicular_directions, time_derivative};
-use crate::mechanism::{Constraint, Measure, Model, Transmission};
+use crate::kinematics::jet::{self, Jet, MovingVector, RelativeLinkMotion};
+use crate::kinematics::{
+    AXES, express_in_link_axes, normalised_or_zero, perpendicular_directions, time_derivative,
+};
+use crate::mechanism::{Constraint, Measure, Model, ReactionComponent};
 
 /// Returns the rows of a loop that is solved in closed form. Its Pin keeps both ends together in the plane of
 /// the loop.
@@ -17,23 +19,23 @@ pub fn planar_loop_rows<'g>(
     j: usize,
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
-    let (motions, ends) = closing_joint(scope, model, j, cx)?;
-    let [Elementary::Turn(axis)] = motions.as_slice() else { return None };
-    let rows = ends.translation_rows(&[Elementary::Slide(*axis)]);
+    let (motions, ends) = resolve_closing_joint(scope, model, j, cx)?;
+    let [ElementaryMotion::Turn(axis)] = motions.as_slice() else { return None };
+    let rows = ends.translation_rows(&[ElementaryMotion::Slide(*axis)]);
     Some(ConstraintRows { rows, ..ConstraintRows::default() })
 }
 
 /// Returns the rows of a joint that closes a loop; `None` after an error.
-pub fn loop_rows<'g>(
+pub fn loop_closure_rows<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     j: usize,
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
     let joint = &scope.description.joints[j];
-    let (motions, ends) = closing_joint(scope, model, j, cx)?;
+    let (motions, ends) = resolve_closing_joint(scope, model, j, cx)?;
     let place = &joint.name.place;
-    if matches!(motions.as_slice(), [Elementary::Free]) {
+    if matches!(motions.as_slice(), [ElementaryMotion::Free]) {
         cx.report_error(
             place.clone(),
             format!("`{}` closes a loop, but constrains no motion", joint.name.text),
@@ -52,18 +54,18 @@ pub fn loop_rows<'g>(
 }
 
 /// Returns the elementary motions of a loop-closing joint, and its two ends.
-fn closing_joint<'s, 'a, 'g>(
+fn resolve_closing_joint<'s, 'a, 'g>(
     scope: &'s Scope<'a, 'g>,
     model: &Model<'g>,
     j: usize,
     cx: &mut Diagnostics,
-) -> Option<(Vec<Elementary<'g>>, ClosingJoint<'s, 'a, 'g>)> {
+) -> Option<(Vec<ElementaryMotion<'g>>, ClosingJoint<'s, 'a, 'g>)> {
     let joint = &scope.description.joints[j];
     let motions = scope.motions_of_joint(joint, cx);
     let [parent, child] = [&joint.parent, &joint.child].map(|end| {
         let on_body = scope.frame_of_endpoint(end, cx)?;
-        let (link, pose) = scope.joint_parent(&end.body, cx)?;
-        Some(Placed { link, pose: pose.compose_with(&on_body), kind: PlacedKind::Body })
+        let (link, pose) = scope.placement_of_joint_parent(&end.body, cx)?;
+        Some(Placed { link, pose: pose.compose_with(&on_body), kind: PlacedElementKind::Body })
     });
     let (parent, child) = (parent?, child?);
     let joints = &scope.kinematics.joints;
@@ -78,28 +80,28 @@ struct ClosingJoint<'s, 'a, 'g> {
     j: usize,
     parent: Placed<'g>,
     child: Placed<'g>,
-    on_parent: Relative<'g>,
-    on_child: Relative<'g>,
+    on_parent: RelativeLinkMotion<'g>,
+    on_child: RelativeLinkMotion<'g>,
 }
 
 impl<'g> ClosingJoint<'_, '_, 'g> {
     /// Returns a direction that is fixed in the parent, with its derivatives, in the common axes.
-    fn parent_direction(&self, v: Vec3<'g>) -> Moving<'g> {
+    fn parent_direction(&self, v: Vec3<'g>) -> MovingVector<'g> {
         let joints = &self.scope.kinematics.joints;
         jet::motion_of_direction(joints, &self.on_parent, self.parent.pose.rotation.to_parent(v))
     }
 
     /// Returns a direction that is fixed in the child, with its derivatives, in the common axes.
-    fn child_direction(&self, v: Vec3<'g>) -> Moving<'g> {
+    fn child_direction(&self, v: Vec3<'g>) -> MovingVector<'g> {
         let joints = &self.scope.kinematics.joints;
         jet::motion_of_direction(joints, &self.on_child, self.child.pose.rotation.to_parent(v))
     }
 
     /// Returns rows that keep the origin of the child's joint frame in the directions in which the joint
     /// slides.
-    fn translation_rows(&self, motions: &[Elementary<'g>]) -> Vec<Constraint<'g>> {
+    fn translation_rows(&self, motions: &[ElementaryMotion<'g>]) -> Vec<Constraint<'g>> {
         let (g, joints) = (self.scope.graph, &self.scope.kinematics.joints);
-        let slides: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::translation_axis).collect();
+        let slides: Vec<Vec3<'g>> = motions.iter().filter_map(ElementaryMotion::translation_axis).collect();
         let origin = jet::motion_of_point(joints, &self.on_parent, self.parent.pose.translation);
         let gap = jet::motion_of_point(joints, &self.on_child, self.child.pose.translation).minus(&origin);
         if slides.is_empty() {
@@ -119,9 +121,14 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         }
         for motion in motions {
             match motion {
-                Elementary::Helix(axis, pitch) => rows.push(self.advance_row((*axis, *pitch), gap.value)),
+                ElementaryMotion::Helix(axis, pitch) => {
+                    rows.push(self.advance_row((*axis, *pitch), gap.value))
+                }
                 // The rows of the other motions are those of the slides and rotations.
-                Elementary::Turn(_) | Elementary::Slide(_) | Elementary::Ball | Elementary::Free => {}
+                ElementaryMotion::Turn(_)
+                | ElementaryMotion::Slide(_)
+                | ElementaryMotion::Ball
+                | ElementaryMotion::Free => {}
             }
         }
         rows
@@ -141,19 +148,19 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         let second = time_derivative(self.scope.configuration_space(), rate);
         // The force pushes the child back along the axis; the torque rotates it by the pitch.
         let mut row = self.row("advance", Jet { value, rate, second }, (Measure::Length, -n));
-        row.transmits.push(self.transmission_along(true, n * pitch));
+        row.transmits.push(self.transmission_along_direction(true, n * pitch));
         row
     }
 
     /// Returns rows that allow only the rotations of the joint between the axes of its two ends.
-    fn rotation_rows(&self, motions: &[Elementary<'g>]) -> Vec<Constraint<'g>> {
-        if matches!(motions, [Elementary::Ball]) {
+    fn rotation_rows(&self, motions: &[ElementaryMotion<'g>]) -> Vec<Constraint<'g>> {
+        if matches!(motions, [ElementaryMotion::Ball]) {
             return Vec::new();
         }
-        let turns: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::rotation_axis).collect();
+        let turns: Vec<Vec3<'g>> = motions.iter().filter_map(ElementaryMotion::rotation_axis).collect();
         let coordinate_axis = |k| Vec3::coordinate_axis(self.scope.graph, k);
         // Directions of the parent and of the child that remain orthogonal, or at a constant angle.
-        let rows: Vec<(String, Moving<'g>, Moving<'g>, Expr<'g>)> = match turns.as_slice() {
+        let rows: Vec<(String, MovingVector<'g>, MovingVector<'g>, Expr<'g>)> = match turns.as_slice() {
             // Sines of the angles about three axes.
             [] => (0..3)
                 .map(|k| {
@@ -186,12 +193,13 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
                 )]
             }
         };
-        let row_of_directions = |(word, e, carried, angle): (String, Moving<'g>, Moving<'g>, Expr<'g>)| {
-            let mut jet = e.dot(&carried);
-            jet.value -= angle;
-            self.row(&word, jet, (Measure::Angle, carried.value.cross(e.value)))
-        };
-        rows.into_iter().map(row_of_directions).collect()
+        let direction_constraint_row =
+            |(word, e, carried, angle): (String, MovingVector<'g>, MovingVector<'g>, Expr<'g>)| {
+                let mut jet = e.dot(&carried);
+                jet.value -= angle;
+                self.row(&word, jet, (Measure::Angle, carried.value.cross(e.value)))
+            };
+        rows.into_iter().map(direction_constraint_row).collect()
     }
 
     /// Returns a row of the joint. Its multiplier is a force (of a length) or a torque (of an angle) on the
@@ -206,16 +214,16 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
             rate,
             bias: second,
             measure,
-            transmits: vec![self.transmission_along(measure == Measure::Angle, direction)],
+            transmits: vec![self.transmission_along_direction(measure == Measure::Angle, direction)],
             group: 0,
             determines: false,
             friction: Vec::new(),
         }
     }
 
-    fn transmission_along(&self, torque: bool, direction: Vec3<'g>) -> Transmission<'g> {
+    fn transmission_along_direction(&self, torque: bool, direction: Vec3<'g>) -> ReactionComponent<'g> {
         let joints = &self.scope.kinematics.joints;
-        let direction = change_axes(joints, direction, self.on_child.ancestor, None);
-        Transmission { joint: self.j, torque, direction }
+        let direction = express_in_link_axes(joints, direction, self.on_child.ancestor, None);
+        ReactionComponent { joint: self.j, torque, direction }
     }
 }

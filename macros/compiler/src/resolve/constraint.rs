@@ -2,10 +2,10 @@
 //! and slipping pairs. Each row has its rate and the time derivative of the rate. Motions are relative to the
 //! nearest link that carries both ends, so that their common motion cancels.
 
-use super::contact::{check_pair, rolling_rows, slipping_rows};
+use super::contact::{report_surface_pair_errors, rolling_rows, slipping_rows};
 use super::corrections;
-use super::rows::{ConstraintRows, constraint_row};
-use super::scope::{Allowed, Context, Scope, Value};
+use super::rows::{ConstraintRows, constraint_from_residual_and_rate};
+use super::scope::{AllowedQuantities, Context, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
 use crate::expr::replace::substitute_symbols;
@@ -40,9 +40,9 @@ fn holonomic_rows<'g>(
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
     scope.records.borrow_mut().in_holonomic_constraint = true;
-    let rows = difference(scope, constraint, Allowed::Placement, cx);
+    let rows = difference(scope, constraint, AllowedQuantities::Placement, cx);
     scope.records.borrow_mut().in_holonomic_constraint = false;
-    let (components, redundant) = without_vanishing(rows);
+    let (components, redundant) = split_off_vanishing_components(rows);
     let mut rows = Vec::new();
     for (name, residual) in components {
         if symbols_in(&[residual]).iter().all(|s| matches!(Quantity::from_symbol(*s), Quantity::Parameter(_)))
@@ -52,13 +52,19 @@ fn holonomic_rows<'g>(
             return None;
         }
         let rate = time_derivative(scope.configuration_space(), residual);
-        rows.push(constraint_row(scope, (name, &constraint.name.place), measure, Some(residual), rate));
+        rows.push(constraint_from_residual_and_rate(
+            scope,
+            (name, &constraint.name.place),
+            measure,
+            Some(residual),
+            rate,
+        ));
     }
     Some(ConstraintRows { rows, redundant, ..ConstraintRows::default() })
 }
 
 /// Resolves a constraint, only to report its errors.
-pub fn check_constraint<'g>(
+pub fn report_constraint_errors<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     constraint: &syntax::Constraint,
@@ -68,11 +74,13 @@ pub fn check_constraint<'g>(
     match constraint.kind {
         ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => {
             scope.records.borrow_mut().in_holonomic_constraint = holonomic;
-            let allowed = if holonomic { Allowed::Placement } else { Allowed::Motion };
+            let allowed = if holonomic { AllowedQuantities::Placement } else { AllowedQuantities::Motion };
             let _ = difference(scope, constraint, allowed, cx);
             scope.records.borrow_mut().in_holonomic_constraint = false;
         }
-        ConstraintKind::Rolling | ConstraintKind::Slipping => check_pair(scope, model, constraint, cx),
+        ConstraintKind::Rolling | ConstraintKind::Slipping => {
+            report_surface_pair_errors(scope, model, constraint, cx)
+        }
     }
 }
 
@@ -83,7 +91,8 @@ fn nonholonomic_rows<'g>(
     measure: Measure,
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
-    let (components, redundant) = without_vanishing(difference(scope, constraint, Allowed::Motion, cx));
+    let (components, redundant) =
+        split_off_vanishing_components(difference(scope, constraint, AllowedQuantities::Motion, cx));
     let mut rows = Vec::new();
     for (name, rate) in components {
         let place = &constraint.value.place;
@@ -103,7 +112,7 @@ fn nonholonomic_rows<'g>(
             return None;
         }
         let linear = match depends_on_quantity(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
-            true => linear_form(rate, &gradient),
+            true => remove_cancelling_velocities(rate, &gradient),
             false => Some(rate),
         };
         let Some(linear) = linear else {
@@ -113,7 +122,13 @@ fn nonholonomic_rows<'g>(
             );
             return None;
         };
-        rows.push(constraint_row(scope, (name, &constraint.name.place), measure, None, linear));
+        rows.push(constraint_from_residual_and_rate(
+            scope,
+            (name, &constraint.name.place),
+            measure,
+            None,
+            linear,
+        ));
     }
     Some(ConstraintRows { rows, redundant, ..ConstraintRows::default() })
 }
@@ -122,11 +137,11 @@ fn nonholonomic_rows<'g>(
 fn difference<'g>(
     scope: &Scope<'_, 'g>,
     constraint: &syntax::Constraint,
-    allowed: Allowed,
+    allowed: AllowedQuantities,
     cx: &mut Diagnostics,
 ) -> Vec<(String, Expr<'g>)> {
     let name = &constraint.name.text;
-    let context_of_difference = || Context::new(allowed, Some((None, Pose::identity(scope.graph))));
+    let ground_axes_context = || Context::new(allowed, Some((None, Pose::identity(scope.graph))));
     let is_angle_expression = |e: &syntax::Expr| match &e.kind {
         ExprKind::Call(word, _) => word.id == Some(Callable::Function(FunctionId::Angle)),
         _ => scope.is_angle(e),
@@ -134,18 +149,19 @@ fn difference<'g>(
     let pair = [Some(&constraint.value), constraint.other.as_ref()];
     for (side, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
         if let (Some(side), Some(other)) = (side, other)
-            && allowed == Allowed::Placement
+            && allowed == AllowedQuantities::Placement
             && is_angle_expression(side)
             && !corrections::check_angle(other, cx)
         {
             return Vec::new();
         }
     }
-    let left = scope.in_context(context_of_difference(), |scope| scope.resolve_value(&constraint.value, cx));
+    let left =
+        scope.call_in_context(ground_axes_context(), |scope| scope.resolve_value(&constraint.value, cx));
     if left.is_none() {
         // Report the errors of the other side as well.
         if let Some(other) = &constraint.other {
-            let _ = scope.in_context(context_of_difference(), |scope| scope.resolve_value(other, cx));
+            let _ = scope.call_in_context(ground_axes_context(), |scope| scope.resolve_value(other, cx));
         }
         return Vec::new();
     }
@@ -155,7 +171,7 @@ fn difference<'g>(
     if !vector {
         let values: Vec<Option<Expr<'g>>> = sides
             .iter()
-            .map(|e| scope.in_context(context_of_difference(), |scope| scope.resolve_scalar(e, cx)))
+            .map(|e| scope.call_in_context(ground_axes_context(), |scope| scope.resolve_scalar(e, cx)))
             .collect();
         return match values.as_slice() {
             [Some(left), Some(right)] => vec![(name.clone(), *left - *right)],
@@ -165,7 +181,7 @@ fn difference<'g>(
     }
     let terms: Vec<_> = sides
         .iter()
-        .map(|e| scope.in_context(context_of_difference(), |scope| scope.resolve_terms(e, cx)))
+        .map(|e| scope.call_in_context(ground_axes_context(), |scope| scope.resolve_terms(e, cx)))
         .collect();
     let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
     let kinematics = &scope.kinematics;
@@ -178,13 +194,16 @@ fn difference<'g>(
 /// Separates the components of a vector that vanish identically, such as the component normal to the plane of
 /// a planar mechanism. Returns the other components and the names of the vanishing ones; if all vanish, all
 /// are returned.
-fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g>)>, Vec<String>) {
-    let is_vanishing = |e: &Expr<'g>| {
+fn split_off_vanishing_components<'g>(
+    rows: Vec<(String, Expr<'g>)>,
+) -> (Vec<(String, Expr<'g>)>, Vec<String>) {
+    let is_identically_zero = |e: &Expr<'g>| {
         let is_parameter = |q: Quantity| matches!(q, Quantity::Parameter(_));
         symbols_in(&[*e]).into_iter().all(|s| is_parameter(Quantity::from_symbol(s)))
             && always_equals(*e, 0.0)
     };
-    let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
+    let (vanishing, remaining): (Vec<_>, Vec<_>) =
+        rows.into_iter().partition(|(_, e)| is_identically_zero(e));
     if remaining.is_empty() {
         return (vanishing, Vec::new());
     }
@@ -193,9 +212,9 @@ fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g
 
 /// Removes velocities from the coefficients of a linear constraint if the coefficients contain velocities but
 /// do not depend on them. Returns `None` if they depend on velocities.
-fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
+fn remove_cancelling_velocities<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
     // Signs and corner points of the velocities reveal sign changes, of all velocities together or of some.
-    let evaluate_at_pattern = |e: Expr<'g>, pattern: u64| {
+    let evaluate_at_signed_velocities = |e: Expr<'g>, pattern: u64| {
         eval_one(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample_of_symbol(s, pattern),
             Quantity::Velocity(_) => sample_of_symbol(s, pattern),
@@ -203,10 +222,12 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
         })
     };
     let is_constant = |e: Expr<'g>| {
-        let first = evaluate_at_pattern(e, 0);
+        let first = evaluate_at_signed_velocities(e, 0);
         let is_close = |x: f64| (x - first).abs() <= 1e-9 * (1.0 + first.abs());
         first.is_finite()
-            && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| is_close(evaluate_at_pattern(e, *p)))
+            && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX]
+                .iter()
+                .all(|p| is_close(evaluate_at_signed_velocities(e, *p)))
     };
     let substitute_velocities = |e: Expr<'g>, value: f64| {
         substitute_symbols(e, &|s| {
@@ -214,7 +235,9 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
         })
     };
     let remainder = substitute_velocities(rate, 0.0);
-    if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate_at_pattern(remainder, 0).is_finite() {
+    if !gradient.iter().all(|(_, c)| is_constant(*c))
+        || !evaluate_at_signed_velocities(remainder, 0).is_finite()
+    {
         return None;
     }
     let g = rate.graph();

@@ -9,7 +9,7 @@ use crate::syntax::{self, Callee, ExprKind, Member, Name, words};
 
 impl Scope<'_, '_> {
     /// Reports a method, which expressions do not have, with the correct syntax.
-    pub fn report_method(&self, e: &syntax::Expr, method: &Member, cx: &mut Diagnostics) {
+    pub fn report_unknown_method(&self, e: &syntax::Expr, method: &Member, cx: &mut Diagnostics) {
         let text = method.text.as_str();
         let base = match &e.kind {
             ExprKind::Method(base, ..) => base.to_source(),
@@ -19,10 +19,10 @@ impl Scope<'_, '_> {
         let is_coordinate = self.kinematics.coordinates.iter().any(|(name, ..)| *name == base);
         if is_coordinate && let Some(meant) = words::meaning_of_word(words::RATES, text, &[]) {
             error.add_help(meant.replace("NAME", &base));
-        } else if Callable::is_function(text) {
+        } else if Callable::is_function_name(text) {
             error.add_help(format!("write `{text}(…)`"));
-        } else if !words::explain_word(error, words::NUMBER_METHODS, text, &[])
-            && !words::explain_word(error, &words::function_synonyms(), text, &[])
+        } else if !words::add_word_meaning_as_help(error, words::NUMBER_METHODS, text, &[])
+            && !words::add_word_meaning_as_help(error, &words::function_synonyms(), text, &[])
         {
             error.add_help(
                 "functions precede their arguments, as in `sin(angle)`; `body.at(vector)` is a point",
@@ -32,7 +32,7 @@ impl Scope<'_, '_> {
 
     /// Reports a member that a joint does not have, with the correct syntax. Returns false if the name is not
     /// a joint.
-    pub fn report_joint_member(
+    pub fn report_unknown_joint_member(
         &self,
         joint: &str,
         inner: &syntax::Expr,
@@ -100,7 +100,7 @@ pub fn check_angle(e: &syntax::Expr, cx: &mut Diagnostics) -> bool {
 }
 
 /// Whether an expression may be a rotation: a call or a matrix.
-pub fn is_rotation(step: &syntax::Expr) -> bool {
+pub fn may_be_rotation(step: &syntax::Expr) -> bool {
     match &step.kind {
         ExprKind::Call(Callee { id: Some(Callable::Rotation(rotation)), .. }, arguments) => {
             let row = rotation.row();
@@ -112,11 +112,11 @@ pub fn is_rotation(step: &syntax::Expr) -> bool {
 }
 
 /// Reports that an expression is not a rotation.
-pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
+pub fn report_expected_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
     let error = cx.report_error(step.place.clone(), "expected a rotation");
     if let ExprKind::Call(word, _) = &step.kind {
         let known: Vec<&str> = Rotation::names().collect();
-        words::explain_word(error, &words::rotation_synonyms(), &word.text, &known);
+        words::add_word_meaning_as_help(error, &words::rotation_synonyms(), &word.text, &known);
     }
     error.add_help(
         "write `x(angle)`, `y(angle)`, `z(angle)`, `eigenaxis(direction, angle)` or `quaternion(x, y, z, w)`",
@@ -124,7 +124,7 @@ pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
 }
 
 /// Reports that an array of expressions is not a matrix.
-pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
+pub fn report_invalid_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     let ExprKind::Array(items) = &e.kind else {
         cx.report_error(e.place.clone(), "expected a 3×3 matrix").add_help(MATRIX_SYNTAX);
         return;

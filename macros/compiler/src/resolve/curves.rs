@@ -1,10 +1,10 @@
 //! Curves and fields: derivatives of an expression by a coordinate or a position.
 
 use super::call::Call;
-use super::quantities::{in_links, vector_value};
-use super::scope::{Allowed, Context, Placed, Scope, Value};
+use super::quantities::{vector_terms_by_link, vector_value};
+use super::scope::{AllowedQuantities, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::substitute_symbols;
 use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
@@ -16,15 +16,15 @@ use crate::syntax::{self, BinaryOp, Callee, ExprKind};
 impl<'g> Scope<'_, 'g> {
     /// Returns the axes defined by a vector or a curve, relative to the axes of a frame:
     /// `cylindrical(vector)`, `spherical(vector)`, `frenet(curve, coordinate)`.
-    pub fn natural_axes(
+    pub fn axes_of_vector_or_curve(
         &self,
         (rotation, name): (language::Rotation, &Callee),
         arguments: &[syntax::Expr],
         start: &Placed<'g>,
         cx: &mut Diagnostics,
     ) -> Option<Rotation<'g>> {
-        let context = Context::new(Allowed::Placement, Some((start.link, start.pose.clone())));
-        self.in_context(context, |scope| match (rotation, arguments) {
+        let context = Context::new(AllowedQuantities::Placement, Some((start.link, start.pose.clone())));
+        self.call_in_context(context, |scope| match (rotation, arguments) {
             (language::Rotation::Frenet, [curve, along]) => scope.frenet_frame(curve, along, start, cx),
             (language::Rotation::Frenet, _) => {
                 cx.report_error(name.place.clone(), "`frenet` takes a curve and the coordinate along it")
@@ -46,12 +46,12 @@ impl<'g> Scope<'_, 'g> {
                     );
                     return None;
                 }
-                let about = Rotation::about_axis(2, y.atan2(x));
+                let about = Rotation::rotation_about_coordinate_axis(2, y.atan2(x));
                 if rotation != language::Rotation::Spherical {
                     return Some(about);
                 }
                 let elevation = z.atan2((x.square() + y.square()).sqrt());
-                Some(about.compose_with(&Rotation::about_axis(1, -elevation)))
+                Some(about.compose_with(&Rotation::rotation_about_coordinate_axis(1, -elevation)))
             }
             _ => {
                 cx.report_error(name.place.clone(), format!("`{}` takes a vector", name.text))
@@ -69,7 +69,7 @@ impl<'g> Scope<'_, 'g> {
         start: &Placed<'g>,
         cx: &mut Diagnostics,
     ) -> Option<Rotation<'g>> {
-        let ([first, second, _], link) = self.derivatives_along("frenet", curve, along, cx)?;
+        let ([first, second, _], link) = self.curve_derivatives_by_coordinate("frenet", curve, along, cx)?;
         let binormal = first.cross(second);
         if binormal.0.iter().all(|c| always_equals(*c, 0.0)) {
             cx.report_error(curve.place.clone(), "this curve is straight, and has no normal")
@@ -115,15 +115,16 @@ impl<'g> Scope<'_, 'g> {
     fn curve_derivatives(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<[Vec3<'g>; 3]> {
         let [curve, along] = call.take_arguments(cx)?;
         let text = call.function_name();
-        if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Placement, &format!("`{text}(…)`"), call.place, cx)
+        {
             return None;
         }
-        Some(self.derivatives_along(text, curve, along, cx)?.0)
+        Some(self.curve_derivatives_by_coordinate(text, curve, along, cx)?.0)
     }
 
     /// Returns the first three derivatives of a vector by a coordinate. They are in the axes of the returned
     /// link, which do not depend on the coordinate.
-    fn derivatives_along(
+    fn curve_derivatives_by_coordinate(
         &self,
         text: &str,
         curve: &syntax::Expr,
@@ -132,7 +133,7 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<([Vec3<'g>; 3], Option<LinkId>)> {
         let c = self.named_coordinate(text, along, cx)?;
         let symbol = Quantity::Configuration(c.q.0).symbol();
-        let terms = in_links(self.resolve_vector(curve, cx)?);
+        let terms = vector_terms_by_link(self.resolve_vector(curve, cx)?);
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         let link_rotates_with_parameter = |link: Option<LinkId>| {
@@ -143,7 +144,7 @@ impl<'g> Scope<'_, 'g> {
         let link = terms.first().and_then(|(link, _)| *link);
         let link = if link_rotates_with_parameter(link) { None } else { link };
         let position = kinematics.resolve(&terms, link, zero);
-        let mut derivative = Derivative::with_respect_to(symbol, self.graph);
+        let mut derivative = DirectionalDerivative::with_respect_to(symbol, self.graph);
         let scale = self.graph.num(1.0 / c.ratio);
         let mut next = |v: Vec3<'g>| v.map(|c| derivative.differentiate(c) * scale);
         let first = next(position);
@@ -172,7 +173,7 @@ impl<'g> Scope<'_, 'g> {
             format!("`{text}` takes the coordinate that parametrises the curve"),
         );
         error.suggest_name(&name, known);
-        if error.is_bare() {
+        if error.has_no_help() {
             error.add_help(
                 "a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a \
                  `Coordinate`",
@@ -186,9 +187,9 @@ impl<'g> Scope<'_, 'g> {
     pub fn resolve_gradient(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [whole] = call.take_arguments(cx)?;
         let ExprKind::Binary(BinaryOp::Div, field, point, _) = &whole.kind else {
-            return call.reject_arguments(cx);
+            return call.report_wrong_arguments(cx);
         };
-        if !self.check_allowed(Allowed::Placement, "`gradient(…)`", call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Placement, "`gradient(…)`", call.place, cx) {
             return None;
         }
         let placed = self.resolve_placement(point, cx)?;
@@ -211,7 +212,9 @@ impl<'g> Scope<'_, 'g> {
         let set_coordinates_to_zero =
             |e: Expr<'g>| substitute_symbols(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
         let gradient = Vec3(moves.map(|s| {
-            set_coordinates_to_zero(Derivative::with_respect_to(s, self.graph).differentiate(value))
+            set_coordinates_to_zero(
+                DirectionalDerivative::with_respect_to(s, self.graph).differentiate(value),
+            )
         }));
         if gradient.is_zero() {
             cx.report_error(field.place.clone(), format!("this does not depend on the position of `{name}`"))

@@ -2,13 +2,13 @@
 //! frames, so that a viewer needs no traversal of the links.
 
 use super::contact::{Surface, surface_pieces};
-use super::joint::drawing_symbol;
-use super::scope::{Allowed, Context, Placed, PlacedKind, Scope};
+use super::joint::joint_drawing_symbol;
+use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::language::{Callable, Method, Solid};
-use crate::mechanism::drawing::{Anchor, anchor_of_pose, entries_by_row, entries_of_vectors};
+use crate::mechanism::drawing::{Anchor, entries_by_row, entries_of_vectors, pose_relative_to_named_frame};
 use crate::mechanism::{Input, LinkId, Model, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
     self, Action, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
@@ -17,16 +17,16 @@ use std::collections::BTreeSet;
 
 /// Returns the pieces of the drawing, and the heights of terrains. `model` is complete but for the drawing;
 /// `surfaces` are those of contacts and pairs, with their names.
-pub fn draw_mechanism<'g>(
+pub fn mechanism_drawing_pieces<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     surfaces: &[(String, Surface<'g>)],
 ) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
     // The second reading of expressions adds no requirements.
     let required = scope.records.borrow().requirements.clone();
-    let drawing = Drawing { scope, model, surfaces };
+    let drawing = DrawnElements { scope, model, surfaces };
     let (mut pieces, heights) =
-        scope.in_context(Context::new(Allowed::Constant, None), |_| drawing.all_pieces());
+        scope.call_in_context(Context::new(AllowedQuantities::Constant, None), |_| drawing.all_pieces());
     scope.records.borrow_mut().requirements = required;
     let is_fixed = |e: &[Expr<'g>]| {
         symbols_in(e).into_iter().all(|s| matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
@@ -36,66 +36,66 @@ pub fn draw_mechanism<'g>(
 }
 
 /// Elements that are drawn, and the frames in which they are drawn.
-struct Drawing<'s, 'a, 'g> {
+struct DrawnElements<'s, 'a, 'g> {
     scope: &'s Scope<'a, 'g>,
     model: &'s Model<'g>,
     surfaces: &'s [(String, Surface<'g>)],
 }
 
-impl<'g> Drawing<'_, '_, 'g> {
+impl<'g> DrawnElements<'_, '_, 'g> {
     fn all_pieces(&self) -> (Vec<Piece<'g>>, Vec<Expr<'g>>) {
         let mut pieces = Vec::new();
-        let shown = self.draw_visuals(&mut pieces);
+        let shown = self.add_visual_pieces(&mut pieces);
         if !self.model.gravity.is_zero() {
             let numbers = entries_of_vectors(&[Vec3::zero(self.scope.graph), self.model.gravity]);
             let (name, frames) = ("gravity".to_string(), [None, None]);
             pieces.push(Piece { name, role: Role::Gravity, kind: PieceKind::Gravity, frames, numbers });
         }
-        self.draw_bodies(&shown, &mut pieces);
-        self.draw_joints(&shown, &mut pieces);
+        self.add_body_pieces(&shown, &mut pieces);
+        self.add_joint_pieces(&shown, &mut pieces);
         let (surfaces, heights) = surface_pieces(self.surfaces, &self.model.frames);
         pieces.extend(surfaces);
-        self.draw_actions(&mut pieces);
+        self.add_action_pieces(&mut pieces);
         (pieces, heights)
     }
 
-    fn anchor_of_pose(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
-        anchor_of_pose(&self.model.frames, link, pose)
+    fn pose_relative_to_named_frame(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
+        pose_relative_to_named_frame(&self.model.frames, link, pose)
     }
 
     /// Returns the index of a body's own frame.
-    fn body_frame(&self, name: &str) -> Option<usize> {
+    fn body_frame_index(&self, name: &str) -> Option<usize> {
         self.model.frames.iter().position(|frame| frame.name == name)
     }
 
     /// Returns the link and the pose of the end of a joint.
-    fn joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
+    fn anchor_of_joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
         let mut silent = Diagnostics::discarded_diagnostics();
         let on_body = self.scope.frame_of_endpoint(end, &mut silent)?;
         if end.body.text == GROUND {
             return Some((None, on_body));
         }
-        if let Some(frame) = self.body_frame(&end.body.text) {
+        if let Some(frame) = self.body_frame_index(&end.body.text) {
             return Some((Some(frame), on_body));
         }
-        let (link, pose) = self.scope.joint_parent(&end.body, &mut silent)?;
-        self.anchor_of_pose(link, &pose.compose_with(&on_body))
+        let (link, pose) = self.scope.placement_of_joint_parent(&end.body, &mut silent)?;
+        self.pose_relative_to_named_frame(link, &pose.compose_with(&on_body))
     }
 
     /// Adds the visual geometry of a file. Returns the bodies that have visual geometry without meshes.
     /// Bodies with meshes are also drawn by their mass properties, which are visible if a mesh cannot be
     /// read.
-    fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
+    fn add_visual_pieces(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.scope.description.visuals {
-            let Some((frame, pose)) = self.joint_end(on) else { continue };
+            let Some((frame, pose)) = self.anchor_of_joint_end(on) else { continue };
             let z = pose.rotation.to_parent(Vec3::coordinate_axis(g, 2));
             let number_expression = |x: f64| g.num(x);
             let entries_of_round_solid = |numbers: &[f64]| {
                 let axis = entries_of_vectors(&[pose.translation, z]);
                 axis.into_iter().chain(numbers.iter().map(|x| g.num(*x))).collect()
             };
-            let along_axes = |lengths: [f64; 3]| {
+            let numbers_of_oriented_shape = |lengths: [f64; 3]| {
                 let axes = entries_by_row(&pose.rotation.rotation_matrix());
                 entries_of_vectors(&[pose.translation])
                     .into_iter()
@@ -109,15 +109,17 @@ impl<'g> Drawing<'_, '_, 'g> {
                     numbers.push(number_expression(*radius));
                     (PieceKind::Sphere, numbers)
                 }
-                (Shape::Cuboid(edges), _) => (PieceKind::Cuboid, along_axes(*edges)),
-                (Shape::Ellipsoid(halves), _) => (PieceKind::Ellipsoid, along_axes(*halves)),
+                (Shape::Cuboid(edges), _) => (PieceKind::Cuboid, numbers_of_oriented_shape(*edges)),
+                (Shape::Ellipsoid(halves), _) => (PieceKind::Ellipsoid, numbers_of_oriented_shape(*halves)),
                 (Shape::Cylinder(radius, height), _) => {
                     (PieceKind::Cylinder, entries_of_round_solid(&[*radius, *height]))
                 }
                 (Shape::Capsule(radius, height), _) => {
                     (PieceKind::Capsule, entries_of_round_solid(&[*radius, *height]))
                 }
-                (Shape::Mesh, Some(mesh)) => (PieceKind::Mesh(mesh.path.clone()), along_axes(mesh.scale)),
+                (Shape::Mesh, Some(mesh)) => {
+                    (PieceKind::Mesh(mesh.path.clone()), numbers_of_oriented_shape(mesh.scale))
+                }
                 (Shape::Mesh, None) => continue,
             };
             let name = on.body.text.clone();
@@ -129,12 +131,12 @@ impl<'g> Drawing<'_, '_, 'g> {
     }
 
     /// Adds solids and particles, except for the bodies in `shown`.
-    fn draw_bodies(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
+    fn add_body_pieces(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
         let g = self.scope.graph;
         for body in &self.scope.description.bodies {
             let name = &body.name.text;
             let (Some(frame), Some((mass, com, inertia))) =
-                (self.body_frame(name), self.scope.kinematics.masses.get(name).copied())
+                (self.body_frame_index(name), self.scope.kinematics.masses.get(name).copied())
             else {
                 continue;
             };
@@ -168,7 +170,7 @@ impl<'g> Drawing<'_, '_, 'g> {
         }
         for particle in &self.scope.description.particles {
             let name = particle.name.text.clone();
-            let frames = [self.body_frame(&name), None];
+            let frames = [self.body_frame_index(&name), None];
             let numbers = entries_of_vectors(&[Vec3::zero(g)]);
             if frames[0].is_some() {
                 pieces.push(Piece { name, role: Role::Body, kind: PieceKind::Point, frames, numbers });
@@ -228,11 +230,11 @@ impl<'g> Drawing<'_, '_, 'g> {
     }
 
     /// Adds joints, and bars from a body's first joint to its other joints and to its centre of mass.
-    fn draw_joints(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
+    fn add_joint_pieces(&self, shown: &BTreeSet<String>, pieces: &mut Vec<Piece<'g>>) {
         let mut joint_positions: Vec<(&str, Vec3<'g>)> = Vec::new();
         for joint in &self.scope.description.joints {
             let (Some((parent, on_parent)), Some((_, on_child))) =
-                (self.joint_end(&joint.parent), self.joint_end(&joint.child))
+                (self.anchor_of_joint_end(&joint.parent), self.anchor_of_joint_end(&joint.child))
             else {
                 continue;
             };
@@ -251,7 +253,7 @@ impl<'g> Drawing<'_, '_, 'g> {
         }
         for body in &self.scope.description.bodies {
             let name = &body.name.text;
-            let Some(frame) = self.body_frame(name).filter(|_| !shown.contains(name)) else { continue };
+            let Some(frame) = self.body_frame_index(name).filter(|_| !shown.contains(name)) else { continue };
             let mut places = joint_positions.iter().filter(|(of, _)| of == name).map(|(_, place)| *place);
             let Some(first) = places.next() else { continue };
             let com = self.scope.kinematics.masses.get(name).map(|(_, com, _)| *com);
@@ -269,7 +271,7 @@ impl<'g> Drawing<'_, '_, 'g> {
 
     /// Returns the symbol of a joint, with its axis on the parent.
     fn joint_symbol(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
-        let (kind, axes) = drawing_symbol(joint)?;
+        let (kind, axes) = joint_drawing_symbol(joint)?;
         let unit_axis = |axes: &[syntax::Expr]| {
             self.scope.unit_vector(
                 axes.first()?,
@@ -281,13 +283,13 @@ impl<'g> Drawing<'_, '_, 'g> {
     }
 
     /// Adds the drawing of springs, dashpots and inputs.
-    fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
+    fn add_action_pieces(&self, pieces: &mut Vec<Piece<'g>>) {
         for action in &self.scope.description.actions {
             let row = action.kind.row();
             if let Some([long, round]) = &row.pieces
                 && (!row.drawn_between || matches!(action.on, Target::Between(..)))
             {
-                self.draw_element(action, long.clone(), round.clone(), pieces);
+                self.add_element_pieces(action, long.clone(), round.clone(), pieces);
             }
         }
         for (k, (name, input)) in self.model.inputs.iter().enumerate() {
@@ -298,21 +300,29 @@ impl<'g> Drawing<'_, '_, 'g> {
 
     /// Adds an element between two points or on a joint: `long` if it spans a length, `round` if it acts on a
     /// rotation.
-    fn draw_element(&self, action: &Action, long: PieceKind, round: PieceKind, pieces: &mut Vec<Piece<'g>>) {
+    fn add_element_pieces(
+        &self,
+        action: &Action,
+        long: PieceKind,
+        round: PieceKind,
+        pieces: &mut Vec<Piece<'g>>,
+    ) {
         let found = match &action.on {
             Target::Between(a, b) => {
                 let mut silent = Diagnostics::discarded_diagnostics();
                 let mut place = |e| {
                     self.scope
                         .resolve_placement(e, &mut silent)
-                        .and_then(|p| self.anchor_of_pose(p.link, &p.pose))
+                        .and_then(|p| self.pose_relative_to_named_frame(p.link, &p.pose))
                 };
                 place(a).zip(place(b)).map(|(a, b)| (long, [a.0, b.0], [a.1.translation, b.1.translation]))
             }
-            Target::On(on) => self.on_joint(on).map(|(turns, frames, ends, axis)| match turns {
-                true => (round, frames, [ends[0], axis]),
-                false => (long, frames, ends),
-            }),
+            Target::On(on) => {
+                self.single_coordinate_joint_data(on).map(|(turns, frames, ends, axis)| match turns {
+                    true => (round, frames, [ends[0], axis]),
+                    false => (long, frames, ends),
+                })
+            }
         };
         if let Some((kind, frames, vectors)) = found {
             let (name, numbers) = (action.name.text.clone(), entries_of_vectors(&vectors));
@@ -323,17 +333,21 @@ impl<'g> Drawing<'_, '_, 'g> {
     /// Returns the data of a joint with one coordinate: whether it is revolute, the frames and positions of
     /// its ends, and its axis on the parent.
     #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
-    fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
+    fn single_coordinate_joint_data(
+        &self,
+        on: &syntax::Expr,
+    ) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
         let name = on.as_name()?;
         let joint = self.scope.description.joints.iter().find(|joint| joint.name.text == name)?;
-        let ((a, on_a), (b, on_b)) = self.joint_end(&joint.parent).zip(self.joint_end(&joint.child))?;
+        let ((a, on_a), (b, on_b)) =
+            self.anchor_of_joint_end(&joint.parent).zip(self.anchor_of_joint_end(&joint.child))?;
         let (kind, axis) = self.joint_symbol(joint)?;
         let axis = on_a.rotation.to_parent(axis?);
         Some((kind == PieceKind::Hinge, [a, b], [on_a.translation, on_b.translation], axis))
     }
 
     /// Returns the joint that an input of a file drives.
-    fn driven_joint(&self, input: &str) -> Option<&str> {
+    fn joint_driven_by_input(&self, input: &str) -> Option<&str> {
         let drives = &self.scope.description.drives;
         let found =
             drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
@@ -353,12 +367,15 @@ impl<'g> Drawing<'_, '_, 'g> {
             Input::Coordinate(_) => {
                 let on = self.scope.description.actions.iter().find(|action| action.name.text == name);
                 let joint = match on.map(|action| &action.on) {
-                    Some(Target::On(on)) => self.on_joint(on),
+                    Some(Target::On(on)) => self.single_coordinate_joint_data(on),
                     Some(Target::Between(..)) => None,
                     None => {
-                        let joint = self.driven_joint(name).unwrap_or(name).to_string();
+                        let joint = self.joint_driven_by_input(name).unwrap_or(name).to_string();
                         let place = self.scope.description.name.place.clone();
-                        self.on_joint(&syntax::Expr { kind: ExprKind::Name(joint), place })
+                        self.single_coordinate_joint_data(&syntax::Expr {
+                            kind: ExprKind::Name(joint),
+                            place,
+                        })
                     }
                 };
                 let (turns, [a, _], [position, _], axis) = joint?;
@@ -372,10 +389,10 @@ impl<'g> Drawing<'_, '_, 'g> {
         let place = Placed {
             link: Some(link),
             pose: Pose { rotation: Rotation::identity(g), translation: point },
-            kind: PlacedKind::Point,
+            kind: PlacedElementKind::Point,
         };
-        let (frame, pose) = self.anchor_of_pose(place.link, &place.pose)?;
-        let (axes_frame, axes) = self.anchor_of_pose(*axes, &Pose::identity(g))?;
+        let (frame, pose) = self.pose_relative_to_named_frame(place.link, &place.pose)?;
+        let (axes_frame, axes) = self.pose_relative_to_named_frame(*axes, &Pose::identity(g))?;
         let kind = if torque { PieceKind::Torque(k) } else { PieceKind::Force(k) };
         let numbers = entries_of_vectors(&[pose.translation, axes.rotation.to_parent(*direction)]);
         Some((kind, [frame, axes_frame], numbers))

@@ -3,15 +3,16 @@
 
 use super::element_forces::Forces;
 use super::forces::{
-    SpringLaw, dry_friction, inertance_force, input_load, report_unused_input, spring_law, value_load,
+    SpringLaw, dry_friction, inertance_force, load_of_input, load_split_by_acceleration, report_unused_input,
+    spring_force_of_law,
 };
-use super::scope::{Allowed, Context, Scope};
-use super::terms::{Stretch, coordinate_stretch, stretch_of};
+use super::scope::{AllowedQuantities, Context, Scope};
+use super::terms::{Stretch, coordinate_stretch, position_value_and_rate};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr as Value, Extreme, Function, Vec3};
 use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, CoulombFriction, Dashpot, Pose, Quantity, Spring};
-use crate::syntax::{Description, Drive, DriveLaw, DriveOn, DriveQuantity, Expr, Wrench};
+use crate::syntax::{Description, Drive, DriveLaw, DriveQuantity, DriveTarget, Expr, Wrench};
 
 /// Returns the inputs among the force elements of a file, in the order of their entries in `u`. These entries
 /// follow those of the driven joints and precede all others.
@@ -43,7 +44,7 @@ pub fn drive_quantities<'g>(
     match drive.law {
         DriveLaw::Input(_) => vec![(DriveQuantity::Input, Quantity::Input(input).expr(g))],
         DriveLaw::Expression { offset, .. } => {
-            let stretch = stretch_of_drive(scope, &drive.on, terms, cx);
+            let stretch = length_or_wrench_of_drive(scope, &drive.on, terms, cx);
             let [length, rate] = stretch.map_or([g.zero(); 2], |stretch| [stretch.value, stretch.rate]);
             vec![(DriveQuantity::Length, length + g.num(offset)), (DriveQuantity::Rate, rate)]
         }
@@ -52,22 +53,22 @@ pub fn drive_quantities<'g>(
 }
 
 /// Returns the length or wrench on which an element acts.
-fn stretch_of_drive<'g>(
+fn length_or_wrench_of_drive<'g>(
     scope: &Scope<'_, 'g>,
-    on: &DriveOn,
+    on: &DriveTarget,
     terms: &[Coordinate],
     cx: &mut Diagnostics,
 ) -> Option<Stretch<'g>> {
     match on {
-        DriveOn::Sum(_) => Some(sum_stretch(scope, terms)),
-        DriveOn::Length(e) => stretch_of(scope, e, cx),
-        DriveOn::Wrench(wrench) => wrench_stretch(scope, wrench, cx),
+        DriveTarget::Sum(_) => Some(stretch_of_coordinate_sum(scope, terms)),
+        DriveTarget::Length(e) => position_value_and_rate(scope, e, cx),
+        DriveTarget::Wrench(wrench) => wrench_work_rate(scope, wrench, cx),
     }
 }
 
 /// Returns the forces of an element; `None` without an effect. `input` is the index in `u` of an element that
 /// is an input.
-pub fn drive_forces<'g>(
+pub fn resolve_drive_forces<'g>(
     scope: &Scope<'_, 'g>,
     drive: &Drive,
     (input, terms): (usize, &[Coordinate]),
@@ -92,25 +93,29 @@ pub fn drive_forces<'g>(
         _ => {}
     }
     // A force on a constant length has no effect.
-    if let (DriveOn::Sum(_), DriveLaw::Input(_)) = (&drive.on, &drive.law) {
+    if let (DriveTarget::Sum(_), DriveLaw::Input(_)) = (&drive.on, &drive.law) {
         return None;
     }
-    let stretch = stretch_of_drive(scope, &drive.on, terms, cx)?;
+    let stretch = length_or_wrench_of_drive(scope, &drive.on, terms, cx)?;
     if velocity_gradient(stretch.rate).is_empty() {
         return None;
     }
     let number_expression = |value| Expr::number_at(value, place);
     match drive.law {
-        DriveLaw::Spring { stiffness, free } => {
-            spring_law(scope, stretch, &SpringLaw::Linear(&number_expression(stiffness)), g.num(free), cx)
-        }
+        DriveLaw::Spring { stiffness, free } => spring_force_of_law(
+            scope,
+            stretch,
+            &SpringLaw::Linear(&number_expression(stiffness)),
+            g.num(free),
+            cx,
+        ),
         DriveLaw::Slack { stiffness, range: [low, high] } => {
             let short = (stretch.value - g.num(low)).minimum_or_maximum(Extreme::Min, g.zero());
             let long = (stretch.value - g.num(high)).minimum_or_maximum(Extreme::Max, g.zero());
             let excess = if low == high { stretch.value - g.num(low) } else { short + long };
             let [first, second, third] = stiffness.map(|k| g.num(k));
             let cubic = second * (1.0 / 3.0) + third * 0.25 * excess;
-            Some(Forces::of_potentials([excess.square() * (first * 0.5 + cubic * excess)]))
+            Some(Forces::forces_of_potentials([excess.square() * (first * 0.5 + cubic * excess)]))
         }
         DriveLaw::PolynomialDamper(damping) => {
             let [first, second, third] = damping.map(|c| g.num(c));
@@ -130,19 +135,19 @@ pub fn drive_forces<'g>(
             cx,
         ),
         DriveLaw::Inerter(value) => inertance_force(scope, stretch.rate, &number_expression(value), cx),
-        DriveLaw::Push(force) => value_load(stretch.rate, g.num(force), place, cx),
-        DriveLaw::Input(_) => Some(input_load(input, stretch.rate)),
+        DriveLaw::Push(force) => load_split_by_acceleration(stretch.rate, g.num(force), place, cx),
+        DriveLaw::Input(_) => Some(load_of_input(input, stretch.rate)),
         DriveLaw::Expression { ref force, .. } => {
-            let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))));
-            let force = scope.in_context(context, |scope| scope.resolve_scalar(force, cx))?;
-            value_load(stretch.rate, force, place, cx)
+            let context = Context::new(AllowedQuantities::Motion, Some((None, Pose::identity(g))));
+            let force = scope.call_in_context(context, |scope| scope.resolve_scalar(force, cx))?;
+            load_split_by_acceleration(stretch.rate, force, place, cx)
         }
     }
 }
 
 /// Returns the rate on which a force and a torque at a point do work, `f · v + t · ω`. The velocities are
 /// relative to the body on which the reaction acts, if there is one.
-fn wrench_stretch<'g>(scope: &Scope<'_, 'g>, wrench: &Wrench, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
+fn wrench_work_rate<'g>(scope: &Scope<'_, 'g>, wrench: &Wrench, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
     let g = scope.graph;
     let on = scope.resolve_placement(&wrench.on, cx)?;
     let against = match &wrench.against {
@@ -151,7 +156,7 @@ fn wrench_stretch<'g>(scope: &Scope<'_, 'g>, wrench: &Wrench, cx: &mut Diagnosti
     };
     let axes = against.as_ref().unwrap_or(&on);
     let [force, torque] = [wrench.force, wrench.torque]
-        .map(|vector| axes.pose.rotation.to_parent(Vec3::from_numbers(g, vector)));
+        .map(|vector| axes.pose.rotation.to_parent(Vec3::vector_from_constants(g, vector)));
     let kinematics = &scope.kinematics;
     let rate = match &against {
         None => on.link.map_or(g.zero(), |link| {
@@ -163,7 +168,7 @@ fn wrench_stretch<'g>(scope: &Scope<'_, 'g>, wrench: &Wrench, cx: &mut Diagnosti
             let zero = Vec3::zero(g);
             let between = kinematics.position_between(&on, against);
             let path = kinematics.resolve(&between, against.link, zero).dot(force);
-            let turning = kinematics.angular_velocity_in(on.link, against.link, g);
+            let turning = kinematics.angular_velocity_in_frame(on.link, against.link, g);
             let turning = kinematics.resolve(&turning, against.link, zero).dot(torque);
             time_derivative(scope.configuration_space(), path) + turning
         }
@@ -180,7 +185,7 @@ fn weighted_coordinate<'g>(scope: &Scope<'_, 'g>, joint: &str, weight: f64) -> O
 }
 
 /// Returns the stretch of a sum of coordinates.
-fn sum_stretch<'g>(scope: &Scope<'_, 'g>, terms: &[Coordinate]) -> Stretch<'g> {
+fn stretch_of_coordinate_sum<'g>(scope: &Scope<'_, 'g>, terms: &[Coordinate]) -> Stretch<'g> {
     let zero = scope.graph.zero();
     let mut sum = Stretch { value: zero, rate: zero, square: zero, signed: false };
     for c in terms {

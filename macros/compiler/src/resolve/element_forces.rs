@@ -28,7 +28,7 @@ pub struct Forces<'g> {
 
 impl<'g> Forces<'g> {
     /// Returns the forces that derive from potential energies.
-    pub fn of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> Forces<'g> {
+    pub fn forces_of_potentials(energies: impl IntoIterator<Item = Expr<'g>>) -> Forces<'g> {
         Forces { potentials: energies.into_iter().collect(), ..Forces::default() }
     }
 
@@ -46,7 +46,7 @@ impl<'g> Forces<'g> {
     }
 
     /// Adds the forces of the element to those of a model.
-    pub fn add_to(self, model: &mut Model<'g>) {
+    pub fn add_forces_to_model(self, model: &mut Model<'g>) {
         model.springs.extend(self.springs);
         model.dashpots.extend(self.dashpots);
         model.frictions.extend(self.frictions);

@@ -5,7 +5,7 @@ use crate::expr::{Expr, Graph, Rotation, Vec3};
 use crate::mechanism::{Coordinate, InQ, InV, Motion};
 
 /// Elementary motion of a joint.
-pub enum Elementary<'g> {
+pub enum ElementaryMotion<'g> {
     /// Rotation of a joint about an axis.
     Turn(Vec3<'g>),
     /// Translation of a joint along an axis.
@@ -18,20 +18,20 @@ pub enum Elementary<'g> {
     Free,
 }
 
-impl<'g> Elementary<'g> {
+impl<'g> ElementaryMotion<'g> {
     /// Returns the axis of translation, if the motion is a translation or a screw.
     pub fn translation_axis(&self) -> Option<Vec3<'g>> {
         match self {
-            Elementary::Slide(axis) | Elementary::Helix(axis, _) => Some(*axis),
-            Elementary::Turn(_) | Elementary::Ball | Elementary::Free => None,
+            ElementaryMotion::Slide(axis) | ElementaryMotion::Helix(axis, _) => Some(*axis),
+            ElementaryMotion::Turn(_) | ElementaryMotion::Ball | ElementaryMotion::Free => None,
         }
     }
 
     /// Returns the axis of rotation, if the motion is a rotation or a screw.
     pub fn rotation_axis(&self) -> Option<Vec3<'g>> {
         match self {
-            Elementary::Turn(axis) | Elementary::Helix(axis, _) => Some(*axis),
-            Elementary::Slide(_) | Elementary::Ball | Elementary::Free => None,
+            ElementaryMotion::Turn(axis) | ElementaryMotion::Helix(axis, _) => Some(*axis),
+            ElementaryMotion::Slide(_) | ElementaryMotion::Ball | ElementaryMotion::Free => None,
         }
     }
 
@@ -46,17 +46,17 @@ impl<'g> Elementary<'g> {
     ) -> (Motion<'g>, Rotation<'g>) {
         let none = Rotation::identity(graph);
         match self {
-            Elementary::Turn(axis) => {
+            ElementaryMotion::Turn(axis) => {
                 let (axis, aligned) = nearest_axis_and_rotation(graph, *axis);
                 (Motion::Turn { axis, coordinate }, aligned)
             }
-            Elementary::Helix(axis, pitch) => {
+            ElementaryMotion::Helix(axis, pitch) => {
                 let (axis, aligned) = nearest_axis_and_rotation(graph, *axis);
                 (Motion::Helix { axis, pitch: *pitch, coordinate }, aligned)
             }
-            Elementary::Slide(axis) => (Motion::Slide { axis: *axis, coordinate }, none),
-            Elementary::Ball => (Motion::Ball { q, v }, none),
-            Elementary::Free => (Motion::Free { q, v }, none),
+            ElementaryMotion::Slide(axis) => (Motion::Slide { axis: *axis, coordinate }, none),
+            ElementaryMotion::Ball => (Motion::Ball { q, v }, none),
+            ElementaryMotion::Free => (Motion::Free { q, v }, none),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Queries of declared elements: coordinates and frames of joints, names of placed elements, and inputs.
 
 use super::joint::full_name;
-use super::range::ValueRange;
+use super::range::FiniteParameterRange;
 use super::scope::{PlainCoordinate, Scope};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::replace::replace_all;
@@ -34,11 +34,12 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the frame of a joint on the body of one of its ends.
     pub fn frame_of_endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let translation = match &end.at {
-            Some(at) => self.own_vector(at, cx).filter(|v| {
-                let range = ValueRange::of_scalar(&self.description.scalar);
+            Some(at) => self.resolve_own_axes_vector(at, cx).filter(|v| {
+                let range = FiniteParameterRange::range_of_scalar_type(&self.description.scalar);
                 let describe_joint_position = || format!("the position of a joint on `{}`", end.body.text);
-                v.0.iter()
-                    .for_each(|c| self.record_requirement(Rule::Length, describe_joint_position, &[*c]));
+                v.0.iter().for_each(|c| {
+                    self.record_parameter_condition(Rule::Length, describe_joint_position, &[*c])
+                });
                 v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
             }),
             None => Some(Vec3::zero(self.graph)),
@@ -50,7 +51,7 @@ impl<'g> Scope<'_, 'g> {
     /// Returns a substitute pose for an element with an error. Its generic values avoid follow-up errors.
     pub fn substitute_pose(&self, moves: bool) -> Pose<'g> {
         let g = self.graph;
-        let mut translation = Vec3::from_numbers(g, [0.731, 0.417, 0.593]);
+        let mut translation = Vec3::vector_from_constants(g, [0.731, 0.417, 0.593]);
         if moves {
             translation += Vec3::coordinate_axis(g, 0) * Quantity::Time.expr(g);
         }
@@ -58,7 +59,11 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the placement of the parent of a joint: a body or a point.
-    pub fn joint_parent(&self, name: &Name, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+    pub fn placement_of_joint_parent(
+        &self,
+        name: &Name,
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, Pose<'g>)> {
         if name.text == GROUND {
             return Some((None, Pose::identity(self.graph)));
         }
@@ -80,7 +85,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Whether an element is a body, or a particle without a position of its own, which can be the child of a
     /// joint.
-    pub fn is_jointed(&self, name: &str) -> bool {
+    pub fn can_be_joint_child(&self, name: &str) -> bool {
         let d = self.description;
         let unplaced = d.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
         d.bodies.iter().map(|b| &b.name).chain(unplaced).any(|known| known.text == name)
@@ -92,7 +97,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns expressions with the coordinates of released joints, and their rates, set to zero.
-    pub fn with_released_at_zero(&self, e: &[expr::Expr<'g>]) -> Vec<expr::Expr<'g>> {
+    pub fn with_released_coordinates_zero(&self, e: &[expr::Expr<'g>]) -> Vec<expr::Expr<'g>> {
         let Some((q, v)) = self.kinematics.first_released else { return e.to_vec() };
         replace_all(e, &|s| {
             let released = match Quantity::from_symbol(s) {

@@ -3,8 +3,8 @@
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr as Value;
-use crate::mechanism::{DRY_FRICTION, Equilibrium, Model, RestingState};
-use crate::resolve::scope::{Allowed, Context, Scope};
+use crate::mechanism::{DRY_FRICTION, Equilibrium, FirstOrderStateAtRest, Model};
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::syntax::{self, Action, Expr, ForceKind, RATE_OF_STATE};
 use std::collections::BTreeSet;
 
@@ -55,7 +55,7 @@ fn resolve_equilibrium<'g>(
         place: declared.name.place.clone(),
         configuration: vec![g.zero(); model.nq()],
         inputs: vec![g.zero(); model.nu()],
-        states: resting_states(scope, model),
+        states: first_order_equilibrium_states(scope, model),
     };
     for chart in &model.charts {
         if let Some(first) = chart.first_quaternion_index() {
@@ -82,7 +82,10 @@ fn resolve_equilibrium<'g>(
 }
 
 /// Returns the states of first order with the value zero.
-fn resting_states<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> Vec<RestingState<'g>> {
+fn first_order_equilibrium_states<'g>(
+    scope: &Scope<'_, 'g>,
+    model: &Model<'g>,
+) -> Vec<FirstOrderStateAtRest<'g>> {
     let g = scope.graph;
     let rate_of_state = |name: &str| {
         let rate = format!("{name}{RATE_OF_STATE}");
@@ -91,7 +94,7 @@ fn resting_states<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> Vec<RestingSt
     };
     let states = scope.description.states.iter();
     states
-        .map(|(name, parameter)| RestingState {
+        .map(|(name, parameter)| FirstOrderStateAtRest {
             parameter: *parameter,
             value: g.zero(),
             rate: rate_of_state(&name.text),
@@ -113,8 +116,8 @@ fn value_at_rest<'g>(
     };
     let coordinates = &scope.kinematics.coordinates;
     let angle = coordinates.iter().any(|(known, _, angle)| known == name && *angle);
-    scope.in_context(Context::new(Allowed::Constant, None), |scope| match angle {
-        true => scope.plane_angle(value, cx),
+    scope.call_in_context(Context::new(AllowedQuantities::Constant, None), |scope| match angle {
+        true => scope.resolve_plane_angle(value, cx),
         false => scope.resolve_scalar(value, cx),
     })
 }
@@ -133,12 +136,12 @@ fn resolve_variable<'g>(
         || scope.description.states.iter().position(|(name, _)| name.text == text).map(Variable::State);
     let found = coordinate.map(Variable::Coordinate).or_else(find_input).or_else(state);
     if found.is_none() {
-        report_no_variable(scope, model, place, &text, cx);
+        report_place_without_variable(scope, model, place, &text, cx);
     }
     found
 }
 
-fn report_no_variable<'g>(
+fn report_place_without_variable<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     place: &Expr,
@@ -168,7 +171,7 @@ fn report_no_variable<'g>(
         }
         _ => error.suggest_name(text, known),
     };
-    if error.is_bare() {
+    if error.has_no_help() {
         error.add_help("coordinates, inputs and states have values: `#[equilibrium(joint = angle)]`");
     }
 }

@@ -27,7 +27,7 @@ impl<'a, 'g> Scope<'a, 'g> {
     }
 
     /// Returns the value of a vector expression in the attribute's own axes.
-    pub fn own_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
+    pub fn resolve_own_axes_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
         self.resolve_vector(e, cx).and_then(|terms| self.own_axes_sum(terms, e, cx))
     }
 
@@ -52,12 +52,12 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     /// Returns the value of a vector expression as a sum over axes.
     pub fn resolve_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<(Axes, Vec3<'g>)>> {
-        self.vector_or(e, "multiply it by a direction, as in `length * y`", cx)
+        self.resolve_vector_with_help(e, "multiply it by a direction, as in `length * y`", cx)
     }
 
     /// Returns the value of a vector expression as a sum over axes, and reports a scalar with the given help.
     /// Each subexpression is evaluated once, for any depth of nesting.
-    pub fn vector_or(
+    pub fn resolve_vector_with_help(
         &self,
         e: &syntax::Expr,
         help: &str,
@@ -87,12 +87,13 @@ impl<'a, 'g> Scope<'a, 'g> {
         let mut operations = Vec::new();
         let mut first = e;
         while let ExprKind::Binary(op, left, right, _) = &first.kind
-            && self.compared_symbol(first).is_none()
+            && self.symbol_of_compared_expression(first).is_none()
         {
             operations.push((*op, &**right, first));
             first = left;
         }
-        let mut value = self.resolve_operand(first, cx).and_then(|value| require_finite(value, first, cx));
+        let mut value =
+            self.resolve_non_binary_expression(first, cx).and_then(|value| require_finite(value, first, cx));
         for (op, right, whole) in operations.into_iter().rev() {
             let right = self.resolve_value(right, cx);
             let both = value.zip(right);
@@ -103,8 +104,8 @@ impl<'a, 'g> Scope<'a, 'g> {
     }
 
     /// Returns the value of an expression that is not a binary operation.
-    fn resolve_operand(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        if let Some(symbol) = self.compared_symbol(e) {
+    fn resolve_non_binary_expression(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if let Some(symbol) = self.symbol_of_compared_expression(e) {
             return Some(Value::Scalar(symbol));
         }
         match &e.kind {
@@ -118,7 +119,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 }
                 Some(Value::Scalar(self.graph.num(*n)))
             }
-            ExprKind::Name(name) => self.resolve_name(name, e, cx),
+            ExprKind::Name(name) => self.resolve_name_in_expression(name, e, cx),
             ExprKind::Field(inner, member) => self.resolve_member(inner, member, cx),
             ExprKind::Neg(inner) => Some(match self.resolve_value(inner, cx)? {
                 Value::Scalar(s) => Value::Scalar(-s),
@@ -130,15 +131,15 @@ impl<'a, 'g> Scope<'a, 'g> {
             ExprKind::Array(items)
                 if !items.is_empty() && items.iter().all(|item| matches!(item.kind, ExprKind::Array(_))) =>
             {
-                self.matrix_by_rows(e, cx)
+                self.resolve_matrix_from_rows(e, cx)
             }
             ExprKind::Array(items) if items.len() == 3 => {
                 let parts: Vec<Option<Expr<'g>>> = items.iter().map(|i| self.resolve_scalar(i, cx)).collect();
                 let vector = Vec3([parts[0]?, parts[1]?, parts[2]?]);
-                Some(self.own_axes(vector))
+                Some(self.vector_in_context_axes(vector))
             }
             ExprKind::Method(_, method, _) => {
-                self.report_method(e, method, cx);
+                self.report_unknown_method(e, method, cx);
                 None
             }
             ExprKind::Array(items) => {
@@ -188,7 +189,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 return None;
             }
             (op, left @ Value::Matrix(_), right) | (op, left, right @ Value::Matrix(_)) => {
-                return self.matrix_binary(op, left, right, e, cx);
+                return self.resolve_matrix_operation(op, left, right, e, cx);
             }
             (BinaryOp::Div, Scalar(a), Scalar(b)) => Scalar(a / b),
             (BinaryOp::Add, Vector(a), Vector(b)) => Vector(sum_by_axes(a, b)),

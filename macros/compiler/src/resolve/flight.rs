@@ -32,7 +32,7 @@ impl<'g> Air<'g> {
 
 impl<'g> Scope<'_, 'g> {
     /// Returns a value of the standard atmosphere at a height above sea level.
-    pub fn resolve_air_quantity(
+    pub fn resolve_standard_atmosphere(
         &self,
         call: &Call<'_>,
         value: fn(Air<'g>) -> Expr<'g>,
@@ -48,7 +48,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns an angle of a velocity relative to a body, computed from its components in the body's axes.
-    pub fn flight_angle(
+    pub fn resolve_flight_angle(
         &self,
         call: &Call<'_>,
         cx: &mut Diagnostics,
@@ -59,7 +59,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns an angle of a velocity, computed from its components in ground axes.
-    pub fn velocity_angle(
+    pub fn resolve_velocity_angle(
         &self,
         call: &Call<'_>,
         cx: &mut Diagnostics,
@@ -93,7 +93,12 @@ impl<'g> Scope<'_, 'g> {
     /// Returns a vector given by its components in stability axes, which are body axes rotated by the angle
     /// of attack, or in wind axes, which are also rotated by the sideslip angle: forward along the velocity,
     /// right, down (Etkin and Reid, *Dynamics of Flight*, 1996, § 1.6 and appendix A.7).
-    pub fn in_flight_axes(&self, call: &Call<'_>, of_wind: bool, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn vector_from_flight_axes(
+        &self,
+        call: &Call<'_>,
+        of_wind: bool,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         let [body, velocity, list] = call.take_arguments(cx)?;
         let ExprKind::Array(items) = &list.kind else {
             cx.report_error(list.place.clone(), "expected the three components in a list").add_help(format!(
@@ -140,7 +145,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let mut along = |k: usize| {
-            let (_, both) = self.common_axes(&[vector, &body_axis_expression(body, k)], cx)?;
+            let (_, both) = self.resolve_in_common_axes(&[vector, &body_axis_expression(body, k)], cx)?;
             Some(both[0].dot(both[1]))
         };
         Some([along(0)?, along(1)?, along(2)?])

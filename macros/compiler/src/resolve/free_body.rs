@@ -6,17 +6,17 @@
 //! coordinates.
 
 use super::element_forces::Forces;
-use super::holders::{MovingPlacement, holders_of, name_of};
+use super::holders::{MovingPlacement, connections_of_body, name_of_connection};
 use super::output::output_axes;
 use super::power::power_of_input;
-use super::reaction::{RELEASED, Release};
-use super::scope::{Allowed, Context, Placed, PlacedKind, Scope, Terms};
+use super::reaction::{RELEASED, ReleasedJoints};
+use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope, Terms};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Function, Symbol, Vec3};
 use crate::kinematics::{random_configuration, time_derivative, velocity_gradient};
-use crate::mechanism::{Diagram, LinkId, Model, Origin, OutputValue, Pose, Quantity};
+use crate::mechanism::{Diagram, LinkId, Model, Origin, OutputExpression, Pose, Quantity};
 use crate::syntax::{self, Definition, Endpoint, ExprKind, JointKind, Target};
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ struct ActionWrench<'g> {
 struct FreedBody<'s, 'a, 'g> {
     scope: &'s Scope<'a, 'g>,
     model: &'s Model<'g>,
-    release: &'s Release<'s, 'g>,
+    release: &'s ReleasedJoints<'s, 'g>,
     name: String,
     link: Option<LinkId>,
     mass: Expr<'g>,
@@ -51,10 +51,10 @@ struct FreedBody<'s, 'a, 'g> {
 type DiagramAction<'g> = (String, Origin, Option<Terms<'g>>, ActionWrench<'g>);
 
 /// Returns the generalized forces of an element on the coordinates of released joints.
-pub fn forces_on_released<'g>(
+pub fn forces_on_released_joints<'g>(
     scope: &Scope<'_, 'g>,
     m: &Model<'g>,
-    (release, applied): (&Release<'_, 'g>, &Forces<'g>),
+    (release, applied): (&ReleasedJoints<'_, 'g>, &Forces<'g>),
     name: &str,
 ) -> Vec<Expr<'g>> {
     let open = RELEASED * release.joints.len();
@@ -93,30 +93,32 @@ pub fn forces_on_released<'g>(
 }
 
 /// Returns the free-body diagram of an output. The diagram has no actions until joints are released.
-pub fn resolve_free_body<'g>(
+pub fn resolve_free_body_diagram<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
-    (release, placements): (Option<&Release<'_, 'g>>, &[MovingPlacement]),
+    (release, placements): (Option<&ReleasedJoints<'_, 'g>>, &[MovingPlacement]),
     output: &Definition,
     cx: &mut Diagnostics,
-) -> Option<OutputValue<'g>> {
-    let name = check_free_body(scope, placements, output, cx)?;
+) -> Option<OutputExpression<'g>> {
+    let name = name_of_diagram_body(scope, placements, output, cx)?;
     let axes = output_axes(scope, output, cx)?;
-    let holders = holders_of(scope, placements, &name);
+    let holders = connections_of_body(scope, placements, &name);
     let released: Vec<usize> = holders.iter().map(|(number, _)| *number).collect();
     let empty = Diagram { body: name.clone(), actions: Vec::new(), released };
     let output_value =
-        |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
+        |values, diagram| OutputExpression { name: output.name.text.clone(), values, diagram: Some(diagram) };
     let Some(release) = release else { return Some(output_value(Vec::new(), empty)) };
-    let joints: Vec<(usize, bool)> =
-        holders.iter().filter_map(|(number, holds)| Some((release.index_of(*number)?, *holds))).collect();
-    let (link, mass, center) = rigid_part(scope, model, (&name, &joints), output, cx)?;
+    let joints: Vec<(usize, bool)> = holders
+        .iter()
+        .filter_map(|(number, holds)| Some((release.index_of_released_joint(*number)?, *holds)))
+        .collect();
+    let (link, mass, center) = rigid_group_mass_properties(scope, model, (&name, &joints), output, cx)?;
     let body = FreedBody { scope, model, release, name, link, mass, center, joints, axes };
-    let mut all: Vec<DiagramAction<'g>> = body.gravity_on().into_iter().collect();
-    all.extend(body.elements_on());
-    all.extend(body.joints_on());
-    all.extend(body.constraints_on());
-    all.extend(body.contacts_on());
+    let mut all: Vec<DiagramAction<'g>> = body.gravity_action_on_body().into_iter().collect();
+    all.extend(body.element_actions_on_body());
+    all.extend(body.joint_reactions_on_body());
+    all.extend(body.constraint_reactions_on_body());
+    all.extend(body.contact_wrenches_on_body());
     let (mut values, mut actions) = (Vec::new(), Vec::new());
     let rotation = &body.axes.1.rotation;
     for (name, origin, place, wrench) in all {
@@ -125,11 +127,14 @@ pub fn resolve_free_body<'g>(
         values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
         actions.push((name, origin));
     }
-    Some(output_value(scope.with_released_at_zero(&values), Diagram { body: body.name, actions, ..empty }))
+    Some(output_value(
+        scope.with_released_coordinates_zero(&values),
+        Diagram { body: body.name, actions, ..empty },
+    ))
 }
 
 /// Returns the name of the body, if it can have a diagram.
-fn check_free_body<'g>(
+fn name_of_diagram_body<'g>(
     scope: &Scope<'_, 'g>,
     placements: &[MovingPlacement],
     output: &Definition,
@@ -137,9 +142,11 @@ fn check_free_body<'g>(
 ) -> Option<String> {
     let ground = Some((None, Pose::identity(scope.graph)));
     let e = &output.value;
-    scope.in_context(Context::new(Allowed::Reaction, ground), |scope| scope.body_with_mass(e, cx))?;
+    scope.call_in_context(Context::new(AllowedQuantities::Reaction, ground), |scope| {
+        scope.resolve_body_with_mass(e, cx)
+    })?;
     let name = e.as_name()?;
-    if holders_of(scope, placements, name).iter().all(|(_, holds)| !holds) {
+    if connections_of_body(scope, placements, name).iter().all(|(_, holds)| !holds) {
         cx.report_error(e.place.clone(), format!("`{name}` has no joint that can be released")).add_help(
             "a free-body diagram is available for a body or a particle with a joint or with its own `at` \
              and `frame`; a body fixed to another one belongs to the diagram of that one",
@@ -151,7 +158,7 @@ fn check_free_body<'g>(
 
 /// Returns the link, the mass and the centre of mass of a body and all elements fixed to it. Reports
 /// elements that move on it without a joint.
-fn rigid_part<'g>(
+fn rigid_group_mass_properties<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     (name, joints): (&str, &[(usize, bool)]),
@@ -189,7 +196,7 @@ fn rigid_part<'g>(
     let at = &kinematics.places.get(name)?.pose;
     let translation = if mass.is_zero() { at.translation } else { sum.map(|c| c / mass) };
     let pose = Pose { translation, rotation: at.rotation.clone() };
-    Some((link, mass, Placed { link, pose, kind: PlacedKind::Point }))
+    Some((link, mass, Placed { link, pose, kind: PlacedElementKind::Point }))
 }
 
 /// Returns the first link of the motions of a released joint.
@@ -218,11 +225,11 @@ impl<'g> FreedBody<'_, '_, 'g> {
         kinematics.resolve(&terms, self.axes.0, Vec3::zero(self.scope.graph))
     }
 
-    fn position_of(&self, placed: &Placed<'g>) -> Terms<'g> {
+    fn position_of_placed(&self, placed: &Placed<'g>) -> Terms<'g> {
         self.scope.kinematics.position_of_point(placed.link, placed.pose.translation)
     }
 
-    fn gravity_on(&self) -> Option<DiagramAction<'g>> {
+    fn gravity_action_on_body(&self) -> Option<DiagramAction<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         let weight = self.model.gravity * self.mass;
         if weight.is_zero() {
@@ -238,7 +245,9 @@ impl<'g> FreedBody<'_, '_, 'g> {
         let mut sum = ActionWrench { force: zero, torque: zero };
         for (index, holds) in &self.joints {
             let reaction_vector = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * index + k + i]));
-            let Some(w) = self.joint_wrench(*index, reaction_vector(0), reaction_vector(3)) else {
+            let Some(w) =
+                self.joint_wrench_about_center_of_mass(*index, reaction_vector(0), reaction_vector(3))
+            else {
                 continue;
             };
             let sign = self.scope.graph.num(if *holds { 1.0 } else { -1.0 });
@@ -250,32 +259,37 @@ impl<'g> FreedBody<'_, '_, 'g> {
 
     /// Returns the wrench about the centre of mass of a force and a torque at a released joint, given in the
     /// frame of the joint.
-    fn joint_wrench(&self, index: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<ActionWrench<'g>> {
+    fn joint_wrench_about_center_of_mass(
+        &self,
+        index: usize,
+        force: Vec3<'g>,
+        torque: Vec3<'g>,
+    ) -> Option<ActionWrench<'g>> {
         let zero = Vec3::zero(self.scope.graph);
         if force.is_zero() && torque.is_zero() {
             return Some(ActionWrench { force: zero, torque: zero });
         }
         let frame = self.release.frames.get(self.release.joints.get(index)?)?;
-        let in_result_axes = |v: Vec3<'g>| {
+        let components_in_result_axes = |v: Vec3<'g>| {
             let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
             self.scope.kinematics.resolve(&terms, self.axes.0, zero)
         };
-        let (force, torque) = (in_result_axes(force), in_result_axes(torque));
-        let arm = self.arm_from_center(&self.position_of(frame));
+        let (force, torque) = (components_in_result_axes(force), components_in_result_axes(torque));
+        let arm = self.arm_from_center(&self.position_of_placed(frame));
         Some(ActionWrench { force, torque: torque + arm.cross(force) })
     }
 
-    fn elements_on(&self) -> Vec<DiagramAction<'g>> {
+    fn element_actions_on_body(&self) -> Vec<DiagramAction<'g>> {
         let mut all = Vec::new();
         for (name, forces) in &self.release.forces {
-            let forces = self.scope.with_released_at_zero(forces);
+            let forces = self.scope.with_released_coordinates_zero(forces);
             let wrench = self.wrench_on_body(&forces);
-            if !self.is_nonzero(&wrench, &forces) {
+            if !self.has_nonzero_force_sum(&wrench, &forces) {
                 continue;
             }
             let is_input = self.model.inputs.iter().any(|(input, _)| input == name);
             let origin = if is_input { Origin::Input } else { Origin::Element };
-            let place = self.place_of_element(name);
+            let place = self.action_point_of_element(name);
             let wrench = match &place {
                 // A force through its point of action has no torque about that point.
                 Some(_) => ActionWrench { torque: Vec3::zero(self.scope.graph), ..wrench },
@@ -287,12 +301,12 @@ impl<'g> FreedBody<'_, '_, 'g> {
     }
 
     /// Returns the point of the body at which an element acts, if it acts at a single point.
-    fn place_of_element(&self, name: &str) -> Option<Terms<'g>> {
+    fn action_point_of_element(&self, name: &str) -> Option<Terms<'g>> {
         let action = self.scope.description.actions.iter().find(|action| action.name.text == name)?;
         let mut unread = Diagnostics::discarded_diagnostics();
         let mut here = |e: &syntax::Expr| {
-            let placed = self.scope.current_place(e, &mut unread)?;
-            (placed.link == self.link).then(|| self.position_of(&placed))
+            let placed = self.scope.placement_of_moving_point(e, &mut unread)?;
+            (placed.link == self.link).then(|| self.position_of_placed(&placed))
         };
         let row = action.kind.row();
         match &action.on {
@@ -308,13 +322,13 @@ impl<'g> FreedBody<'_, '_, 'g> {
     }
 
     /// Returns the reactions on the body of the tree's joints, and of elements placed by `at` and `frame`.
-    fn joints_on(&self) -> Vec<DiagramAction<'g>> {
+    fn joint_reactions_on_body(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let mut all = Vec::new();
         for (index, holds) in &self.joints {
             let Some(&j) = self.release.joints.get(*index) else { continue };
             let (name, origin) =
-                match (self.scope.description.joints.get(j), name_of(self.scope.description, j)) {
+                match (self.scope.description.joints.get(j), name_of_connection(self.scope.description, j)) {
                     (Some(joint), _) if joint.kind == JointKind::Free => continue,
                     (Some(joint), _) => (joint.name.text.clone(), Origin::Joint),
                     (None, Some(name)) => (format!("{}.place", name.text), Origin::Constraint),
@@ -322,19 +336,20 @@ impl<'g> FreedBody<'_, '_, 'g> {
                 };
             let Some(frame) = self.release.frames.get(&j) else { continue };
             let sign = g.num(if *holds { 1.0 } else { -1.0 });
-            let reaction_part = |k: usize| {
+            let reaction_vector_in_axes = |k: usize| {
                 let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
                 let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
                 self.scope.kinematics.resolve(&terms, self.axes.0, Vec3::zero(g))
             };
-            let wrench = ActionWrench { force: reaction_part(0), torque: reaction_part(3) };
-            all.push((name, origin, Some(self.position_of(frame)), wrench));
+            let wrench =
+                ActionWrench { force: reaction_vector_in_axes(0), torque: reaction_vector_in_axes(3) };
+            all.push((name, origin, Some(self.position_of_placed(frame)), wrench));
         }
         all
     }
 
     /// Returns the wrenches of constraints and of loop-closing joints on the self.
-    fn constraints_on(&self) -> Vec<DiagramAction<'g>> {
+    fn constraint_reactions_on_body(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.release.joints.len();
         let first = self.model.nv() - open;
@@ -356,15 +371,15 @@ impl<'g> FreedBody<'_, '_, 'g> {
                 }
             }
         }
-        let action_of = |(name, forces): (String, Vec<Expr<'g>>)| {
-            let forces = self.scope.with_released_at_zero(&forces);
+        let diagram_action_of_element = |(name, forces): (String, Vec<Expr<'g>>)| {
+            let forces = self.scope.with_released_coordinates_zero(&forces);
             let wrench = self.wrench_on_body(&forces);
-            if !self.is_nonzero(&wrench, &forces) {
+            if !self.has_nonzero_force_sum(&wrench, &forces) {
                 return None;
             }
             let joint = self.scope.description.joints.iter().find(|joint| joint.name.text == name);
             if let Some(joint) = joint {
-                let place = self.joint_end_on([&joint.parent, &joint.child]);
+                let place = self.joint_end_position([&joint.parent, &joint.child]);
                 let wrench = self.wrench_about(place.as_ref(), wrench);
                 return Some((name, Origin::Joint, place, wrench));
             }
@@ -375,11 +390,11 @@ impl<'g> FreedBody<'_, '_, 'g> {
             };
             Some((name, Origin::Constraint, place, wrench))
         };
-        by_name.into_iter().filter_map(action_of).collect()
+        by_name.into_iter().filter_map(diagram_action_of_element).collect()
     }
 
     /// Returns the wrenches of unilateral contacts on the self.
-    fn contacts_on(&self) -> Vec<DiagramAction<'g>> {
+    fn contact_wrenches_on_body(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.release.joints.len();
         let first = self.model.nv() - open;
@@ -393,9 +408,9 @@ impl<'g> FreedBody<'_, '_, 'g> {
                     forces[v - first] += force * d;
                 }
             }
-            let forces = self.scope.with_released_at_zero(&forces);
+            let forces = self.scope.with_released_coordinates_zero(&forces);
             let wrench = self.wrench_on_body(&forces);
-            if self.is_nonzero(&wrench, &forces) {
+            if self.has_nonzero_force_sum(&wrench, &forces) {
                 let place = self.release.contact_points.get(&contact.name).cloned();
                 let wrench = match &place {
                     Some(_) => ActionWrench { torque: Vec3::zero(g), ..wrench },
@@ -408,13 +423,13 @@ impl<'g> FreedBody<'_, '_, 'g> {
     }
 
     /// Returns the position of the end of a joint that belongs to the self.
-    fn joint_end_on(&self, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
+    fn joint_end_position(&self, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
         let mut unread = Diagnostics::discarded_diagnostics();
         ends.into_iter().find_map(|end| {
-            let (link, pose) = self.scope.joint_parent(&end.body, &mut unread)?;
+            let (link, pose) = self.scope.placement_of_joint_parent(&end.body, &mut unread)?;
             let on_body = self.scope.frame_of_endpoint(end, &mut unread)?;
-            let placed = Placed { link, pose: pose.compose_with(&on_body), kind: PlacedKind::Point };
-            (link == self.link).then(|| self.position_of(&placed))
+            let placed = Placed { link, pose: pose.compose_with(&on_body), kind: PlacedElementKind::Point };
+            (link == self.link).then(|| self.position_of_placed(&placed))
         })
     }
 
@@ -427,8 +442,8 @@ impl<'g> FreedBody<'_, '_, 'g> {
 
     /// Whether a sum of forces on several joints is nonzero. Forces between two bodies that the same joint
     /// carries cancel up to rounding.
-    fn is_nonzero(&self, wrench: &ActionWrench<'g>, forces: &[Expr<'g>]) -> bool {
-        let all = self.scope.with_released_at_zero(&[wrench.force.0, wrench.torque.0].concat());
+    fn has_nonzero_force_sum(&self, wrench: &ActionWrench<'g>, forces: &[Expr<'g>]) -> bool {
+        let all = self.scope.with_released_coordinates_zero(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {
             return false;
         }

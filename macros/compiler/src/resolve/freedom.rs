@@ -7,25 +7,29 @@ use crate::mechanism::Model;
 use crate::syntax::{ExprKind, Formulation};
 
 /// Removes redundant rows and counts the degrees of freedom.
-pub fn check_mobility(model: &mut Model<'_>, formulation: &Formulation, cx: &mut Diagnostics) {
+pub fn remove_redundancy_and_check_mobility(
+    model: &mut Model<'_>,
+    formulation: &Formulation,
+    cx: &mut Diagnostics,
+) {
     let mut rows = Rows::new(model);
-    let constant = redundancy::constant_rows(model, &rows);
-    redundancy::check_constant(model, &constant, cx);
+    let constant = redundancy::velocity_independent_row_flags(model, &rows);
+    redundancy::report_violated_constant_rows(model, &constant, cx);
     if !cx.is_empty() {
         return;
     }
     let samples = mobility::sample_configurations(model, &rows, cx);
     let before = model.constraints.clone();
     if redundancy::prune_redundant_rows(model, &rows, &constant, &samples) {
-        contact::check_pressed(&before, &model.redundant, cx);
+        contact::report_undetermined_normal_forces(&before, &model.redundant, cx);
         rows = Rows::new(model);
     }
     model.freedom = mobility::degrees_of_freedom(model, &rows, &samples, cx);
-    choose_speeds(model, formulation, (&rows, &samples), cx);
+    apply_independent_velocities(model, formulation, (&rows, &samples), cx);
 }
 
 /// Expresses the velocities in independent ones, if independent velocities are requested.
-fn choose_speeds(
+fn apply_independent_velocities(
     model: &mut Model<'_>,
     formulation: &Formulation,
     (rows, samples): (&Rows<'_>, &[mobility::Sample]),
@@ -68,7 +72,7 @@ fn choose_speeds(
     if !cx.is_empty() {
         return;
     }
-    model.dependent = mobility::dependent_velocities(model, rows, samples, &independent);
+    model.dependent = mobility::constraint_pivot_velocities(model, rows, samples, &independent);
     if model.dependent.is_none() {
         let diagnostic =
             cx.report_error(place.clone(), "the independent speeds do not determine the other velocities");

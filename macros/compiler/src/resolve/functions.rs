@@ -26,19 +26,19 @@ impl<'g> Scope<'_, 'g> {
         }
         match callee.id {
             Some(Callable::Function(id)) => {
-                self.resolve_function(&Call { id, place: &callee.place, arguments }, cx)
+                self.resolve_function_call(&Call { id, place: &callee.place, arguments }, cx)
             }
             Some(Callable::If) => self.resolve_pieces(arguments, cx).map(Value::Scalar),
             other => {
                 let solid = if let Some(Callable::Solid(solid)) = other { Some(solid) } else { None };
-                self.report_function(callee, solid, cx);
+                self.report_unknown_function(callee, solid, cx);
                 None
             }
         }
     }
 
     /// Returns the value of a function of the language.
-    fn resolve_function(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    fn resolve_function_call(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         use FunctionId as F;
         match call.id {
             F::Degrees => {
@@ -47,7 +47,7 @@ impl<'g> Scope<'_, 'g> {
             F::Atan2 => self.resolve_scalars(call, cx).map(|[y, x]| Value::Scalar(y.atan2(x))),
             F::Pow => {
                 let [base, exponent] = self.resolve_scalars(call, cx)?;
-                check_power(call.place, base, exponent, cx).then(|| Value::Scalar(base.pow(exponent)))
+                check_exponent(call.place, base, exponent, cx).then(|| Value::Scalar(base.pow(exponent)))
             }
             F::Min => self
                 .resolve_scalars(call, cx)
@@ -56,15 +56,15 @@ impl<'g> Scope<'_, 'g> {
                 .resolve_scalars(call, cx)
                 .map(|[a, b]| Value::Scalar(a.minimum_or_maximum(Extreme::Max, b))),
             F::Dot => {
-                let (_, v) = self.common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
+                let (_, v) = self.resolve_in_common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
                 Some(Value::Scalar(v[0].dot(v[1])))
             }
             F::Cross => {
-                let (axes, v) = self.common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
+                let (axes, v) = self.resolve_in_common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
                 Some(Value::Vector(vec![(axes, v[0].cross(v[1]))]))
             }
             F::Project => {
-                let (axes, v) = self.common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
+                let (axes, v) = self.resolve_in_common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
                 let (a, b) = (v[0], v[1]);
                 Some(Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]))
             }
@@ -82,19 +82,19 @@ impl<'g> Scope<'_, 'g> {
                 Some(Value::Vector(vec![(axes, normalised_or_zero(v))]))
             }
             F::Angle => self.resolve_angle(call, cx),
-            F::Position => self.relative_position(call, cx),
+            F::Position => self.resolve_relative_position(call, cx),
             F::Velocity => self.relative_velocity(call, cx),
-            F::Acceleration => self.relative_acceleration(call, cx),
+            F::Acceleration => self.resolve_relative_acceleration(call, cx),
             F::Omega => self.angular_velocity(call, cx),
             F::Alpha => self.angular_acceleration(call, cx),
             F::ReactionForce => self.resolve_reaction(call, 0, cx),
             F::ReactionTorque => self.resolve_reaction(call, 3, cx),
             F::ContactForce => self.contact_force(call, cx),
-            F::ContactMoment => self.contact_moment(call, cx),
+            F::ContactMoment => self.resolve_contact_moment(call, cx),
             F::Momentum => self.resolve_momentum(call, SummedQuantity::Momentum, cx),
             F::AngularMomentum => self.resolve_momentum(call, SummedQuantity::AngularMomentum, cx),
             F::KineticEnergy => self.resolve_momentum(call, SummedQuantity::Energy, cx),
-            F::MomentOfInertia => self.moment_of_inertia(call, cx),
+            F::MomentOfInertia => self.resolve_moment_of_inertia(call, cx),
             F::CenterOfMass => self.center_of_mass(call, cx),
             F::CenterOfPercussion => self.center_of_percussion(call, cx),
             F::InstantCenter => self.instant_center(call, cx),
@@ -106,28 +106,30 @@ impl<'g> Scope<'_, 'g> {
             F::Outer => self.resolve_outer_product(call, cx),
             F::Transpose => self.transpose(call, cx),
             F::Trace => self.resolve_trace(call, cx),
-            F::Rotation => self.physical_rotation(call, cx),
+            F::Rotation => self.resolve_rotation_between_axes(call, cx),
             F::Inertia => self.inertia_matrix(call, cx),
             F::Identity => self.identity(call, cx),
             F::Curvature => self.resolve_curvature(call, cx),
             F::Torsion => self.resolve_torsion(call, cx),
-            F::Cable => self.resolve_cable(call, cx),
+            F::Cable => self.resolve_cable_length(call, cx),
             F::Gradient => self.resolve_gradient(call, cx),
             F::Power => self.resolve_power(call, cx),
-            F::Rate => self.rate_of(call, cx),
-            F::Temperature => self.resolve_air_quantity(call, |air| air.temperature, cx),
-            F::Pressure => self.resolve_air_quantity(call, |air| air.pressure, cx),
-            F::Density => self.resolve_air_quantity(call, |air| air.density(), cx),
-            F::SpeedOfSound => self.resolve_air_quantity(call, |air| air.speed_of_sound(), cx),
-            F::AngleOfAttack => self.flight_angle(call, cx, |[forward, _, down]| down.atan2(forward)),
-            F::Sideslip => self.flight_angle(call, cx, |[f, right, d]| right.atan2(length(f, d))),
-            F::Course => self.velocity_angle(call, cx, |[north, east, _]| east.atan2(north)),
-            F::FlightPath => self.velocity_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e))),
+            F::Rate => self.resolve_rate(call, cx),
+            F::Temperature => self.resolve_standard_atmosphere(call, |air| air.temperature, cx),
+            F::Pressure => self.resolve_standard_atmosphere(call, |air| air.pressure, cx),
+            F::Density => self.resolve_standard_atmosphere(call, |air| air.density(), cx),
+            F::SpeedOfSound => self.resolve_standard_atmosphere(call, |air| air.speed_of_sound(), cx),
+            F::AngleOfAttack => self.resolve_flight_angle(call, cx, |[forward, _, down]| down.atan2(forward)),
+            F::Sideslip => self.resolve_flight_angle(call, cx, |[f, right, d]| right.atan2(length(f, d))),
+            F::Course => self.resolve_velocity_angle(call, cx, |[north, east, _]| east.atan2(north)),
+            F::FlightPath => {
+                self.resolve_velocity_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e)))
+            }
             F::Heading => self.attitude_angle(call, cx, |[north, east, _]| east.atan2(north)),
             F::Elevation => self.attitude_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e))),
             F::Bank => self.resolve_bank_angle(call, cx),
-            F::StabilityAxes => self.in_flight_axes(call, false, cx),
-            F::WindAxes => self.in_flight_axes(call, true, cx),
+            F::StabilityAxes => self.vector_from_flight_axes(call, false, cx),
+            F::WindAxes => self.vector_from_flight_axes(call, true, cx),
         }
     }
 
@@ -181,25 +183,25 @@ impl<'g> Scope<'_, 'g> {
     /// argument.
     fn vector_argument(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
         let [a] = call.take_arguments(cx)?;
-        let vector = self.vector_or(a, help, cx)?;
+        let vector = self.resolve_vector_with_help(a, help, cx)?;
         let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
         Some((axes, v[0]))
     }
 
     /// Reports an unknown function, with the function that is most likely meant.
-    fn report_function(&self, callee: &Callee, solid: Option<Solid>, cx: &mut Diagnostics) {
+    fn report_unknown_function(&self, callee: &Callee, solid: Option<Solid>, cx: &mut Diagnostics) {
         let text = callee.text.as_str();
         let own = self.description.tables.iter().map(|table| table.name.text.as_str());
         let known = Function::ALL.iter().map(|(name, _)| *name).chain(FunctionId::names()).chain(own);
         let known: Vec<&str> = known.collect();
         let error = cx.report_error(callee.place.clone(), format!("unknown function `{text}`"));
-        let greek = words::known_spelling(text, &known);
+        let greek = words::known_name_ignoring_case(text, &known);
         match (greek, solid) {
             (Some(name), _) => drop(error.add_help(format!("did you mean `{name}`?"))),
             (_, Some(_)) => drop(error.add_help(format!("`{text}` is a solid, for `inertia = …`"))),
-            _ => words::suggest_meaning(error, &words::function_synonyms(), text, &known),
+            _ => words::suggest_meaning_or_known_word(error, &words::function_synonyms(), text, &known),
         }
-        if error.is_bare() {
+        if error.has_no_help() {
             error.add_help(
                 "available are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, \
                  `dot`, `cross`, `norm`, …",
@@ -237,7 +239,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 /// Reports a power that is undefined in all states. Returns false then.
-fn check_power(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
+fn check_exponent(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(x) = base.constant_value() else { return true };
     let what = match exponent.constant_value() {
         Some(n) if libm::pow(x, n).is_finite() => return true,

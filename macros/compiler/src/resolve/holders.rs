@@ -8,17 +8,17 @@ use crate::syntax::{self, Description, GROUND, Rank};
 
 /// Returns the index of a body's placement among the releasable connections: joints are first, then bodies,
 /// then particles.
-pub fn body_placement(d: &Description, body: usize) -> usize {
+pub fn body_connection_index(d: &Description, body: usize) -> usize {
     d.joints.len() + body
 }
 
 /// Returns the index of a particle's placement among the releasable connections.
-pub fn particle_placement(d: &Description, particle: usize) -> usize {
+pub fn particle_connection_index(d: &Description, particle: usize) -> usize {
     d.joints.len() + d.bodies.len() + particle
 }
 
 /// Returns the name of a releasable connection: that of a joint, a body or a particle.
-pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
+pub fn name_of_connection(d: &Description, number: usize) -> Option<&syntax::Name> {
     let joints = d.joints.iter().map(|joint| &joint.name);
     let bodies = d.bodies.iter().map(|body| &body.name);
     joints.chain(bodies).chain(d.particles.iter().map(|particle| &particle.name)).nth(number)
@@ -30,8 +30,8 @@ pub type MovingPlacement = (usize, Option<LinkId>);
 
 /// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism
 /// with free-body diagrams.
-pub fn is_on_frame(d: &Description, number: usize) -> bool {
-    let is_placed = |e: &syntax::Expr| {
+pub fn is_fixed_in_frame(d: &Description, number: usize) -> bool {
+    let is_placed_on_body = |e: &syntax::Expr| {
         let base = tree::base_name(e);
         base.is_some_and(|base| base != GROUND && d.frames.iter().all(|frame| frame.name.text != base))
     };
@@ -43,14 +43,14 @@ pub fn is_on_frame(d: &Description, number: usize) -> bool {
         particle.and_then(|particle| particle.at.as_ref()),
     ];
     d.outputs.iter().any(|output| output.rank == Rank::FreeBody)
-        && !places.into_iter().flatten().any(is_placed)
+        && !places.into_iter().flatten().any(is_placed_on_body)
 }
 
 /// Returns the body that carries a point or a particle fixed on it; for a body, the body itself.
-fn body_carrying<'b>(d: &'b Description, placements: &[MovingPlacement], name: &'b str) -> &'b str {
+fn body_carrying_point<'b>(d: &'b Description, placements: &[MovingPlacement], name: &'b str) -> &'b str {
     let has_moving_placement = |name: &str| {
         let numbers = placements.iter().map(|(number, _)| *number);
-        numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
+        numbers.filter_map(|number| name_of_connection(d, number)).any(|moved| moved.text == name)
     };
     let carrier_name = |name: &str| {
         let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
@@ -62,17 +62,21 @@ fn body_carrying<'b>(d: &'b Description, placements: &[MovingPlacement], name: &
 
 /// Returns the connections of a body: joints of the tree and placements. The flag is true if the body is
 /// the child.
-pub fn holders_of(scope: &Scope<'_, '_>, placements: &[MovingPlacement], body: &str) -> Vec<(usize, bool)> {
+pub fn connections_of_body(
+    scope: &Scope<'_, '_>,
+    placements: &[MovingPlacement],
+    body: &str,
+) -> Vec<(usize, bool)> {
     let d = scope.description;
     let closing = tree::loop_closing_joints(d);
     let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
         let holds = joint.child.body.text == body;
-        let joins = holds || body_carrying(d, placements, &joint.parent.body.text) == body;
+        let joins = holds || body_carrying_point(d, placements, &joint.parent.body.text) == body;
         (joins && closing.get(j) == Some(&false)).then_some((j, holds))
     });
     let own = scope.kinematics.places.get(body).and_then(|placed| placed.link);
     let places = placements.iter().filter_map(|(number, carrier)| {
-        let holds = name_of(d, *number).is_some_and(|name| name.text == body);
+        let holds = name_of_connection(d, *number).is_some_and(|name| name.text == body);
         (holds || (carrier.is_some() && *carrier == own)).then_some((*number, holds))
     });
     joints.chain(places).collect()

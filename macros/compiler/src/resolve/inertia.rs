@@ -41,7 +41,7 @@ impl<'g> Scope<'_, 'g> {
             operations.push(operation);
             first = inner;
         }
-        let mut inertia = self.single_inertia(first, cx);
+        let mut inertia = self.resolve_single_solid_inertia(first, cx);
         for operation in operations.into_iter().rev() {
             inertia = match operation {
                 Operation::Add(right) => {
@@ -58,7 +58,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the inertia of one solid or matrix, or reports an error.
-    fn single_inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+    fn resolve_single_solid_inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
         match &e.kind {
             ExprKind::Number(0.0) => Some(Sym3::zero(self.graph)),
             ExprKind::Array(_) => self.resolve_symmetric_matrix(e, cx),
@@ -88,7 +88,7 @@ impl<'g> Scope<'_, 'g> {
                             "write `diagonal({n}, {n}, {n})` for one moment about all axes"
                         ));
                     }
-                    ExprKind::Binary(..) if e.subexpressions().iter().any(|part| is_solid(part)) => {
+                    ExprKind::Binary(..) if e.all_subexpressions().iter().any(|part| is_solid(part)) => {
                         error.add_help("solids are added with `+`; twice a solid has twice the mass");
                     }
                     ExprKind::Binary(..) | ExprKind::Name(_) | ExprKind::Neg(_) => {
@@ -136,11 +136,12 @@ impl<'g> Scope<'_, 'g> {
             let known: Vec<&str> = Solid::names().collect();
             let error = cx.report_error(callee.place.clone(), format!("unknown solid `{text}`"));
             let synonyms = words::solid_synonyms();
-            words::suggest_meaning(error, &synonyms, text, &known);
-            if let Some(solid) = words::meaning_of_word(&synonyms, text, &known).and_then(Solid::of_name) {
+            words::suggest_meaning_or_known_word(error, &synonyms, text, &known);
+            if let Some(solid) = words::meaning_of_word(&synonyms, text, &known).and_then(Solid::find_by_name)
+            {
                 error.add_help(format!("it is written `{}`", solid.usage_syntax()));
             }
-            if error.is_bare() {
+            if error.has_no_help() {
                 error.add_help(
                     "the solids are `rod`, `ring`, `disk`, `cylinder`, `tube`, `cone`, `capsule`, `sphere`, \
                      `shell`, `cuboid`, `plate` and `ellipsoid`, or `diagonal(xx, yy, zz)`",
@@ -157,7 +158,7 @@ impl<'g> Scope<'_, 'g> {
             .add_help(format!("write `{}`", solid.usage_syntax()));
             return None;
         }
-        if self.report_swapped(solid, arguments, cx) {
+        if self.report_swapped_arguments(solid, arguments, cx) {
             return None;
         }
         let (mut numbers, mut axis, mut complete) = (Vec::new(), None, true);
@@ -169,7 +170,7 @@ impl<'g> Scope<'_, 'g> {
             match self.resolve_scalar(e, cx) {
                 Some(s) => {
                     complete &= self.check_not_negative(s, e, cx);
-                    self.record_requirement(
+                    self.record_parameter_condition(
                         Rule::NotNegative,
                         || format!("the {} of a `{text}`", argument.name),
                         &[s],
@@ -184,7 +185,12 @@ impl<'g> Scope<'_, 'g> {
 
     /// Reports the first argument that is a vector instead of a scalar or vice versa: most likely the
     /// arguments are in the wrong order.
-    fn report_swapped(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
+    fn report_swapped_arguments(
+        &self,
+        solid: Solid,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> bool {
         for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
             let mut silent = Diagnostics::discarded_diagnostics();
             let found = match (self.resolve_value(argument, &mut silent), kind.is_direction()) {
@@ -229,7 +235,7 @@ pub fn check_inertia(
     hint: &str,
     cx: &mut Diagnostics,
 ) {
-    let Some(m) = inertia.full_matrix().constant_entries() else { return };
+    let Some(m) = inertia.full_matrix().entries_if_all_constant() else { return };
     let moments = principal_moments(m);
     let scale = moments[2].abs().max(moments[0].abs());
     let list = moments.map(rounded_text).join(", ");

@@ -1,14 +1,14 @@
 //! Elementary motions of joints. A joint with several degrees of freedom is a chain of simple joints with
 //! massless links between them.
 
-use super::elementary::Elementary;
+use super::elementary::ElementaryMotion;
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
 use crate::expr::sample::{always_equals, sample_of_symbol};
 use crate::expr::{Expr, Graph, Vec3};
-use crate::kinematics::in_plane;
-use crate::language::elements::{CoordinateNames, DrawnAxis};
+use crate::kinematics::directions_in_plane;
+use crate::language::elements::{DrawnAxis, JointTypeCoordinates};
 use crate::mechanism::{Chart, Coordinate, InQ, InV, PieceKind};
 use crate::syntax::{self, Joint, JointKind};
 
@@ -16,16 +16,16 @@ use crate::syntax::{self, Joint, JointKind};
 /// or one for the whole of a ball or free joint.
 pub fn charts_of_joint(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     match kind.row().coordinates {
-        CoordinateNames::Ball => vec![Chart::Ball(q, v)],
-        CoordinateNames::Free => vec![Chart::Free(q, v)],
-        CoordinateNames::Plain(_) | CoordinateNames::PerAxis(_) => {
+        JointTypeCoordinates::Ball => vec![Chart::Ball(q, v)],
+        JointTypeCoordinates::Free => vec![Chart::Free(q, v)],
+        JointTypeCoordinates::Plain(_) | JointTypeCoordinates::PerAxis(_) => {
             (0..kind.coordinate_names(along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect()
         }
     }
 }
 
 /// Returns the symbol of a joint in the drawing, if it has one, and its axes, the first of which is drawn.
-pub fn drawing_symbol(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
+pub fn joint_drawing_symbol(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
     let (kind, axis) = joint.kind.row().piece.clone()?;
     let axes = axis.map(|axis| match axis {
         DrawnAxis::About => joint.about.as_slice(),
@@ -41,8 +41,8 @@ pub fn full_name(joint: &str, coordinate: &str) -> String {
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the motions of a joint in order from parent to child.
-    pub fn motions_of_joint(&self, joint: &Joint, cx: &mut Diagnostics) -> Option<Vec<Elementary<'g>>> {
-        use Elementary::{Slide, Turn};
+    pub fn motions_of_joint(&self, joint: &Joint, cx: &mut Diagnostics) -> Option<Vec<ElementaryMotion<'g>>> {
+        use ElementaryMotion::{Slide, Turn};
         let about = self.resolve_joint_axes(joint, &joint.about, cx);
         let along = self.resolve_joint_axes(joint, &joint.along, cx);
         let (about, along) = (about?, along?);
@@ -52,7 +52,7 @@ impl<'g> Scope<'_, 'g> {
             JointKind::Sleeve => Some(vec![Slide(single_axis(&along, "along", "a Sleeve", place, cx)?)]),
             JointKind::Screw => self.screw_motions(joint, &about, &along, cx),
             JointKind::Collar => {
-                let axis = common_axis(&about, &along, "a Collar", place, cx)?;
+                let axis = axis_of_rotation_and_translation(&about, &along, "a Collar", place, cx)?;
                 Some(vec![Slide(axis), Turn(axis)])
             }
             JointKind::Slot => {
@@ -61,18 +61,18 @@ impl<'g> Scope<'_, 'g> {
                 Some(vec![Slide(slide?), Turn(turn?)])
             }
             JointKind::Universal => {
-                let axes = axis_list(&about, 2..=2, "about", "a Universal", place, cx)?;
-                check_independent(axes, "a Universal", joint.about.get(1), cx)?;
+                let axes = check_axis_count(&about, 2..=2, "about", "a Universal", place, cx)?;
+                check_independent_axes(axes, "a Universal", joint.about.get(1), cx)?;
                 Some(axes.iter().map(|a| Turn(*a)).collect())
             }
             JointKind::Planar => self.planar_motions(&about, &along, place, cx),
             JointKind::Stage => {
-                let axes = axis_list(&along, 2..=3, "along", "a Stage", place, cx)?;
-                check_independent(axes, "a Stage", joint.along.last(), cx)?;
+                let axes = check_axis_count(&along, 2..=3, "along", "a Stage", place, cx)?;
+                check_independent_axes(axes, "a Stage", joint.along.last(), cx)?;
                 Some(axes.iter().map(|a| Slide(*a)).collect())
             }
-            JointKind::Ball => Some(vec![Elementary::Ball]),
-            JointKind::Free => Some(vec![Elementary::Free]),
+            JointKind::Ball => Some(vec![ElementaryMotion::Ball]),
+            JointKind::Free => Some(vec![ElementaryMotion::Free]),
             JointKind::Weld => Some(Vec::new()),
         }
     }
@@ -93,8 +93,8 @@ impl<'g> Scope<'_, 'g> {
         about: &[Vec3<'g>],
         along: &[Vec3<'g>],
         cx: &mut Diagnostics,
-    ) -> Option<Vec<Elementary<'g>>> {
-        let axis = common_axis(about, along, "a Screw", &joint.name.place, cx);
+    ) -> Option<Vec<ElementaryMotion<'g>>> {
+        let axis = axis_of_rotation_and_translation(about, along, "a Screw", &joint.name.place, cx);
         let pitch = match (&joint.pitch, &joint.lead) {
             (Some(pitch), None) => self.resolve_scalar(pitch, cx),
             (None, Some(lead)) => self.resolve_scalar(lead, cx).map(|l| l * (0.5 / std::f64::consts::PI)),
@@ -105,7 +105,7 @@ impl<'g> Scope<'_, 'g> {
                 None
             }
         };
-        Some(vec![Elementary::Helix(axis?, pitch?)])
+        Some(vec![ElementaryMotion::Helix(axis?, pitch?)])
     }
 
     /// Returns the motions of a planar joint: two translations in the plane, followed by a rotation about its
@@ -116,10 +116,10 @@ impl<'g> Scope<'_, 'g> {
         along: &[Vec3<'g>],
         place: &Place,
         cx: &mut Diagnostics,
-    ) -> Option<Vec<Elementary<'g>>> {
+    ) -> Option<Vec<ElementaryMotion<'g>>> {
         let (first, second) = match (about, along) {
             (_, [first, second]) => (*first, *second),
-            ([normal], []) => match in_plane(*normal) {
+            ([normal], []) => match directions_in_plane(*normal) {
                 Some(directions) => directions,
                 None => {
                     cx.report_error(
@@ -150,17 +150,21 @@ impl<'g> Scope<'_, 'g> {
         }
         // The written normal is exact, the product is rounded.
         let normal = about.first().copied().unwrap_or(normal);
-        Some(vec![Elementary::Slide(first), Elementary::Slide(second), Elementary::Turn(normal)])
+        Some(vec![
+            ElementaryMotion::Slide(first),
+            ElementaryMotion::Slide(second),
+            ElementaryMotion::Turn(normal),
+        ])
     }
 }
 
 /// Returns motions that replace those of a joint with an error.
-pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g>> {
-    use Elementary::{Slide, Turn};
+pub fn placeholder_joint_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<ElementaryMotion<'g>> {
+    use ElementaryMotion::{Slide, Turn};
     let default_axis = |k: usize| {
         let mut n = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];
         n.rotate_left(k);
-        Vec3::from_numbers(graph, n)
+        Vec3::vector_from_constants(graph, n)
     };
     match joint.kind {
         JointKind::Pin | JointKind::Screw => vec![Turn(default_axis(0))],
@@ -169,8 +173,8 @@ pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g
         JointKind::Universal => vec![Turn(default_axis(0)), Turn(default_axis(1))],
         JointKind::Planar => vec![Slide(default_axis(0)), Slide(default_axis(1)), Turn(default_axis(2))],
         JointKind::Stage => (0..joint.along.len().clamp(2, 3)).map(|k| Slide(default_axis(k))).collect(),
-        JointKind::Ball => vec![Elementary::Ball],
-        JointKind::Free => vec![Elementary::Free],
+        JointKind::Ball => vec![ElementaryMotion::Ball],
+        JointKind::Free => vec![ElementaryMotion::Free],
         JointKind::Weld => Vec::new(),
     }
 }
@@ -187,10 +191,10 @@ fn single_axis<'g>(
     place: &Place,
     cx: &mut Diagnostics,
 ) -> Option<Vec3<'g>> {
-    axis_list(axes, 1..=1, key, what, place, cx).map(|axes| axes[0])
+    check_axis_count(axes, 1..=1, key, what, place, cx).map(|axes| axes[0])
 }
 
-fn axis_list<'a, 'g>(
+fn check_axis_count<'a, 'g>(
     axes: &'a [Vec3<'g>],
     count: std::ops::RangeInclusive<usize>,
     key: &str,
@@ -215,7 +219,7 @@ fn axis_list<'a, 'g>(
 }
 
 /// Reports two parallel axes or three coplanar ones, for which one of the coordinates would be redundant.
-fn check_independent(
+fn check_independent_axes(
     axes: &[Vec3<'_>],
     what: &str,
     last: Option<&syntax::Expr>,
@@ -234,7 +238,7 @@ fn check_independent(
     Some(())
 }
 
-fn common_axis<'g>(
+fn axis_of_rotation_and_translation<'g>(
     about: &[Vec3<'g>],
     along: &[Vec3<'g>],
     what: &str,
@@ -252,6 +256,6 @@ fn common_axis<'g>(
 }
 
 /// Returns the coordinate with these indices, with ratio one and offset zero.
-pub fn own_coordinate(q: InQ, v: InV) -> Coordinate {
+pub fn unscaled_coordinate(q: InQ, v: InV) -> Coordinate {
     Coordinate { q, v, ratio: 1.0, offset: 0.0 }
 }

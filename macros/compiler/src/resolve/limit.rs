@@ -14,15 +14,15 @@ pub fn resolve_limits<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, cx: &mut Dia
     let (mut limits, mut known) = (Vec::new(), Vec::new());
     for limit in &scope.description.limits {
         if scope.is_moving(&limit.on) {
-            check_stop(scope, limit, cx);
+            report_stop_errors(scope, limit, cx);
             continue;
         }
         let Some((coordinate, angle)) = resolve_limited_coordinate(scope, &limit.on, cx) else { continue };
-        let bounds = resolve_bounds(scope, limit, angle == Some(true), cx)
+        let bounds = resolve_limit_bounds(scope, limit, angle == Some(true), cx)
             .filter(|bounds| check_bounds(limit, bounds, cx));
         if let Some(bounds) = bounds {
-            let found = limit_of(scope, &coordinate, bounds);
-            add_bounds((&mut limits, model), limit, found, &known, cx);
+            let found = coordinate_limit_from_bounds(scope, &coordinate, bounds);
+            add_coordinate_bounds((&mut limits, model), limit, found, &known, cx);
             known.push((limit, found));
         }
     }
@@ -30,7 +30,7 @@ pub fn resolve_limits<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, cx: &mut Dia
 }
 
 /// Adds bounds of a coordinate, and reports bounds that contradict one of the `earlier` limits.
-fn add_bounds<'g>(
+fn add_coordinate_bounds<'g>(
     (limits, model): (&mut Vec<Limit<'g>>, &Model<'g>),
     limit: &syntax::Limit,
     found: Limit<'g>,
@@ -42,11 +42,12 @@ fn add_bounds<'g>(
         return;
     };
     let both = tighter_bounds(known, &found);
-    let has_range = |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
-    if has_range(known) && has_range(&found) && !has_range(&both) {
+    let is_range_nonempty =
+        |limit: &Limit<'_>| range_width(limit).is_none_or(|range_width| range_width > 0.0);
+    if is_range_nonempty(known) && is_range_nonempty(&found) && !is_range_nonempty(&both) {
         let name = model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
         let contradicts_found_limit = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
-            other.v == found.v && !has_range(&tighter_bounds(other, &found))
+            other.v == found.v && !is_range_nonempty(&tighter_bounds(other, &found))
         };
         let other = earlier.iter().find(contradicts_found_limit).map(|(other, _)| *other);
         // If both limits are from a file, the one that does not belong to the coordinate itself is
@@ -68,7 +69,7 @@ fn add_bounds<'g>(
 }
 
 /// Reads the limit of an expression, which is a stop, only to report its errors.
-fn check_stop<'g>(scope: &Scope<'_, 'g>, limit: &syntax::Limit, cx: &mut Diagnostics) {
+fn report_stop_errors<'g>(scope: &Scope<'_, 'g>, limit: &syntax::Limit, cx: &mut Diagnostics) {
     let given = &limit.arguments;
     if let Some((key, e)) =
         [Key::MaxSpeed, Key::MaxEffort].iter().find_map(|key| Some((key, given.get(*key)?)))
@@ -80,13 +81,13 @@ fn check_stop<'g>(scope: &Scope<'_, 'g>, limit: &syntax::Limit, cx: &mut Diagnos
         cx.report_error(limit.on.place.clone(), "a limit of an expression is a stop and needs a restitution").add_help(
             "add `restitution = e`, from 0 to 1: the ratio of the speeds after and before the impact on the bound",
         );
-    } else if let Some(bounds) = resolve_bounds(scope, limit, false, cx) {
+    } else if let Some(bounds) = resolve_limit_bounds(scope, limit, false, cx) {
         check_bounds(limit, &bounds, cx);
     }
 }
 
 /// Returns the values of the four bounds; `None` after an error.
-fn resolve_bounds<'g>(
+fn resolve_limit_bounds<'g>(
     scope: &Scope<'_, 'g>,
     limit: &syntax::Limit,
     angle: bool,
@@ -98,7 +99,7 @@ fn resolve_bounds<'g>(
         let angle = angle && matches!(key, Key::From | Key::To);
         // Angles in a file are in radians, without a limit on revolutions.
         let value = match angle && e.place.file.is_none() {
-            true => scope.plane_angle(e, cx),
+            true => scope.resolve_plane_angle(e, cx),
             false => scope.resolve_scalar(e, cx),
         };
         good &= value.is_some();
@@ -108,14 +109,15 @@ fn resolve_bounds<'g>(
 }
 
 /// Converts bounds of `ratio × q + offset` to bounds of the coordinate `q`.
-fn limit_of<'g>(
+fn coordinate_limit_from_bounds<'g>(
     scope: &Scope<'_, 'g>,
     c: &Coordinate,
     [from, to, speed, effort]: [Option<Value<'g>>; 4],
 ) -> Limit<'g> {
     let number_expression = |x: f64| scope.graph.num(x);
-    let to_coordinate = |bound: Value<'g>| (bound - number_expression(c.offset)) / number_expression(c.ratio);
-    let (from, to) = (from.map(to_coordinate), to.map(to_coordinate));
+    let convert_bound_to_coordinate =
+        |bound: Value<'g>| (bound - number_expression(c.offset)) / number_expression(c.ratio);
+    let (from, to) = (from.map(convert_bound_to_coordinate), to.map(convert_bound_to_coordinate));
     let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
     let speed = speed.map(|speed| speed / number_expression(c.ratio.abs()));
     let effort = effort.map(|effort| effort * number_expression(c.ratio.abs()));

@@ -1,24 +1,32 @@
 //! Masses of bodies and particles, which are added to the links that carry them.
 
 use super::inertia::check_inertia;
-use super::range::ValueRange;
+use super::range::FiniteParameterRange;
 use super::scope::{MassProperties, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::language::{Callable, Solid};
 use crate::mechanism::{Model, Rule};
-use crate::syntax::{self, Body, Callee, ExprKind, Inertias, Particle};
+use crate::syntax::{self, Body, Callee, ExprKind, InertiaOption, Particle};
 
 /// Returns the mass of a particle.
-pub fn particle_mass<'g>(
+pub fn resolve_particle_mass<'g>(
     scope: &Scope<'_, 'g>,
     particle: &Particle,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
     let mass = scope.resolve_scalar(&particle.mass, cx);
     if let Some(mass) = mass {
-        ValueRange::of_scalar(&scope.description.scalar).check_mass(mass, &particle.mass.place, cx);
-        scope.record_requirement(Rule::Mass, || format!("the mass of `{}`", particle.name.text), &[mass]);
+        FiniteParameterRange::range_of_scalar_type(&scope.description.scalar).check_mass_in_range(
+            mass,
+            &particle.mass.place,
+            cx,
+        );
+        scope.record_parameter_condition(
+            Rule::Mass,
+            || format!("the mass of `{}`", particle.name.text),
+            &[mass],
+        );
     }
     if let Some(m) = mass.and_then(|m| m.constant_value()).filter(|m| *m <= 0.0) {
         cx.report_error(
@@ -35,7 +43,7 @@ pub fn check_finite<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, cx: &mut Diagn
     if !cx.is_empty() {
         return;
     }
-    let range = ValueRange::of_scalar(&scope.description.scalar);
+    let range = FiniteParameterRange::range_of_scalar_type(&scope.description.scalar);
     let is_infinite =
         |e: &Expr<'g>| e.constant_value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
     for body in &scope.description.bodies {
@@ -56,7 +64,7 @@ pub fn check_finite<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, cx: &mut Diagn
 }
 
 /// Returns mass, centre of mass and central inertia of a body.
-pub fn body_inertia<'g>(
+pub fn body_mass_properties<'g>(
     scope: &Scope<'_, 'g>,
     body: &Body,
     cx: &mut Diagnostics,
@@ -65,12 +73,12 @@ pub fn body_inertia<'g>(
     let name = &body.name.text;
     let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| scope.resolve_scalar(e, cx));
     if let Some(mass) = mass {
-        scope.record_requirement(Rule::Mass, || format!("the mass of `{name}`"), &[mass]);
+        scope.record_parameter_condition(Rule::Mass, || format!("the mass of `{name}`"), &[mass]);
     }
-    let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| scope.own_vector(e, cx));
+    let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| scope.resolve_own_axes_vector(e, cx));
     let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| scope.resolve_inertia(e, cx));
     let inertia = match &body.about {
-        Some(about) => about_center(scope, body, about, (mass, com, inertia), cx),
+        Some(about) => inertia_about_center(scope, body, about, (mass, com, inertia), cx),
         None => inertia,
     };
     if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.constant_value()))
@@ -79,22 +87,22 @@ pub fn body_inertia<'g>(
         cx.report_error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"))
             .add_help("a mass is zero or more, kg; the sign belongs to gravity");
     }
-    let range = ValueRange::of_scalar(&scope.description.scalar);
+    let range = FiniteParameterRange::range_of_scalar_type(&scope.description.scalar);
     let mut is_valid = true;
     if let (Some(e), Some(m)) = (&body.mass, mass) {
-        is_valid &= range.check_mass(m, &e.place, cx);
+        is_valid &= range.check_mass_in_range(m, &e.place, cx);
     }
     if let (Some(e), Some(com)) = (&body.com, com) {
         is_valid &= com.0.iter().all(|c| range.check_length(*c, &e.place, cx));
     }
     if let (Some(e), Some(i)) = (&body.inertia, &inertia) {
-        is_valid = is_valid && i.diagonal.iter().all(|c| range.check_mass(*c, &e.place, cx));
+        is_valid = is_valid && i.diagonal.iter().all(|c| range.check_mass_in_range(*c, &e.place, cx));
     }
     if !is_valid {
         return None;
     }
     if let (Some(e), Some(inertia)) = (&body.inertia, &inertia)
-        && scope.description.inertias == Inertias::Check
+        && scope.description.inertias == InertiaOption::Check
     {
         let hint = match e.place.file {
             None if body.about.is_some() => {
@@ -110,12 +118,12 @@ pub fn body_inertia<'g>(
         check_inertia(name, mass.and_then(|m| m.constant_value()), inertia, &e.place, hint, cx);
     }
     let found = (mass?, com?, inertia?);
-    require_physical_inertia(scope, name, &found);
+    record_inertia_requirements(scope, name, &found);
     Some(found)
 }
 
 /// Converts an inertia about another point to one about the centre of mass by the parallel-axis theorem.
-fn about_center<'g>(
+fn inertia_about_center<'g>(
     scope: &Scope<'_, 'g>,
     body: &Body,
     about: &syntax::Expr,
@@ -123,7 +131,7 @@ fn about_center<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Sym3<'g>> {
     let solid = body.inertia.as_ref().and_then(|e| {
-        e.subexpressions().into_iter().find_map(|part| match &part.kind {
+        e.all_subexpressions().into_iter().find_map(|part| match &part.kind {
             ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, _) => Some(*solid),
             _ => None,
         })
@@ -141,27 +149,27 @@ fn about_center<'g>(
     }
     let about = match about.literal_number() {
         Some(0.0) => Some(Vec3::zero(scope.graph)),
-        _ => scope.own_vector(about, cx),
+        _ => scope.resolve_own_axes_vector(about, cx),
     };
     Some(inertia? - Sym3::point_mass_inertia(mass?, com? - about?))
 }
 
 /// Adds the requirements for inertial parameters that can be checked only at run time, when their
 /// parameters have values.
-fn require_physical_inertia<'g>(
+fn record_inertia_requirements<'g>(
     scope: &Scope<'_, 'g>,
     name: &str,
     (mass, com, inertia): &MassProperties<'g>,
 ) {
     for c in com.0 {
-        scope.record_requirement(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
+        scope.record_parameter_condition(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
     }
     let entries: Vec<Expr<'g>> = inertia.diagonal.iter().chain(&inertia.off).chain([mass]).copied().collect();
     let describe_inertia = || format!("the inertia of `{name}`");
     match scope.description.inertias {
-        Inertias::Check => scope.record_requirement(Rule::Inertia, describe_inertia, &entries),
+        InertiaOption::Check => scope.record_parameter_condition(Rule::Inertia, describe_inertia, &entries),
         _ => entries
             .iter()
-            .for_each(|entry| scope.record_requirement(Rule::Finite, describe_inertia, &[*entry])),
+            .for_each(|entry| scope.record_parameter_condition(Rule::Finite, describe_inertia, &[*entry])),
     }
 }

@@ -1,10 +1,10 @@
 //! Momentum, kinetic energy, inertia and centre of mass of bodies and particles: `momentum(body)`,
 //! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`,
-//! `moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
+//! `resolve_moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
 
 use super::call::{Call, flatten_slashes};
 use super::quantities::vector_value;
-use super::scope::{Allowed, MassProperties, Placed, Scope, Terms, Value};
+use super::scope::{AllowedQuantities, MassProperties, Placed, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
@@ -44,12 +44,13 @@ impl<'g> Scope<'_, 'g> {
             };
             return None;
         }
-        if !self.check_allowed(Allowed::Motion, &format!("`{text}(…)`"), call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Motion, &format!("`{text}(…)`"), call.place, cx)
+        {
             return None;
         }
-        let bodies = self.bodies_with_mass(parts[0], cx)?;
+        let bodies = self.resolve_bodies_with_mass(parts[0], cx)?;
         let about = match parts.get(1) {
-            Some(e) => Some(self.current_place(e, cx)?),
+            Some(e) => Some(self.placement_of_moving_point(e, cx)?),
             None => None,
         };
         let kinematics = &self.kinematics;
@@ -79,13 +80,14 @@ impl<'g> Scope<'_, 'g> {
     /// bodies.
     pub fn center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Ok([bodies_written, from]) = <[_; 2]>::try_from(call.slash_operands()) else {
-            return call.reject_arguments(cx);
+            return call.report_wrong_arguments(cx);
         };
-        if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Placement, "`center_of_mass(…)`", call.place, cx)
+        {
             return None;
         }
-        let bodies = self.bodies_with_mass(bodies_written, cx)?;
-        let from = self.current_place(from, cx)?;
+        let bodies = self.resolve_bodies_with_mass(bodies_written, cx)?;
+        let from = self.placement_of_moving_point(from, cx)?;
         let total = bodies.iter().fold(self.graph.zero(), |sum, (_, (mass, ..))| sum + *mass);
         if total.is_zero() {
             cx.report_error(bodies_written.place.clone(), "a body without mass has no centre of mass")
@@ -109,25 +111,26 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the moment `a·J a` (for one direction) or the product `a·J b` of inertia of bodies about a
     /// point. `J = I + m (r·r 1 − r rᵀ)` is the physical inertia matrix, with the position `r` of the centre
     /// of mass relative to the point (the parallel-axis theorem). Several bodies are summed.
-    pub fn moment_of_inertia(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_moment_of_inertia(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let text = call.function_name();
         let (parts, directions) = match call.arguments {
             [of, directions @ ..] => (flatten_slashes(of), directions),
             [] => (Vec::new(), call.arguments),
         };
         let ([of, about], [a, others @ ..]) = (parts.as_slice(), directions) else {
-            return call.reject_arguments(cx);
+            return call.report_wrong_arguments(cx);
         };
         if others.len() > 1 {
             cx.report_error(others[1].place.clone(), format!("`{text}` takes one direction or two"))
                 .add_help("with two it is a product of inertia");
             return None;
         }
-        if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Placement, &format!("`{text}(…)`"), call.place, cx)
+        {
             return None;
         }
-        let bodies = self.bodies_with_mass(of, cx)?;
-        let about = self.current_place(about, cx)?;
+        let bodies = self.resolve_bodies_with_mass(of, cx)?;
+        let about = self.placement_of_moving_point(about, cx)?;
         let a = self.resolve_terms(a, cx)?;
         let b = others.first().map_or_else(|| Some(a.clone()), |b| self.resolve_terms(b, cx))?;
         let sum = bodies
@@ -155,33 +158,33 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the bodies and particles that an expression names: one name, or several names in parentheses.
-    pub fn bodies_with_mass(
+    pub fn resolve_bodies_with_mass(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Vec<(Placed<'g>, MassProperties<'g>)>> {
         let (ExprKind::Tuple(items) | ExprKind::Array(items)) = &e.kind else {
-            return Some(vec![self.body_with_mass(e, cx)?]);
+            return Some(vec![self.resolve_body_with_mass(e, cx)?]);
         };
         if items.is_empty() {
             cx.report_error(e.place.clone(), "expected bodies, found none")
                 .add_help("write `(first, second)`");
             return None;
         }
-        let is_duplicate = |k: usize| {
+        let is_repeated_name = |k: usize| {
             items[..k].iter().any(|before| before.as_name().is_some_and(|n| items[k].as_name() == Some(n)))
         };
-        if let Some(k) = (0..items.len()).find(|k| is_duplicate(*k)) {
+        if let Some(k) = (0..items.len()).find(|k| is_repeated_name(*k)) {
             cx.report_error(items[k].place.clone(), format!("`{}` is given twice", items[k].to_source()))
                 .add_help("name each body once");
             return None;
         }
-        let all: Vec<_> = items.iter().map(|item| self.body_with_mass(item, cx)).collect();
+        let all: Vec<_> = items.iter().map(|item| self.resolve_body_with_mass(item, cx)).collect();
         all.into_iter().collect()
     }
 
     /// Returns a body or particle with its mass, centre of mass and central inertia.
-    pub fn body_with_mass(
+    pub fn resolve_body_with_mass(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
@@ -204,8 +207,8 @@ impl<'g> Scope<'_, 'g> {
                 if self.is_first_report(name, cx) {
                     let known: Vec<&str> = kinematics.masses.keys().map(String::as_str).collect();
                     let error = cx.report_error(e.place.clone(), format!("unknown body `{name}`"));
-                    words::suggest_meaning(error, words::BODIES, name, &known);
-                    if error.is_bare() {
+                    words::suggest_meaning_or_known_word(error, words::BODIES, name, &known);
+                    if error.has_no_help() {
                         error.add_help("name a body or a particle");
                     }
                 }

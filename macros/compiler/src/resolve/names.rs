@@ -1,10 +1,10 @@
 //! Names in expressions: parameters, directions, coordinates, time, inputs and definitions.
 
-use super::scope::{Allowed, Axes, Scope, Value};
+use super::scope::{AllowedQuantities, Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
-use crate::kinematics::position_in;
-use crate::language::{Builtin, FunctionId, axis_of_name, names};
+use crate::kinematics::coordinate_as_expression;
+use crate::language::{Builtin, FunctionId, axis_index_of_name, names};
 use crate::mechanism::{Pose, Quantity};
 use crate::syntax::{self, ExprKind, GROUND, Name, words};
 
@@ -21,7 +21,7 @@ impl<'g> Scope<'_, 'g> {
             _ if d.inputs.iter().any(|i| i.text == name) => Some("an input"),
             _ if d.definitions.iter().any(|d| d.name.text == name) => Some("a definition"),
             _ if d.actions.iter().any(|a| a.name.text == name) => Some("a force element"),
-            _ => match Builtin::of_name(name)? {
+            _ => match Builtin::find_by_name(name)? {
                 Builtin::Axis(_) => Some("a direction"),
                 Builtin::Pi => Some("a number"),
                 Builtin::Time => None,
@@ -31,11 +31,16 @@ impl<'g> Scope<'_, 'g> {
 
     /// Whether an unknown name has not been reported yet; records it as reported.
     pub fn is_first_report(&self, name: &str, cx: &Diagnostics) -> bool {
-        !cx.is_read() || self.records.borrow_mut().reported_names.insert(name.to_string())
+        !cx.will_print_errors() || self.records.borrow_mut().reported_names.insert(name.to_string())
     }
 
     /// Returns the value of a name that occurs in an expression.
-    pub fn resolve_name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_name_in_expression(
+        &self,
+        name: &str,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         if let Some(value) = self.kinematics.drive_quantities.get(name) {
             return Some(Value::Scalar(*value));
         }
@@ -46,21 +51,21 @@ impl<'g> Scope<'_, 'g> {
             return value;
         }
         // A parameter with the name of an axis has been reported; its meaning is ambiguous.
-        let axis = axis_of_name(name);
+        let axis = axis_index_of_name(name);
         if axis.is_some() && self.description.parameters.iter().any(|p| p.text == name) {
             return None;
         }
         if let Some(k) = axis {
-            return Some(self.own_axes(Vec3::coordinate_axis(self.graph, k)));
+            return Some(self.vector_in_context_axes(Vec3::coordinate_axis(self.graph, k)));
         }
         if let Some(k) = self.description.parameters.iter().position(|p| p.text == name) {
             self.records.borrow_mut().used[k] = true;
             return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
         }
-        if Builtin::of_name(name) == Some(Builtin::Pi) {
+        if Builtin::find_by_name(name) == Some(Builtin::Pi) {
             return Some(Value::Scalar(self.graph.num(std::f64::consts::PI)));
         }
-        if let Some(value) = self.moving_name(name, e, cx) {
+        if let Some(value) = self.value_of_time_dependent_name(name, e, cx) {
             return value;
         }
         if self.bodies.iter().any(|b| b == name) || name == GROUND {
@@ -75,7 +80,7 @@ impl<'g> Scope<'_, 'g> {
                 .add_help("an expression consists of parameters, numbers and directions");
         } else if let Some(
             function @ (FunctionId::Momentum | FunctionId::AngularMomentum | FunctionId::KineticEnergy),
-        ) = FunctionId::of_name(name)
+        ) = FunctionId::find_by_name(name)
         {
             let error = cx.report_error(e.place.clone(), format!("`{name}` is a function of a body"));
             error.add_help(format!("write `{name}(body)`"));
@@ -87,11 +92,11 @@ impl<'g> Scope<'_, 'g> {
         } else {
             let kinematics = &self.kinematics;
             let mut known: Vec<&str> = self.description.parameters.iter().map(|p| p.text.as_str()).collect();
-            if self.allowed_quantities() >= Allowed::Placement {
+            if self.allowed_quantities() >= AllowedQuantities::Placement {
                 known.extend(kinematics.coordinates.iter().map(|(name, ..)| name.as_str()));
                 known.extend(self.description.definitions.iter().map(|d| d.name.text.as_str()));
             }
-            if self.allowed_quantities() >= Allowed::Motion {
+            if self.allowed_quantities() >= AllowedQuantities::Motion {
                 known.extend(self.description.inputs.iter().map(|i| i.text.as_str()));
             }
             if !self.is_first_report(name, cx) {
@@ -114,14 +119,14 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         if let ExprKind::Name(joint) = &inner.kind
-            && let Some(value) = self.coordinate_member(joint, member, cx)
+            && let Some(value) = self.value_of_joint_coordinate(joint, member, cx)
         {
             return value;
         }
         let ExprKind::Name(body) = &inner.kind else {
             let diagnostic =
                 cx.report_error(member.place.clone(), format!("`.{}` has no value here", member.text));
-            let axis = names::AXES[axis_of_name(&member.text).unwrap_or(0)];
+            let axis = names::AXES[axis_index_of_name(&member.text).unwrap_or(0)];
             diagnostic.add_help(format!("a component of a vector is `dot(vector, {axis})`"));
             return None;
         };
@@ -131,7 +136,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         if body != GROUND && !self.bodies.contains(body) {
-            if self.report_joint_member(body, inner, member, cx) {
+            if self.report_unknown_joint_member(body, inner, member, cx) {
                 return None;
             }
             if let Some(what) = self.kind_of_name(body) {
@@ -150,10 +155,10 @@ impl<'g> Scope<'_, 'g> {
                 error.add_help("without a body, `x`, `y` and `z` are the axes of the current frame");
                 return None;
             }
-            words::suggest_meaning(error, words::BODIES, body, &known);
+            words::suggest_meaning_or_known_word(error, words::BODIES, body, &known);
             return None;
         }
-        let Some(k) = axis_of_name(&member.text) else {
+        let Some(k) = axis_index_of_name(&member.text) else {
             let meaning = words::meaning_of_word(words::MEMBERS, &member.text, &[]);
             // The ground does not rotate.
             let meaning =
@@ -164,11 +169,11 @@ impl<'g> Scope<'_, 'g> {
             cx.report_error(member.place.clone(), format!("a body has no `{}`", member.text)).add_help(help);
             return None;
         };
-        self.named_axes(body, Vec3::coordinate_axis(self.graph, k), &inner.place, cx)
+        self.vector_in_named_axes(body, Vec3::coordinate_axis(self.graph, k), &inner.place, cx)
     }
 
     /// Returns a vector given in the axes `x`, `y`, `z` of the context.
-    pub fn own_axes(&self, v: Vec3<'g>) -> Value<'g> {
+    pub fn vector_in_context_axes(&self, v: Vec3<'g>) -> Value<'g> {
         Value::Vector(vec![match &self.context.borrow().axes {
             None => (Axes::Own, v),
             Some((link, pose)) => (Axes::Link(*link), pose.rotation.to_parent(v)),
@@ -176,7 +181,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns a vector given in the axes of a body or a frame.
-    pub fn named_axes(
+    pub fn vector_in_named_axes(
         &self,
         name: &str,
         v: Vec3<'g>,
@@ -200,7 +205,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the value of a coordinate, time, an input or a definition. The outer `None` means that the
     /// name has another meaning, the inner one an error.
-    pub fn moving_name(
+    pub fn value_of_time_dependent_name(
         &self,
         name: &str,
         e: &syntax::Expr,
@@ -209,15 +214,20 @@ impl<'g> Scope<'_, 'g> {
         if let Some((_, value)) = self.context.borrow().locals.iter().find(|(local, _)| *local == name) {
             return Some(Some(Value::Scalar(*value)));
         }
-        if Builtin::of_name(name) == Some(Builtin::Time) {
-            let here = self.check_allowed(Allowed::Placement, "time", &e.place, cx);
+        if Builtin::find_by_name(name) == Some(Builtin::Time) {
+            let here = self.check_allowed_quantity(AllowedQuantities::Placement, "time", &e.place, cx);
             return Some(here.then(|| Value::Scalar(Quantity::Time.expr(self.graph))));
         }
         if let Some(value) = self.resolve_coordinate(name, e, cx) {
             return Some(value);
         }
         if let Some(k) = self.description.inputs.iter().position(|i| i.text == name) {
-            let here = self.check_allowed(Allowed::Motion, &format!("the input `{name}`"), &e.place, cx);
+            let here = self.check_allowed_quantity(
+                AllowedQuantities::Motion,
+                &format!("the input `{name}`"),
+                &e.place,
+                cx,
+            );
             return Some(here.then(|| Value::Scalar(Quantity::Input(self.driven + k).expr(self.graph))));
         }
         let definition = self.description.definitions.iter().find(|d| d.name.text == name)?;
@@ -233,8 +243,13 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<Option<Value<'g>>> {
         let found = self.kinematics.coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
         let c = found?;
-        let here = self.check_allowed(Allowed::Placement, &format!("the coordinate `{name}`"), &e.place, cx);
-        Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
+        let here = self.check_allowed_quantity(
+            AllowedQuantities::Placement,
+            &format!("the coordinate `{name}`"),
+            &e.place,
+            cx,
+        );
+        Some(here.then(|| Value::Scalar(coordinate_as_expression(self.graph, &c))))
     }
 
     fn resolve_definition(
@@ -244,7 +259,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         let name = &d.name.text;
-        if cx.is_read() && self.records.borrow().reported_definitions.contains(name) {
+        if cx.will_print_errors() && self.records.borrow().reported_definitions.contains(name) {
             return None;
         }
         let outermost = self.context.borrow().defining.is_empty();
@@ -259,7 +274,7 @@ impl<'g> Scope<'_, 'g> {
         }
         let before = cx.len();
         let value = self.evaluate_definition(d, e, cx);
-        if value.is_none() && cx.is_read() && cx.len() > before {
+        if value.is_none() && cx.will_print_errors() && cx.len() > before {
             self.records.borrow_mut().reported_definitions.insert(name.clone());
         }
         self.records.borrow_mut().definition_values.insert(key, value.clone());
@@ -289,7 +304,7 @@ impl<'g> Scope<'_, 'g> {
         context.locals.clear();
         context.compared.clear();
         context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
-        let value = self.in_context(context, |scope| scope.resolve_value(&d.value, cx))?;
+        let value = self.call_in_context(context, |scope| scope.resolve_value(&d.value, cx))?;
         if value.declared_rank() == d.rank {
             return Some(value);
         }
@@ -314,7 +329,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the value of `joint.coordinate`. The outer `None` means that the coordinate does not exist.
-    pub fn coordinate_member(
+    pub fn value_of_joint_coordinate(
         &self,
         joint: &str,
         member: &Name,
@@ -322,24 +337,34 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<Option<Value<'g>>> {
         let full = format!("{joint}.{}", member.text);
         let c = self.kinematics.coordinates.iter().find(|(n, ..)| *n == full).map(|(_, c, _)| *c)?;
-        let here =
-            self.check_allowed(Allowed::Placement, &format!("the coordinate `{full}`"), &member.place, cx);
-        Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
+        let here = self.check_allowed_quantity(
+            AllowedQuantities::Placement,
+            &format!("the coordinate `{full}`"),
+            &member.place,
+            cx,
+        );
+        Some(here.then(|| Value::Scalar(coordinate_as_expression(self.graph, &c))))
     }
 
     /// Reports a quantity that the context does not allow. Returns false then.
-    pub fn check_allowed(&self, needed: Allowed, what: &str, place: &Place, cx: &mut Diagnostics) -> bool {
+    pub fn check_allowed_quantity(
+        &self,
+        needed: AllowedQuantities,
+        what: &str,
+        place: &Place,
+        cx: &mut Diagnostics,
+    ) -> bool {
         if self.allowed_quantities() >= needed {
             return true;
         }
-        if needed == Allowed::Reaction {
+        if needed == AllowedQuantities::Reaction {
             cx.report_error(place.clone(), format!("{what} is not allowed here")).add_help(
                 "forces of joints and contacts are allowed in outputs: `#[output(reaction_force(joint))]`",
             );
             return false;
         }
-        let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);
-        if self.allowed_quantities() == Allowed::Placement
+        let motion = matches!(needed, AllowedQuantities::Motion | AllowedQuantities::Acceleration);
+        if self.allowed_quantities() == AllowedQuantities::Placement
             && motion
             && self.records.borrow().in_holonomic_constraint
         {
@@ -348,8 +373,8 @@ impl<'g> Scope<'_, 'g> {
             return false;
         }
         let only = match self.allowed_quantities() {
-            Allowed::Constant => "only numbers and parameters",
-            Allowed::Placement => "only numbers, parameters, coordinates and time",
+            AllowedQuantities::Constant => "only numbers and parameters",
+            AllowedQuantities::Placement => "only numbers, parameters, coordinates and time",
             _ => "no accelerations",
         };
         cx.report_error(place.clone(), format!("{what} is not allowed here"))

@@ -2,7 +2,7 @@
 
 use super::closed_form::ClosedFormLoop;
 use super::holders;
-use super::joint::{charts_of_joint, full_name, own_coordinate};
+use super::joint::{charts_of_joint, full_name, unscaled_coordinate};
 use super::reaction::RELEASED;
 use super::scope::{JointCoordinates, PlainCoordinate};
 use crate::diag::{Diagnostics, Place};
@@ -11,7 +11,7 @@ use crate::syntax::Description;
 
 /// Entries of `q` and `v`, with the joints and coordinates to which they belong.
 #[derive(Default)]
-pub struct Numbering {
+pub struct CoordinateNumbering {
     /// Names of the entries of `q`.
     pub configuration: Vec<String>,
     /// Names of the entries of `v`, with the declarations to which they belong.
@@ -24,22 +24,22 @@ pub struct Numbering {
     pub joints: Vec<JointCoordinates>,
 }
 
-impl Numbering {
+impl CoordinateNumbering {
     /// Numbers the entries of `q` and `v` in the order of declaration. Joints that close loops have no
     /// coordinates. Joints that follow another joint (`mimic`) are numbered last, because their leaders may
     /// be declared later.
-    pub fn of_description(
+    pub fn number_description_coordinates(
         description: &Description,
         (closing, solved_loops): (&[bool], &[ClosedFormLoop]),
         cx: &mut Diagnostics,
-    ) -> Numbering {
-        let mut all = Numbering::default();
-        let is_solved = |j: usize| solved_loops.iter().any(|solved| solved.sides.contains(&j));
+    ) -> CoordinateNumbering {
+        let mut all = CoordinateNumbering::default();
+        let is_solved_by_loop = |j: usize| solved_loops.iter().any(|solved| solved.sides.contains(&j));
         for (j, joint) in description.joints.iter().enumerate() {
-            all.number_free_coordinates(description, j);
+            all.assign_free_coordinate_indices(description, j);
             let (q, v) = all.next_coordinate();
             let mut plain = Vec::new();
-            if joint.mimic.is_none() && !closing[j] && !is_solved(j) {
+            if joint.mimic.is_none() && !closing[j] && !is_solved_by_loop(j) {
                 all.charts.extend(charts_of_joint(joint.kind, (q, v), joint.along.len()));
                 let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
                 for name in &names_q {
@@ -48,7 +48,11 @@ impl Numbering {
                 for (k, name) in names_v.iter().enumerate() {
                     let full = full_name(&joint.name.text, name);
                     if names_q == names_v {
-                        plain.push((full.clone(), own_coordinate(q + k, v + k), joint.kind.is_angle(name)));
+                        plain.push((
+                            full.clone(),
+                            unscaled_coordinate(q + k, v + k),
+                            joint.kind.is_angle(name),
+                        ));
                     }
                     all.velocities.push((full, joint.name.place.clone()));
                 }
@@ -56,7 +60,7 @@ impl Numbering {
             all.coordinates.extend(plain.iter().cloned());
             all.joints.push(JointCoordinates { q, v, plain });
         }
-        all.number_free_coordinates(description, description.joints.len());
+        all.assign_free_coordinate_indices(description, description.joints.len());
         for (k, joint) in description.joints.iter().enumerate() {
             let Some(mimic) = &joint.mimic else { continue };
             let master = description.joints.iter().position(|j| j.name.text == mimic.joint.text);
@@ -89,20 +93,20 @@ impl Numbering {
     }
 
     /// Numbers the free coordinates that are declared after the given number of joints.
-    fn number_free_coordinates(&mut self, description: &Description, joints: usize) {
+    fn assign_free_coordinate_indices(&mut self, description: &Description, joints: usize) {
         for free in description.coordinates.iter().filter(|c| c.joints_before == joints) {
             let (q, v) = self.next_coordinate();
             self.configuration.push(free.name.text.clone());
             self.velocities.push((free.name.text.clone(), free.name.place.clone()));
             self.charts.push(Chart::Plain(q, v));
-            self.coordinates.push((free.name.text.clone(), own_coordinate(q, v), false));
+            self.coordinates.push((free.name.text.clone(), unscaled_coordinate(q, v), false));
         }
     }
 
     /// Adds the coordinates of released joints after all others.
-    pub fn add_released(&mut self, description: &Description, joints: &[usize]) {
+    pub fn add_released_coordinates(&mut self, description: &Description, joints: &[usize]) {
         for j in joints {
-            let Some(name) = holders::name_of(description, *j) else { continue };
+            let Some(name) = holders::name_of_connection(description, *j) else { continue };
             for k in 0..RELEASED {
                 let (q, v) = self.next_coordinate();
                 self.charts.push(Chart::Plain(q, v));

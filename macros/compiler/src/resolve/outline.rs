@@ -2,12 +2,12 @@
 //! that one error is not reported again at every use of the mechanism. The outline depends only on the
 //! description and checks nothing.
 
-use super::carriers::position_expressions;
+use super::carriers::expressions_with_positions;
 use super::joint::full_name;
 use crate::diag::Diagnostics;
 use crate::language::names::TIME;
-use crate::language::{Callable, Dependence, FunctionId};
-use crate::mechanism::{Diagram, Uses};
+use crate::language::{Callable, FunctionDependence, FunctionId};
+use crate::mechanism::{Diagram, UsedQuantities};
 use crate::syntax::{
     Action, Callee, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind, Key,
     Rank,
@@ -37,17 +37,17 @@ pub struct Outline {
     /// Names of free-body diagrams, with their bodies; their actions are unknown.
     pub diagrams: Vec<(String, Diagram)>,
     /// All outputs other than free-body diagrams, in order.
-    pub outputs: Vec<OutlinedOutput>,
+    pub outputs: Vec<OutputInterface>,
 }
 
 /// Interface of an output of a mechanism with an error.
-pub struct OutlinedOutput {
+pub struct OutputInterface {
     /// Name of the outlined output.
     pub name: String,
     /// Number of components of the output.
     pub size: usize,
     /// Quantities on which the output depends.
-    pub uses: Uses,
+    pub uses: UsedQuantities,
     /// Whether the output contains contact forces, which may be contradictory.
     pub has_contact_forces: bool,
 }
@@ -58,7 +58,7 @@ pub fn outline_of_description(d: &Description) -> Outline {
     let names_in_expression = |e| names_of(d, e);
     let rotations = d.frames.iter().flat_map(|f| f.rotations.iter().chain([&f.start]));
     // Unused definitions are ignored.
-    let used = position_expressions(d)
+    let used = expressions_with_positions(d)
         .into_iter()
         .filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
     Outline {
@@ -71,7 +71,7 @@ pub fn outline_of_description(d: &Description) -> Outline {
         }),
         constrained: !d.constraints.is_empty() || super::tree::loop_closing_joints(d).contains(&true),
         slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
-        diagrams: d.outputs.iter().filter_map(diagram_of_output).collect(),
+        diagrams: d.outputs.iter().filter_map(free_body_diagram_of_output).collect(),
         outputs: d.outputs.iter().filter_map(|output| outline_of_output(d, output)).collect(),
         frames: frame_names(d),
         bodies: unwelded_bodies(d),
@@ -85,7 +85,7 @@ pub fn outline_of_description(d: &Description) -> Outline {
 fn entry_names(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     let closing = super::tree::loop_closing_joints(d);
-    let solved = super::closed_form::find_solved_loops(d, &closing, &mut Diagnostics::new());
+    let solved = super::closed_form::find_closed_form_loops(d, &closing, &mut Diagnostics::new());
     for j in 0..=d.joints.len() {
         let free = d.coordinates.iter().filter(|c| c.joints_before == j).map(|c| c.name.text.clone());
         let free: Vec<String> = free.collect();
@@ -121,7 +121,7 @@ fn unwelded_bodies(d: &Description) -> Vec<String> {
     all.filter(|name| !is_welded_child(name)).collect()
 }
 
-fn outline_of_output(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
+fn outline_of_output(d: &Description, output: &Definition) -> Option<OutputInterface> {
     let size = match output.rank {
         Rank::Scalar => 1,
         Rank::Vector => 3,
@@ -139,8 +139,8 @@ fn outline_of_output(d: &Description, output: &Definition) -> Option<OutlinedOut
         }
         _ => false,
     };
-    let has_contact_forces = with_definitions(d, &output.value).iter().any(is_contact_force);
-    Some(OutlinedOutput {
+    let has_contact_forces = subexpressions_with_definitions(d, &output.value).iter().any(is_contact_force);
+    Some(OutputInterface {
         name: output.name.text.clone(),
         size,
         uses: used_quantities(d, &output.value),
@@ -148,7 +148,7 @@ fn outline_of_output(d: &Description, output: &Definition) -> Option<OutlinedOut
     })
 }
 
-fn diagram_of_output(output: &Definition) -> Option<(String, Diagram)> {
+fn free_body_diagram_of_output(output: &Definition) -> Option<(String, Diagram)> {
     let is_one = output.rank == Rank::FreeBody;
     let body = output.value.as_name().unwrap_or_default().to_string();
     is_one.then(|| (output.name.text.clone(), Diagram { body, actions: Vec::new(), released: Vec::new() }))
@@ -160,25 +160,26 @@ fn laws_of_action(action: &Action) -> impl Iterator<Item = &Expr> {
 }
 
 /// Returns the quantities on which an expression depends, according to the table of functions.
-fn used_quantities(d: &Description, e: &Expr) -> Uses {
+fn used_quantities(d: &Description, e: &Expr) -> UsedQuantities {
     let has_inputs = || !entry_names(d).2.is_empty();
-    let mut uses = Uses::default();
-    for part in with_definitions(d, e) {
+    let mut uses = UsedQuantities::default();
+    for part in subexpressions_with_definitions(d, e) {
         match &part.kind {
             ExprKind::Call(function, arguments) => match dependence_of_call(function) {
-                Dependence::Arguments => {}
-                Dependence::Motion => uses.velocities = true,
-                Dependence::Acceleration => uses.accelerations = true,
-                Dependence::Rate => {
+                FunctionDependence::Arguments => {}
+                FunctionDependence::Motion => uses.velocities = true,
+                FunctionDependence::Acceleration => uses.accelerations = true,
+                FunctionDependence::Rate => {
                     uses.velocities = true;
-                    uses.accelerations |= arguments.iter().any(|argument| contains_motion(d, argument));
+                    uses.accelerations |=
+                        arguments.iter().any(|argument| contains_velocity_function(d, argument));
                 }
-                Dependence::Power => {
+                FunctionDependence::Power => {
                     uses.velocities = true;
                     uses.inputs |=
                         arguments.iter().any(|argument| is_contact_name(d, argument)) && has_inputs();
                 }
-                Dependence::Reaction => {
+                FunctionDependence::Reaction => {
                     uses.velocities = true;
                     uses.inputs |= has_inputs();
                 }
@@ -191,10 +192,10 @@ fn used_quantities(d: &Description, e: &Expr) -> Uses {
 }
 
 /// Returns the quantities on which the value of a call depends, besides those of its arguments.
-fn dependence_of_call(callee: &Callee) -> Dependence {
+fn dependence_of_call(callee: &Callee) -> FunctionDependence {
     match callee.id {
         Some(Callable::Function(function)) => function.row().depends_on,
-        _ => Dependence::Arguments,
+        _ => FunctionDependence::Arguments,
     }
 }
 
@@ -206,31 +207,31 @@ fn is_contact_name(d: &Description, e: &Expr) -> bool {
 }
 
 /// Whether an expression contains a function of the language that depends on velocities.
-fn contains_motion(d: &Description, e: &Expr) -> bool {
-    let is_motion = |part: &&Expr| match &part.kind {
+fn contains_velocity_function(d: &Description, e: &Expr) -> bool {
+    let is_motion_dependent_call = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, _) => {
-            matches!(dependence_of_call(function), Dependence::Motion | Dependence::Rate)
+            matches!(dependence_of_call(function), FunctionDependence::Motion | FunctionDependence::Rate)
         }
         _ => false,
     };
-    with_definitions(d, e).iter().any(is_motion)
+    subexpressions_with_definitions(d, e).iter().any(is_motion_dependent_call)
 }
 
 /// Returns all names in an expression, including those in its definitions.
 fn names_of<'a>(d: &'a Description, e: &'a Expr) -> BTreeSet<&'a str> {
-    with_definitions(d, e).into_iter().filter_map(Expr::as_name).collect()
+    subexpressions_with_definitions(d, e).into_iter().filter_map(Expr::as_name).collect()
 }
 
 /// Returns the subexpressions of an expression and of the definitions that it uses.
-fn with_definitions<'a>(d: &'a Description, e: &'a Expr) -> Vec<&'a Expr> {
-    let mut parts = e.subexpressions();
+fn subexpressions_with_definitions<'a>(d: &'a Description, e: &'a Expr) -> Vec<&'a Expr> {
+    let mut parts = e.all_subexpressions();
     let mut open: Vec<&Definition> = d.definitions.iter().collect();
     let mut next = 0;
     while let Some(part) = parts.get(next) {
         next += 1;
         let Some(name) = part.as_name() else { continue };
         if let Some(k) = open.iter().position(|definition| definition.name.text == name) {
-            parts.extend(open.swap_remove(k).value.subexpressions());
+            parts.extend(open.swap_remove(k).value.all_subexpressions());
         }
     }
     parts

@@ -1,10 +1,10 @@
 //! Outputs: expressions that become functions, resolved in their declared axes.
 
 use super::contact;
-use super::scope::{Allowed, Context, Scope, Value};
+use super::scope::{AllowedQuantities, Context, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::mechanism::{LinkId, OutputValue, Pose};
+use crate::mechanism::{LinkId, OutputExpression, Pose};
 use crate::syntax::{Definition, ExprKind, Rank};
 
 /// Resolves an output that is an expression; `None` after an error.
@@ -12,9 +12,9 @@ pub fn resolve_output<'g>(
     scope: &Scope<'_, 'g>,
     output: &Definition,
     cx: &mut Diagnostics,
-) -> Option<OutputValue<'g>> {
-    let values = output_values(scope, output, cx)?;
-    if !contact::has_consistent_forces(&values) {
+) -> Option<OutputExpression<'g>> {
+    let values = resolve_output_expressions(scope, output, cx)?;
+    if !contact::uses_contact_forces_consistently(&values) {
         cx.report_error(
             output.value.place.clone(),
             "a contact force together with a reaction or an acceleration",
@@ -22,19 +22,23 @@ pub fn resolve_output<'g>(
         .add_help("reactions and accelerations are computed without contacts: declare a separate output");
         return None;
     }
-    Some(OutputValue { name: output.name.text.clone(), values, diagram: None })
+    Some(OutputExpression { name: output.name.text.clone(), values, diagram: None })
 }
 
-fn output_values<'g>(
+fn resolve_output_expressions<'g>(
     scope: &Scope<'_, 'g>,
     output: &Definition,
     cx: &mut Diagnostics,
 ) -> Option<Vec<Expr<'g>>> {
     let frame = Some((None, Pose::identity(scope.graph)));
-    let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
+    let allowed = if output.rank == Rank::Matrix {
+        AllowedQuantities::Acceleration
+    } else {
+        AllowedQuantities::Reaction
+    };
     let context = Context::new(allowed, frame);
     if output.rank == Rank::Scalar {
-        return match scope.in_context(context, |scope| scope.resolve_value(&output.value, cx))? {
+        return match scope.call_in_context(context, |scope| scope.resolve_value(&output.value, cx))? {
             Value::Scalar(s) => Some(vec![s]),
             other => {
                 let what = other.kind_with_article();
@@ -48,11 +52,11 @@ fn output_values<'g>(
         };
     }
     if output.rank == Rank::Matrix {
-        let found = scope.in_context(context, |scope| scope.physical_matrix(&output.value, cx));
+        let found = scope.call_in_context(context, |scope| scope.resolved_matrix_value(&output.value, cx));
         let (link, pose) = output_axes(scope, output, cx)?;
         return Some(scope.kinematics.matrix_entries(found?, link, &pose.rotation));
     }
-    let terms = scope.in_context(context, |scope| scope.resolve_terms(&output.value, cx));
+    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(&output.value, cx));
     let (link, pose) = output_axes(scope, output, cx)?;
     let v = scope.kinematics.resolve(&terms?, link, Vec3::zero(scope.graph));
     Some(pose.rotation.to_child(v).0.to_vec())

@@ -1,23 +1,23 @@
 //! Additions to the model: the parts that resolved elements return.
 
 use super::builder::{Builder, MotionKnown};
-use super::chain::check_joint;
-use super::closed_form::solved_sides;
-use super::closure::{loop_rows, planar_loop_rows};
-use super::constraint::{check_constraint, resolve_constraint};
+use super::chain::report_joint_argument_errors;
+use super::closed_form::joints_solved_in_closed_form;
+use super::closure::{loop_closure_rows, planar_loop_rows};
+use super::constraint::{report_constraint_errors, resolve_constraint};
 use super::contact::{resolve_contact, resolve_stops};
-use super::drive::{drive_forces, drive_quantities, weighted_coordinates};
+use super::drive::{drive_quantities, resolve_drive_forces, weighted_coordinates};
 use super::element_forces::Forces;
-use super::forces::{forces_of, report_unused_input};
-use super::free_body::{forces_on_released, resolve_free_body};
-use super::freedom::check_mobility;
-use super::masses::{body_inertia, particle_mass};
+use super::forces::{forces_of_element, report_unused_input};
+use super::free_body::{forces_on_released_joints, resolve_free_body_diagram};
+use super::freedom::remove_redundancy_and_check_mobility;
+use super::masses::{body_mass_properties, resolve_particle_mass};
 use super::output::resolve_output;
-use super::power::{is_power_used, power_of, slipping_powers};
+use super::power::{is_power_used, power_of_element, slipping_powers};
 use super::rows::ConstraintRows;
 use super::scope::MassProperties;
 use super::speeds::resolve_speeds;
-use super::terms::{check_definitions, resolve_dissipation, resolve_energy};
+use super::terms::{report_definition_errors, resolve_dissipation, resolve_potential_energy};
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Sym3, Vec3};
 use crate::language::Key;
@@ -30,12 +30,13 @@ use std::rc::Rc;
 /// of the constraints may be redundant.
 const MAX_CONSTRAINTS: usize = 256;
 
-/// Proof that the joints for which loops are solved are recorded. Created only by [`Builder::add_solved`].
+/// Proof that the joints for which loops are solved are recorded. Created only by
+/// [`Builder::record_loops_with_closed_form`].
 pub struct LoopsSolved(());
 
 /// Proof that all constraints have been added. Created only by [`Builder::add_constraints`].
 #[derive(Clone, Copy)]
-pub struct ConstraintsKnown(());
+pub struct ConstraintsAdded(());
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
@@ -47,7 +48,7 @@ impl<'g> Builder<'_, 'g> {
             let from_file = body.name.place.file.is_some();
             let mut silent = Diagnostics::new();
             let cx = if is_fixed && from_file { &mut silent } else { &mut *cx };
-            if let Some(masses) = body_inertia(&self.scope, body, cx) {
+            if let Some(masses) = body_mass_properties(&self.scope, body, cx) {
                 self.scope.kinematics.masses.insert(body.name.text.clone(), masses);
                 self.attach_mass(&body.name.text, masses);
             }
@@ -56,7 +57,7 @@ impl<'g> Builder<'_, 'g> {
             let name = &particle.name.text;
             let placed = self.scope.kinematics.places.get(name);
             let is_moving = placed.is_some_and(|placed| placed.link.is_some());
-            if let Some(mass) = particle_mass(&self.scope, particle, cx).filter(|_| is_moving) {
+            if let Some(mass) = resolve_particle_mass(&self.scope, particle, cx).filter(|_| is_moving) {
                 let masses = (mass, Vec3::zero(self.scope.graph), Sym3::zero(self.scope.graph));
                 self.scope.kinematics.masses.insert(name.clone(), masses);
                 self.attach_mass(name, masses);
@@ -79,11 +80,11 @@ impl<'g> Builder<'_, 'g> {
             let terms = weighted_coordinates(&self.scope, drive, cx);
             let on = (self.model.inputs.len(), terms.as_slice());
             for (quantity, value) in drive_quantities(&self.scope, drive, on, cx) {
-                let name = quantity.name_for(&drive.name.text);
+                let name = quantity.drive_quantity_name(&drive.name.text);
                 self.scope.kinematics.drive_quantities.insert(name, value);
             }
-            if let Some(forces) = drive_forces(&self.scope, drive, on, cx) {
-                forces.add_to(&mut self.model);
+            if let Some(forces) = resolve_drive_forces(&self.scope, drive, on, cx) {
+                forces.add_forces_to_model(&mut self.model);
             }
             if let DriveLaw::Input(unit) = drive.law {
                 self.model.inputs.push((drive.name.text.clone(), Input::Sum(terms, unit)));
@@ -100,7 +101,7 @@ impl<'g> Builder<'_, 'g> {
         }
         for action in &self.scope.description.actions {
             let name = &action.name.text;
-            let mut forces = forces_of(&self.scope, action, cx).unwrap_or_default();
+            let mut forces = forces_of_element(&self.scope, action, cx).unwrap_or_default();
             // An element without an effect may be zero by its values. An input has an entry of `u` in any
             // case.
             if cx.is_empty() && action.is_input() && forces.is_empty() {
@@ -112,27 +113,27 @@ impl<'g> Builder<'_, 'g> {
                 *slot = input;
             }
             if is_power_used(self.scope.description, &action.name) {
-                let power = power_of(&self.scope, &self.model, &forces, name);
+                let power = power_of_element(&self.scope, &self.model, &forces, name);
                 self.scope.kinematics.powers.insert(name.clone(), power);
             }
-            self.add_forces(name, forces);
+            self.add_element_forces(name, forces);
         }
     }
 
     /// Adds the forces of an element, and records them for free-body diagrams.
-    fn add_forces(&mut self, name: &str, forces: Forces<'g>) {
+    fn add_element_forces(&mut self, name: &str, forces: Forces<'g>) {
         if let Some(release) = &mut self.release
             && self.scope.description.outputs.iter().any(|output| output.rank == Rank::FreeBody)
         {
-            let on_released = forces_on_released(&self.scope, &self.model, (release, &forces), name);
+            let on_released = forces_on_released_joints(&self.scope, &self.model, (release, &forces), name);
             release.forces.push((name.to_string(), on_released));
         }
-        forces.add_to(&mut self.model);
+        forces.add_forces_to_model(&mut self.model);
     }
 
     /// Records the joints for which loops are solved in closed form, with their axes.
-    pub fn add_solved(&mut self, cx: &mut Diagnostics) -> LoopsSolved {
-        self.model.solved = solved_sides(&self.scope, &self.solved_loops, cx);
+    pub fn record_loops_with_closed_form(&mut self, cx: &mut Diagnostics) -> LoopsSolved {
+        self.model.solved = joints_solved_in_closed_form(&self.scope, &self.solved_loops, cx);
         LoopsSolved(())
     }
 
@@ -142,51 +143,51 @@ impl<'g> Builder<'_, 'g> {
         closing: &[usize],
         _: (MotionKnown, LoopsSolved),
         cx: &mut Diagnostics,
-    ) -> ConstraintsKnown {
+    ) -> ConstraintsAdded {
         let d = self.scope.description;
         let ground_axes = Rotation::identity(self.scope.graph);
         if !cx.is_empty() {
             for j in closing {
-                check_joint(&self.scope, &d.joints[*j], cx);
-                self.record_transmission(*j, None, &ground_axes);
+                report_joint_argument_errors(&self.scope, &d.joints[*j], cx);
+                self.record_joint_for_reactions(*j, None, &ground_axes);
             }
             for constraint in &d.constraints {
-                check_constraint(&self.scope, &self.model, constraint, cx);
+                report_constraint_errors(&self.scope, &self.model, constraint, cx);
             }
-            return ConstraintsKnown(());
+            return ConstraintsAdded(());
         }
         let solved: Vec<usize> = self.solved_loops.iter().map(|e| e.closing).collect();
         for j in closing.iter().filter(|j| !solved.contains(j)) {
-            if let Some(rows) = loop_rows(&self.scope, &self.model, *j, cx) {
-                self.record_transmission(*j, None, &ground_axes);
-                self.add_rows(&d.joints[*j].name.text, rows);
+            if let Some(rows) = loop_closure_rows(&self.scope, &self.model, *j, cx) {
+                self.record_joint_for_reactions(*j, None, &ground_axes);
+                self.add_constraint_rows(&d.joints[*j].name.text, rows);
             }
         }
         for (index, constraint) in d.constraints.iter().enumerate() {
             let rows = resolve_constraint(&self.scope, &self.model, (index, constraint), cx);
-            self.add_rows(&constraint.name.text, rows.unwrap_or_default());
+            self.add_constraint_rows(&constraint.name.text, rows.unwrap_or_default());
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
         self.model.freedom = Freedom { coordinates: self.model.nv(), velocities: self.model.nv() };
         if !self.check_number_of_constraints(cx) {
-            return ConstraintsKnown(());
+            return ConstraintsAdded(());
         }
         for j in &solved {
-            self.record_transmission(*j, None, &ground_axes);
+            self.record_joint_for_reactions(*j, None, &ground_axes);
         }
         if let Some(release) = &self.release {
             let retained = release.retained;
             self.model.constraints.retain(|c| retained.iter().any(|k| k.name == c.name));
             for j in &solved {
                 let rows = planar_loop_rows(&self.scope, &self.model, *j, cx);
-                self.add_rows(&d.joints[*j].name.text, rows.unwrap_or_default());
+                self.add_constraint_rows(&d.joints[*j].name.text, rows.unwrap_or_default());
             }
         } else if cx.is_empty() && !self.model.constraints.is_empty() {
             let mut found = Diagnostics::new();
-            check_mobility(&mut self.model, &d.formulation, &mut found);
+            remove_redundancy_and_check_mobility(&mut self.model, &d.formulation, &mut found);
             self.mobility = found;
         }
-        ConstraintsKnown(())
+        ConstraintsAdded(())
     }
 
     /// Reports independent speeds without constraints, and too many constraints. Returns false for the
@@ -209,7 +210,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds the rows of a constraint, in groups of their own.
-    fn add_rows(&mut self, name: &str, rows: ConstraintRows<'g>) {
+    fn add_constraint_rows(&mut self, name: &str, rows: ConstraintRows<'g>) {
         let first = self.group + 1;
         self.group = first;
         for mut row in rows.rows {
@@ -239,7 +240,7 @@ impl<'g> Builder<'_, 'g> {
             self.surfaces.extend(parts.surfaces.into_iter().map(|surface| (name.clone(), surface)));
             self.model.contacts.extend(parts.contacts);
             self.model.polytopes.extend(parts.polytopes);
-            parts.forces.add_to(&mut self.model);
+            parts.forces.add_forces_to_model(&mut self.model);
             let kinematics = &mut self.scope.kinematics;
             kinematics.powers.extend(parts.power.map(|power| (name.clone(), power)));
             // Surfaces that cannot move relative to each other exert no forces.
@@ -266,31 +267,31 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds potential energies and dissipation functions given as expressions, followed by the outputs.
-    pub fn add_expressions(&mut self, _: ConstraintsKnown, cx: &mut Diagnostics) {
+    pub fn add_energies_and_outputs(&mut self, _: ConstraintsAdded, cx: &mut Diagnostics) {
         let d = self.scope.description;
         for (name, e) in &d.energies {
-            let forces = resolve_energy(&self.scope, e, cx);
-            self.add_forces(&name.text, forces);
+            let forces = resolve_potential_energy(&self.scope, e, cx);
+            self.add_element_forces(&name.text, forces);
         }
         for (name, e) in &d.dissipations {
             let forces = resolve_dissipation(&self.scope, e, cx);
-            self.add_forces(&name.text, forces);
+            self.add_element_forces(&name.text, forces);
         }
         for output in &d.outputs {
             let found = match output.rank {
                 Rank::FreeBody => {
                     let connections = (self.release.as_ref(), self.moving_placements.as_slice());
-                    resolve_free_body(&self.scope, &self.model, connections, output, cx)
+                    resolve_free_body_diagram(&self.scope, &self.model, connections, output, cx)
                 }
                 _ => resolve_output(&self.scope, output, cx),
             };
             self.model.outputs.extend(found);
         }
-        check_definitions(&self.scope, cx);
+        report_definition_errors(&self.scope, cx);
     }
 
     /// Adds the declared generalized speeds, and replaces the velocities that they contain.
-    pub fn add_speeds(&mut self, _: ConstraintsKnown, cx: &mut Diagnostics) {
+    pub fn add_speeds(&mut self, _: ConstraintsAdded, cx: &mut Diagnostics) {
         if self.scope.description.speeds.is_empty() || self.release.is_some() || !cx.is_empty() {
             return;
         }

@@ -7,7 +7,7 @@
 use super::scope::Scope;
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
-use crate::expr::replace::{replace_part, substitute_symbols};
+use crate::expr::replace::{substitute_subexpression, substitute_symbols};
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Extreme, Symbol};
 use crate::kinematics::symbols_in;
@@ -46,7 +46,7 @@ impl<'g> PiecewiseLaw<'g> {
     /// Returns the values of both pieces at the border if they differ for any sample, and `None` otherwise. A
     /// sample is used only if the `nested_borders` are ordered like this border. Returns `Err` if no sample
     /// can be used.
-    fn gap_at_border(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
+    fn unequal_values_at_border(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
         let at_border = [0, 1].map(|piece| self.substitute_in_piece(piece, self.border));
         let mut tried = false;
         for (seed, size) in (0_u64..).zip(SIZES) {
@@ -80,7 +80,7 @@ impl<'g> PiecewiseLaw<'g> {
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the symbol of an expression that is compared in one of the surrounding piecewise laws.
-    pub fn compared_symbol(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
+    pub fn symbol_of_compared_expression(&self, e: &syntax::Expr) -> Option<Expr<'g>> {
         let context = self.context.borrow();
         context.compared.iter().rev().find(|(written, _)| written.has_same_text(e)).map(|(_, symbol)| *symbol)
     }
@@ -102,8 +102,11 @@ impl<'g> Scope<'_, 'g> {
             false => (left, x, border, [below, above]),
         };
         if compared.constant_value().is_some() {
-            cx.report_error(left.place.extend_to(&right.place), "this comparison of two numbers is constant")
-                .add_help("keep only the piece that applies");
+            cx.report_error(
+                left.place.extend_to_end_of(&right.place),
+                "this comparison of two numbers is constant",
+            )
+            .add_help("keep only the piece that applies");
             return None;
         }
         let depth = self.context.borrow().compared.len();
@@ -112,11 +115,12 @@ impl<'g> Scope<'_, 'g> {
         let read = pieces.map(|piece| self.resolve_scalar(piece, cx));
         self.context.borrow_mut().compared.pop();
         // Definitions contain the compared expression in resolved form.
-        let by_symbol = |e: Expr<'g>| replace_part(e, compared, self.graph.symbol(symbol));
-        let pieces_read = [by_symbol(read[0]?), by_symbol(read[1]?)];
-        if by_symbol(border).id() != border.id() {
+        let replace_compared_by_symbol =
+            |e: Expr<'g>| substitute_subexpression(e, compared, self.graph.symbol(symbol));
+        let pieces_read = [replace_compared_by_symbol(read[0]?), replace_compared_by_symbol(read[1]?)];
+        if replace_compared_by_symbol(border).id() != border.id() {
             cx.report_error(
-                left.place.extend_to(&right.place),
+                left.place.extend_to_end_of(&right.place),
                 "the boundary between the pieces depends on the compared quantity",
             )
             .add_help("solve the comparison: the compared quantity on one side, the boundary on the other");
@@ -137,7 +141,7 @@ impl<'g> Scope<'_, 'g> {
     ) -> Vec<(bool, Expr<'g>)> {
         let mut all = Vec::new();
         for (is_above, piece) in [false, true].into_iter().zip(pieces) {
-            for part in piece.subexpressions() {
+            for part in piece.all_subexpressions() {
                 if let ExprKind::Call(name, arguments) = &part.kind
                     && let [a, b, ..] = arguments.as_slice()
                     && name.id == Some(Callable::If)
@@ -160,9 +164,9 @@ impl<'g> Scope<'_, 'g> {
         right: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> bool {
-        let place = left.place.extend_to(&right.place);
+        let place = left.place.extend_to_end_of(&right.place);
         let (a, b) = (left.to_source(), right.to_source());
-        match law.gap_at_border(nested_borders) {
+        match law.unequal_values_at_border(nested_borders) {
             Ok(None) => true,
             Ok(Some([first, second])) => {
                 let is_constant_at_border =

@@ -3,12 +3,12 @@
 //! a link.
 
 use super::builder::Builder;
-use super::carriers::uses_axes;
-use super::chain::check_joint;
+use super::carriers::are_particle_axes_used;
+use super::chain::report_joint_argument_errors;
 use super::holders;
-use super::scope::{Allowed, Context, Placed, PlacedKind};
+use super::scope::{AllowedQuantities, Context, Placed, PlacedElementKind};
 use super::tree::PlacementOrder;
-use crate::diag::{Diagnostics, all_of};
+use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Rotation, Vec3};
 use crate::language::{Callable, Method};
 use crate::mechanism::{LinkId, Pose};
@@ -28,7 +28,7 @@ enum UnplacedElement {
 impl<'a, 'g> Builder<'a, 'g> {
     /// Places all elements. An element waits until the elements on which it depends are placed; if no
     /// progress is possible, definitions are circular.
-    pub fn place_all(&mut self, order: &PlacementOrder, cx: &mut Diagnostics) {
+    pub fn place_all_elements(&mut self, order: &PlacementOrder, cx: &mut Diagnostics) {
         let d = self.scope.description;
         for (j, child) in &order.joints {
             if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
@@ -41,8 +41,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         let mut waiting: Vec<UnplacedElement> = (0..order.joints.len()).map(UnplacedElement::Joint).collect();
         waiting.extend((0..d.frames.len()).map(UnplacedElement::Frame));
         waiting.extend((0..d.points.len()).map(UnplacedElement::Point));
-        let placed_body = |k: &usize| d.bodies[*k].at.is_some() || d.bodies[*k].frame.is_some();
-        waiting.extend((0..d.bodies.len()).filter(placed_body).map(UnplacedElement::Body));
+        let is_placed_body = |k: &usize| d.bodies[*k].at.is_some() || d.bodies[*k].frame.is_some();
+        waiting.extend((0..d.bodies.len()).filter(is_placed_body).map(UnplacedElement::Body));
         waiting.extend(
             (0..d.particles.len()).filter(|k| d.particles[*k].at.is_some()).map(UnplacedElement::Particle),
         );
@@ -50,15 +50,15 @@ impl<'a, 'g> Builder<'a, 'g> {
             let before = waiting.len();
             let mut rest = Vec::new();
             for item in waiting {
-                if self.is_ready(item, order) {
-                    self.place_item(item, order, cx);
+                if self.are_dependencies_placed(item, order) {
+                    self.place_element(item, order, cx);
                 } else {
                     rest.push(item);
                 }
             }
             if rest.len() == before {
-                self.report_waiting(&rest, order, cx);
-                self.place_substitutes(&rest, order);
+                self.report_unplaced_elements(&rest, order, cx);
+                self.place_at_substitute_poses(&rest, order);
                 return;
             }
             waiting = rest;
@@ -69,18 +69,19 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn placement_dependencies(&self, item: UnplacedElement, order: &PlacementOrder) -> Vec<String> {
         let d = self.scope.description;
         let mut names = Vec::new();
-        let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
+        let mut expression =
+            |e: &Option<Expr>| e.iter().for_each(|e| collect_names_in_expression(e, &mut names));
         match item {
             UnplacedElement::Joint(k) => {
                 let j = order.joints[k].0;
                 // A joint that is solved for needs the other side of its loop as well.
-                let sides = self.solving_loop(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
+                let sides = self.loop_that_solves_joint(j).map_or(vec![j], |loop_| loop_.sides.to_vec());
                 names.extend(sides.iter().map(|j| d.joints[*j].parent.body.text.clone()));
             }
             UnplacedElement::Frame(k) => {
                 let f = &d.frames[k];
-                collect_names(&f.start, &mut names);
-                f.rotations.iter().for_each(|e| collect_names(e, &mut names));
+                collect_names_in_expression(&f.start, &mut names);
+                f.rotations.iter().for_each(|e| collect_names_in_expression(e, &mut names));
             }
             UnplacedElement::Point(k) => {
                 expression(&d.points[k].on);
@@ -95,14 +96,14 @@ impl<'a, 'g> Builder<'a, 'g> {
         names
     }
 
-    fn is_ready(&self, item: UnplacedElement, order: &PlacementOrder) -> bool {
+    fn are_dependencies_placed(&self, item: UnplacedElement, order: &PlacementOrder) -> bool {
         let kinematics = &self.scope.kinematics;
         self.placement_dependencies(item, order)
             .iter()
             .all(|name| !self.scope.is_placeable(name) || kinematics.places.contains_key(name))
     }
 
-    fn item_name(&self, item: UnplacedElement, order: &PlacementOrder) -> &'a Name {
+    fn unplaced_element_name(&self, item: UnplacedElement, order: &PlacementOrder) -> &'a Name {
         let d = self.scope.description;
         match item {
             UnplacedElement::Joint(k) => &d.joints[order.joints[k].0].name,
@@ -113,13 +114,22 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    fn report_waiting(&self, waiting: &[UnplacedElement], order: &PlacementOrder, cx: &mut Diagnostics) {
+    fn report_unplaced_elements(
+        &self,
+        waiting: &[UnplacedElement],
+        order: &PlacementOrder,
+        cx: &mut Diagnostics,
+    ) {
         // After another error, elements may wait for one that failed, which has been reported. Joints are
         // still resolved, to report their own errors at once.
         if !cx.is_empty() {
             for item in waiting {
                 if let UnplacedElement::Joint(k) = item {
-                    check_joint(&self.scope, &self.scope.description.joints[order.joints[*k].0], cx);
+                    report_joint_argument_errors(
+                        &self.scope,
+                        &self.scope.description.joints[order.joints[*k].0],
+                        cx,
+                    );
                 }
             }
             return;
@@ -138,7 +148,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             path.push(k);
         }
         path.sort_unstable();
-        let names: Vec<&Name> = path.iter().map(|k| self.item_name(waiting[*k], order)).collect();
+        let names: Vec<&Name> = path.iter().map(|k| self.unplaced_element_name(waiting[*k], order)).collect();
         let Some((first, others)) = names.split_first() else { return };
         let error = cx.report_error(
             first.place.clone(),
@@ -146,7 +156,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         );
         if !others.is_empty() {
             let list: Vec<String> = others.iter().map(|name| format!("`{}`", name.text)).collect();
-            error.add_note(format!("the cycle passes through {}", all_of(&list)));
+            error.add_note(format!("the cycle passes through {}", join_names_with_and(&list)));
         }
         error.add_help("its definition is circular: start from the ground or from a body with a joint");
     }
@@ -157,25 +167,25 @@ impl<'a, 'g> Builder<'a, 'g> {
             UnplacedElement::Joint(k) => {
                 self.scope.description.joints[order.joints[k].0].child.body.text.clone()
             }
-            _ => self.item_name(item, order).text.clone(),
+            _ => self.unplaced_element_name(item, order).text.clone(),
         }
     }
 
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
-    fn place_substitutes(&mut self, waiting: &[UnplacedElement], order: &PlacementOrder) {
+    fn place_at_substitute_poses(&mut self, waiting: &[UnplacedElement], order: &PlacementOrder) {
         for item in waiting {
             let name = self.placed_name(*item, order);
-            let (link, pose) = self.link_if_moving(None, self.scope.substitute_pose(true));
+            let (link, pose) = self.add_link_if_moving(None, self.scope.substitute_pose(true));
             let kind = match item {
-                UnplacedElement::Joint(_) | UnplacedElement::Body(_) => PlacedKind::Body,
-                UnplacedElement::Frame(_) => PlacedKind::Frame,
-                UnplacedElement::Point(_) | UnplacedElement::Particle(_) => PlacedKind::Point,
+                UnplacedElement::Joint(_) | UnplacedElement::Body(_) => PlacedElementKind::Body,
+                UnplacedElement::Frame(_) => PlacedElementKind::Frame,
+                UnplacedElement::Point(_) | UnplacedElement::Particle(_) => PlacedElementKind::Point,
             };
             self.register_placement(&name, link, pose, kind);
         }
     }
 
-    fn place_item(&mut self, item: UnplacedElement, order: &PlacementOrder, cx: &mut Diagnostics) {
+    fn place_element(&mut self, item: UnplacedElement, order: &PlacementOrder, cx: &mut Diagnostics) {
         let d = self.scope.description;
         match item {
             UnplacedElement::Joint(k) => {
@@ -183,11 +193,12 @@ impl<'a, 'g> Builder<'a, 'g> {
                 self.place_joint(j, child, cx);
             }
             UnplacedElement::Frame(k) => {
-                let (link, pose) =
-                    self.frame_place(k, cx).unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
-                let (start, (link, pose)) = (link, self.link_if_moving(link, pose));
+                let (link, pose) = self
+                    .frame_axes_at_start_origin(k, cx)
+                    .unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
+                let (start, (link, pose)) = (link, self.add_link_if_moving(link, pose));
                 self.frame_links.extend(link.filter(|_| link != start));
-                self.register_placement(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
+                self.register_placement(&d.frames[k].name.text, link, pose, PlacedElementKind::Frame);
             }
             UnplacedElement::Point(k) => {
                 let p = &d.points[k];
@@ -200,30 +211,35 @@ impl<'a, 'g> Builder<'a, 'g> {
                     None => Some((frame.link, frame.pose)),
                 });
                 let (link, pose) = place.unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
-                let (link, pose) = self.link_if_moving(link, pose);
-                self.register_placement(&p.name.text, link, pose, PlacedKind::Point);
+                let (link, pose) = self.add_link_if_moving(link, pose);
+                self.register_placement(&p.name.text, link, pose, PlacedElementKind::Point);
             }
             UnplacedElement::Body(k) => self.place_body(k, cx),
             UnplacedElement::Particle(k) => {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
-                let free = !uses_axes(d, &p.name.text);
+                let free = !are_particle_axes_used(d, &p.name.text);
                 let (link, pose) =
                     self.place_at(at, free, cx).unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
-                let (link, pose) = self.link_of_place(holders::particle_placement(d, k), link, pose);
-                self.register_placement(&p.name.text, link, pose, PlacedKind::Point);
+                let (link, pose) =
+                    self.link_of_placed_element(holders::particle_connection_index(d, k), link, pose);
+                self.register_placement(&p.name.text, link, pose, PlacedElementKind::Point);
             }
         }
     }
 
     fn ground_placement(&self) -> Placed<'g> {
-        Placed { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedKind::Body }
+        Placed { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedElementKind::Body }
     }
 
     /// Returns the axes of a frame, at the origin of its start frame.
-    fn frame_place(&self, k: usize, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+    fn frame_axes_at_start_origin(
+        &self,
+        k: usize,
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, Pose<'g>)> {
         let frame = &self.scope.description.frames[k];
-        let start = self.axes_of(&frame.start, cx);
+        let start = self.start_axes_of_frame(&frame.start, cx);
         // Axes defined by a vector or a curve precede further rotations.
         let natural = match frame.rotations.first().map(|first| &first.kind) {
             Some(ExprKind::Call(word, arguments)) => match word.id {
@@ -237,12 +253,12 @@ impl<'a, 'g> Builder<'a, 'g> {
         let steps = &frame.rotations[usize::from(natural.is_some())..];
         let first = match (natural, &start) {
             (Some((rotation, arguments)), Some(start)) => {
-                self.scope.natural_axes(rotation, arguments, start, cx)
+                self.scope.axes_of_vector_or_curve(rotation, arguments, start, cx)
             }
             _ => Some(Rotation::identity(self.scope.graph)),
         };
-        let context = Context::new(Allowed::Placement, None);
-        let rotation = self.scope.in_context(context, |scope| scope.resolve_rotation(steps, cx));
+        let context = Context::new(AllowedQuantities::Placement, None);
+        let rotation = self.scope.call_in_context(context, |scope| scope.resolve_rotation(steps, cx));
         let (start, rotation) = (start?, first?.compose_with(&rotation?));
         let pose = Pose {
             rotation: start.pose.rotation.compose_with(&rotation),
@@ -252,7 +268,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the placement of the body or frame with this name.
-    fn axes_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    fn start_axes_of_frame(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.report_error(e.place.clone(), "expected a body or a frame")
                 .add_help("write `#[frame(ground, z(angle))]`");
@@ -263,7 +279,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
         let kinematics = &self.scope.kinematics;
         match kinematics.places.get(name) {
-            Some(p) if p.kind != PlacedKind::Point => Some(p.clone()),
+            Some(p) if p.kind != PlacedElementKind::Point => Some(p.clone()),
             Some(_) => {
                 cx.report_error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
                     .add_help("name a body or a frame");
@@ -275,8 +291,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 }
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.report_error(e.place.clone(), format!("unknown body or frame `{name}`"));
-                words::suggest_meaning(error, words::BODIES, name, &known);
-                if error.is_bare() {
+                words::suggest_meaning_or_known_word(error, words::BODIES, name, &known);
+                if error.has_no_help() {
                     error.add_help(
                         "a frame starts with the axes of a body or another frame: `#[frame(ground, \
                          z(angle))]`",
@@ -290,7 +306,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn place_body(&mut self, k: usize, cx: &mut Diagnostics) {
         let body = &self.scope.description.bodies[k];
         let axes = match &body.frame {
-            Some(frame) => self.axes_of(frame, cx),
+            Some(frame) => self.start_axes_of_frame(frame, cx),
             None => Some(self.ground_placement()),
         };
         let origin = match &body.at {
@@ -305,14 +321,18 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             _ => (None, self.scope.substitute_pose(true)),
         };
-        let (link, pose) = self.link_of_place(holders::body_placement(self.scope.description, k), link, pose);
-        self.register_placement(&body.name.text, link, pose, PlacedKind::Body);
+        let (link, pose) = self.link_of_placed_element(
+            holders::body_connection_index(self.scope.description, k),
+            link,
+            pose,
+        );
+        self.register_placement(&body.name.text, link, pose, PlacedElementKind::Body);
     }
 
     /// Returns the orientation of link `link` in link `base`.
     fn rotation_between(&self, base: Option<LinkId>, link: Option<LinkId>) -> Rotation<'g> {
         let kinematics = &self.scope.kinematics;
-        let to_ground = |mut current: Option<LinkId>| {
+        let rotation_to_ground = |mut current: Option<LinkId>| {
             let mut steps = Vec::new();
             while let Some(l) = current {
                 steps.push(kinematics.joints[l.0].rotation.clone());
@@ -323,7 +343,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         if base == link {
             return Rotation::identity(self.scope.graph);
         }
-        to_ground(base).inverse().compose_with(&to_ground(link))
+        rotation_to_ground(base).inverse().compose_with(&rotation_to_ground(link))
     }
 
     /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
@@ -362,8 +382,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         free: bool,
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
-        let terms = self.scope.in_context(context, |scope| scope.resolve_terms(at, cx))?;
+        let context = Context::new(AllowedQuantities::Placement, Some((frame.link, frame.pose.clone())));
+        let terms = self.scope.call_in_context(context, |scope| scope.resolve_terms(at, cx))?;
         let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
         // A constant vector in the axes of a frame that rotates about the base point is placed in that frame.
@@ -395,6 +415,6 @@ impl<'a, 'g> Builder<'a, 'g> {
 }
 
 /// Collects all names in an expression, including the bases of members and methods.
-fn collect_names(e: &Expr, names: &mut Vec<String>) {
-    names.extend(e.subexpressions().into_iter().filter_map(Expr::as_name).map(str::to_string));
+fn collect_names_in_expression(e: &Expr, names: &mut Vec<String>) {
+    names.extend(e.all_subexpressions().into_iter().filter_map(Expr::as_name).map(str::to_string));
 }

@@ -2,18 +2,20 @@
 
 use super::call::Call;
 use super::element_forces::Forces;
-use super::scope::{Allowed, ElementPower, Scope, Value};
+use super::scope::{AllowedQuantities, ElementPower, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
-use crate::kinematics::{coordinate_velocity, position_in, symbols_in, time_derivative, velocity_gradient};
+use crate::kinematics::{
+    coordinate_as_expression, coordinate_velocity, symbols_in, time_derivative, velocity_gradient,
+};
 use crate::language::{Callable, FunctionId};
-use crate::mechanism::{Constraint, Direction, Input, LinkId, Model, Quantity};
+use crate::mechanism::{Constraint, Input, LinkId, Model, Quantity, SumOfLinkVectors};
 use crate::syntax::{self, Description, Name};
 
 /// Whether an output or a definition contains the power of an element.
 pub fn is_power_used(d: &Description, element: &Name) -> bool {
     let mentions_power_of_element = |e: &syntax::Expr| {
-        e.subexpressions().iter().any(|part| match &part.kind {
+        e.all_subexpressions().iter().any(|part| match &part.kind {
             syntax::ExprKind::Call(function, arguments) => {
                 function.id == Some(Callable::Function(FunctionId::Power))
                     && arguments.iter().any(|a| a.as_name() == Some(element.text.as_str()))
@@ -42,7 +44,7 @@ pub fn slipping_powers<'g>(model: &Model<'g>) -> Vec<(String, ElementPower<'g>)>
 
 /// Returns the power of the forces of an element: products of forces and rates, and the rate of decrease
 /// of energies along the motion.
-pub fn power_of<'g>(
+pub fn power_of_element<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     forces: &Forces<'g>,
@@ -55,7 +57,7 @@ pub fn power_of<'g>(
     let mut power = m.graph.zero();
     for spring in &forces.springs {
         power += -(spring.stiffness
-            * (position_in(m.graph, &spring.on) - spring.free)
+            * (coordinate_as_expression(m.graph, &spring.on) - spring.free)
             * coordinate_velocity(m, &spring.on));
     }
     for dashpot in &forces.dashpots {
@@ -94,10 +96,10 @@ pub fn power_of_input<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>, element: &st
         Input::Sum(all, _) => all.iter().fold(m.graph.zero(), |sum, c| sum + u * coordinate_velocity(m, c)),
         Input::Force { link, point, along } => {
             let (linear, angular) = twist_of_link(scope, *link);
-            u * (linear + angular.cross(*point)).dot(in_axes_of(scope, *link, along))
+            u * (linear + angular.cross(*point)).dot(direction_in_link_axes(scope, *link, along))
         }
         Input::Torque { link, about } => {
-            u * twist_of_link(scope, *link).1.dot(in_axes_of(scope, *link, about))
+            u * twist_of_link(scope, *link).1.dot(direction_in_link_axes(scope, *link, about))
         }
     }
 }
@@ -109,7 +111,11 @@ fn twist_of_link<'g>(scope: &Scope<'_, 'g>, link: LinkId) -> (Vec3<'g>, Vec3<'g>
     (twist.linear, twist.angular)
 }
 
-fn in_axes_of<'g>(scope: &Scope<'_, 'g>, link: LinkId, direction: &Direction<'g>) -> Vec3<'g> {
+fn direction_in_link_axes<'g>(
+    scope: &Scope<'_, 'g>,
+    link: LinkId,
+    direction: &SumOfLinkVectors<'g>,
+) -> Vec3<'g> {
     let zero = Vec3::zero(scope.graph);
     scope.kinematics.resolve(direction, Some(link), zero)
 }
@@ -124,7 +130,12 @@ impl<'g> Scope<'_, 'g> {
             cx.report_error(e.place.clone(), "expected a force element").suggest_name("", element_names());
             return None;
         };
-        if !self.check_allowed(Allowed::Reaction, "the power of an element", call.place, cx) {
+        if !self.check_allowed_quantity(
+            AllowedQuantities::Reaction,
+            "the power of an element",
+            call.place,
+            cx,
+        ) {
             return None;
         }
         match self.kinematics.powers.get(name) {
@@ -139,7 +150,7 @@ impl<'g> Scope<'_, 'g> {
                 if !element_names().any(|action| action == name) && self.is_first_report(name, cx) {
                     let error = cx.report_error(e.place.clone(), format!("unknown force element `{name}`"));
                     error.suggest_name(name, element_names());
-                    if error.is_bare() {
+                    if error.has_no_help() {
                         error.add_help(
                             "name a field such as a `Spring`, a `Dashpot`, a `Force` or a `Torque`",
                         );

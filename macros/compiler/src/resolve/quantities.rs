@@ -2,7 +2,9 @@
 //! such as `r(y / x)`, `v(y / x / A)` and `omega(B / A)`.
 
 use super::call::Call;
-use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
+use super::scope::{
+    AllowedQuantities, Axes, Context, Placed, PlacedElementKind, PlacedElements, Scope, Terms, Value,
+};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::normalised_or_zero;
@@ -13,11 +15,15 @@ use crate::syntax::{self, BinaryOp, ExprKind, GROUND, words};
 impl<'g> Scope<'_, 'g> {
     /// Returns a vector as a sum over the axes of links. All links must be resolved.
     pub fn resolve_terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terms<'g>> {
-        self.resolve_vector(e, cx).map(in_links)
+        self.resolve_vector(e, cx).map(vector_terms_by_link)
     }
 
     /// Resolves several vectors and expresses them in the axes of a common frame.
-    pub fn common_axes(&self, e: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<(Axes, Vec<Vec3<'g>>)> {
+    pub fn resolve_in_common_axes(
+        &self,
+        e: &[&syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<(Axes, Vec<Vec3<'g>>)> {
         let all: Vec<_> = e.iter().map(|e| Some((*e, self.resolve_vector(e, cx)?))).collect();
         self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
     }
@@ -32,7 +38,7 @@ impl<'g> Scope<'_, 'g> {
             let all: Vec<_> = read.into_iter().map(|(e, terms)| self.own_axes_sum(terms, e, cx)).collect();
             return Some((Axes::Own, all.into_iter().collect::<Option<_>>()?));
         }
-        let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| in_links(terms)).collect();
+        let all: Vec<Terms<'g>> = read.into_iter().map(|(_, terms)| vector_terms_by_link(terms)).collect();
         let link = all.iter().flatten().next().and_then(|(link, _)| *link);
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
@@ -40,7 +46,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves `rate(coordinate)`, or the rate of an expression of coordinates, velocities and time.
-    pub fn rate_of(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_rate(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [argument] = call.arguments else {
             let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::to_source);
             cx.report_error(call.place.clone(), "`rate` takes one coordinate")
@@ -59,12 +65,12 @@ impl<'g> Scope<'_, 'g> {
             && let Some(name) = frame.as_name()
             && (name == GROUND || self.bodies.iter().any(|body| body == name))
         {
-            return self.rate_in(call.place, vector, frame, cx);
+            return self.resolve_rate_in_frame(call.place, vector, frame, cx);
         }
         let kinematics = &self.kinematics;
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
             if self.is_moving(argument) {
-                return self.rate_of_value(call.place, argument, cx).map(Value::Scalar);
+                return self.resolve_time_derivative(call.place, argument, cx).map(Value::Scalar);
             }
             if matches!(argument.kind, ExprKind::Name(_)) && !self.is_first_report(&name, cx) {
                 return None;
@@ -73,7 +79,7 @@ impl<'g> Scope<'_, 'g> {
             let known: Vec<&str> = known.collect();
             let error = cx.report_error(argument.place.clone(), "`rate` takes a coordinate");
             error.suggest_name(&name, known);
-            if error.is_bare() {
+            if error.has_no_help() {
                 error.add_help(
                     "a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a \
                      `Coordinate`",
@@ -81,7 +87,12 @@ impl<'g> Scope<'_, 'g> {
             }
             return None;
         };
-        if !self.check_allowed(Allowed::Motion, &format!("the rate of `{name}`"), call.place, cx) {
+        if !self.check_allowed_quantity(
+            AllowedQuantities::Motion,
+            &format!("the rate of `{name}`"),
+            call.place,
+            cx,
+        ) {
             return None;
         }
         Some(Value::Scalar(c.v.expr(self.graph) * self.graph.num(c.ratio)))
@@ -91,9 +102,9 @@ impl<'g> Scope<'_, 'g> {
     pub fn resolve_angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let all: Vec<&syntax::Expr> = call.arguments.iter().collect();
         if !(2..=3).contains(&all.len()) {
-            return call.reject_arguments(cx);
+            return call.report_wrong_arguments(cx);
         }
-        let (_, v) = self.common_axes(&all, cx)?;
+        let (_, v) = self.resolve_in_common_axes(&all, cx)?;
         let normal = v[0].cross(v[1]);
         let sine = match v.get(2) {
             Some(n) => normal.dot(normalised_or_zero(*n)),
@@ -107,10 +118,10 @@ impl<'g> Scope<'_, 'g> {
     pub fn resolve_placement(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Name(name) if name == GROUND => {
-                Some(Placed { link: None, pose: Pose::identity(self.graph), kind: PlacedKind::Body })
+                Some(Placed { link: None, pose: Pose::identity(self.graph), kind: PlacedElementKind::Body })
             }
             ExprKind::Name(name) => match self.placement_of_element(name) {
-                Some(p) if p.kind != PlacedKind::Frame => Some(p),
+                Some(p) if p.kind != PlacedElementKind::Frame => Some(p),
                 Some(_) => {
                     cx.report_error(
                         e.place.clone(),
@@ -120,7 +131,7 @@ impl<'g> Scope<'_, 'g> {
                     None
                 }
                 None => {
-                    self.unknown_place(name, &e.place, cx);
+                    self.report_unknown_position(name, &e.place, cx);
                     None
                 }
             },
@@ -128,11 +139,12 @@ impl<'g> Scope<'_, 'g> {
                 if method.id == Some(Method::At) && arguments.len() == 1 =>
             {
                 let base = self.resolve_placement(base, cx)?;
-                let context = Context::new(Allowed::Constant, None);
-                let offset = self.in_context(context, |scope| scope.own_vector(&arguments[0], cx))?;
+                let context = Context::new(AllowedQuantities::Constant, None);
+                let offset =
+                    self.call_in_context(context, |scope| scope.resolve_own_axes_vector(&arguments[0], cx))?;
                 let pose =
                     Pose { translation: base.pose.transform_point(offset), rotation: base.pose.rotation };
-                Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
+                Some(Placed { link: base.link, pose, kind: PlacedElementKind::Point })
             }
             _ => {
                 cx.report_error(e.place.clone(), "expected a point")
@@ -142,7 +154,7 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    fn unknown_place(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
+    fn report_unknown_position(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if let Some(what) = self.kind_of_name(name).filter(|w| *w != "a body") {
             cx.report_error(place.clone(), format!("`{name}` is {what}, which has no position"))
                 .add_help("name a body, a particle or a point");
@@ -154,8 +166,8 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = &self.kinematics;
         let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
         let error = cx.report_error(place.clone(), format!("unknown point `{name}`"));
-        words::suggest_meaning(error, words::BODIES, name, &known);
-        if error.is_bare() {
+        words::suggest_meaning_or_known_word(error, words::BODIES, name, &known);
+        if error.has_no_help() {
             error.add_help("name a body, a particle or a point, or write `body.at(length * x)`");
         }
     }
@@ -163,18 +175,18 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the placement of an element with a position, or of a point that may move on its body:
     /// `body.at(vector)` with a vector of any axes and coordinates. Velocity and acceleration of such a point
     /// are those of the body at that position.
-    pub fn current_place(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    pub fn placement_of_moving_point(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Method(base, method, arguments)
                 if method.id == Some(Method::At) && arguments.len() == 1 =>
             {
-                let base = self.current_place(base, cx)?;
+                let base = self.placement_of_moving_point(base, cx)?;
                 let axes = Some((base.link, base.pose.clone()));
-                let context = Context::new(Allowed::Placement, axes);
-                let offset = self.in_context(context, |scope| scope.resolve_terms(&arguments[0], cx))?;
+                let context = Context::new(AllowedQuantities::Placement, axes);
+                let offset = self.call_in_context(context, |scope| scope.resolve_terms(&arguments[0], cx))?;
                 let offset = self.kinematics.resolve(&offset, base.link, Vec3::zero(self.graph));
                 let pose = Pose { translation: base.pose.translation + offset, rotation: base.pose.rotation };
-                Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
+                Some(Placed { link: base.link, pose, kind: PlacedElementKind::Point })
             }
             _ => self.resolve_placement(e, cx),
         }
@@ -190,7 +202,7 @@ impl<'g> Scope<'_, 'g> {
             return Some(None);
         }
         match self.placement_of_element(name) {
-            Some(p) if p.kind != PlacedKind::Point => Some(p.link),
+            Some(p) if p.kind != PlacedElementKind::Point => Some(p.link),
             Some(_) => {
                 cx.report_error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
                     .add_help("name a body or a frame");
@@ -203,8 +215,8 @@ impl<'g> Scope<'_, 'g> {
                 let kinematics = &self.kinematics;
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
                 let error = cx.report_error(e.place.clone(), format!("unknown frame `{name}`"));
-                words::suggest_meaning(error, words::BODIES, name, &known);
-                if error.is_bare() {
+                words::suggest_meaning_or_known_word(error, words::BODIES, name, &known);
+                if error.has_no_help() {
                     error.add_help("name a body or a frame");
                 }
                 None
@@ -216,7 +228,7 @@ impl<'g> Scope<'_, 'g> {
     fn slash_operands<'e, const N: usize>(
         &self,
         call: &Call<'e>,
-        allowed: Allowed,
+        allowed: AllowedQuantities,
         cx: &mut Diagnostics,
     ) -> Option<[&'e syntax::Expr; N]> {
         let (text, parts) = (call.function_name(), call.slash_operands());
@@ -229,52 +241,52 @@ impl<'g> Scope<'_, 'g> {
             cx.report_error(call.place.clone(), message).add_help(call.id.row().usage);
             return None;
         };
-        self.check_allowed(allowed, &format!("`{text}(…)`"), call.place, cx).then_some(parts)
+        self.check_allowed_quantity(allowed, &format!("`{text}(…)`"), call.place, cx).then_some(parts)
     }
 
     /// Resolves `r(y / x)`, the position of `y` relative to `x`.
-    pub fn relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x] = self.slash_operands(call, Allowed::Placement, cx)?;
-        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
+    pub fn resolve_relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [y, x] = self.slash_operands(call, AllowedQuantities::Placement, cx)?;
+        let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         Some(vector_value(self.kinematics.position_between(&y?, &x?)))
     }
 
     /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
     /// `v − ω × r`.
     pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slash_operands(call, Allowed::Motion, cx)?;
-        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
+        let [y, x, frame] = self.slash_operands(call, AllowedQuantities::Motion, cx)?;
+        let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         let frame = self.resolve_frame_link(frame, cx);
-        Some(vector_value(self.kinematics.velocity_in(&y?, &x?, frame?, self.graph)))
+        Some(vector_value(self.kinematics.relative_velocity_in_frame(&y?, &x?, frame?, self.graph)))
     }
 
     /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
     /// and `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
-    pub fn relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slash_operands(call, Allowed::Acceleration, cx)?;
-        let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
+    pub fn resolve_relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [y, x, frame] = self.slash_operands(call, AllowedQuantities::Acceleration, cx)?;
+        let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         let frame = self.resolve_frame_link(frame, cx);
-        Some(vector_value(self.kinematics.acceleration_in(&y?, &x?, frame?, self.graph)))
+        Some(vector_value(self.kinematics.relative_acceleration_in_frame(&y?, &x?, frame?, self.graph)))
     }
 
     /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 2] = self.slash_operands(call, Allowed::Motion, cx)?;
+        let frames: [_; 2] = self.slash_operands(call, AllowedQuantities::Motion, cx)?;
         let [b, a] = frames.map(|e| self.resolve_frame_link(e, cx));
-        Some(vector_value(self.kinematics.angular_velocity_in(b?, a?, self.graph)))
+        Some(vector_value(self.kinematics.angular_velocity_in_frame(b?, a?, self.graph)))
     }
 
     /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
     pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 3] = self.slash_operands(call, Allowed::Acceleration, cx)?;
+        let frames: [_; 3] = self.slash_operands(call, AllowedQuantities::Acceleration, cx)?;
         let [b, a, c] = frames.map(|e| self.resolve_frame_link(e, cx));
-        Some(vector_value(self.kinematics.angular_acceleration_in(b?, a?, c?, self.graph)))
+        Some(vector_value(self.kinematics.angular_acceleration_in_frame(b?, a?, c?, self.graph)))
     }
 }
 
-impl<'g> Kinematics<'g> {
+impl<'g> PlacedElements<'g> {
     /// Resolves a call of `v(y / x / frame)`.
-    pub fn velocity_in(
+    pub fn relative_velocity_in_frame(
         &self,
         y: &Placed<'g>,
         x: &Placed<'g>,
@@ -291,7 +303,7 @@ impl<'g> Kinematics<'g> {
     }
 
     /// Resolves a call of `a(y / x / frame)`.
-    pub fn acceleration_in(
+    pub fn relative_acceleration_in_frame(
         &self,
         y: &Placed<'g>,
         x: &Placed<'g>,
@@ -304,7 +316,7 @@ impl<'g> Kinematics<'g> {
             let zero = Vec3::zero(graph);
             let (w, dw) = (self.twists[l.0].angular, self.accelerations[l.0].angular);
             let r = self.resolve(&self.position_between(y, x), frame, zero);
-            let v = self.resolve(&self.velocity_in(y, x, frame, graph), frame, zero);
+            let v = self.resolve(&self.relative_velocity_in_frame(y, x, frame, graph), frame, zero);
             let coriolis = w.cross(v);
             a.push((frame, -(dw.cross(r) + w.cross(w.cross(r)) + coriolis + coriolis)));
         }
@@ -312,7 +324,7 @@ impl<'g> Kinematics<'g> {
     }
 
     /// Resolves a call of `omega(body / frame)`.
-    pub fn angular_velocity_in(
+    pub fn angular_velocity_in_frame(
         &self,
         body: Option<LinkId>,
         frame: Option<LinkId>,
@@ -325,7 +337,7 @@ impl<'g> Kinematics<'g> {
 
     /// Returns `alpha(b / a / c)`. With each frame's `α` relative to the ground it is
     /// `α_b − α_a − ω_c × (ω_b − ω_a)`.
-    pub fn angular_acceleration_in(
+    pub fn angular_acceleration_in_frame(
         &self,
         b: Option<LinkId>,
         a: Option<LinkId>,
@@ -335,7 +347,7 @@ impl<'g> Kinematics<'g> {
         let zero = Vec3::zero(graph);
         let angular_acceleration_of_link =
             |link: Option<LinkId>| link.map_or(zero, |l| self.accelerations[l.0].angular);
-        let w = self.resolve(&self.angular_velocity_in(b, a, graph), c, zero);
+        let w = self.resolve(&self.angular_velocity_in_frame(b, a, graph), c, zero);
         let turns = c.map_or(zero, |l| self.twists[l.0].angular);
         vec![
             (b, angular_acceleration_of_link(b)),
@@ -354,7 +366,7 @@ pub(super) fn vector_value<'g>(terms: Terms<'g>) -> Value<'g> {
 }
 
 /// Converts a vector to a sum over the axes of links.
-pub(super) fn in_links<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> Terms<'g> {
+pub(super) fn vector_terms_by_link<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> Terms<'g> {
     terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect()
 }
 

@@ -6,7 +6,7 @@ use crate::syntax::ScalarType;
 
 /// Range of parameter values whose products and reciprocals are finite.
 #[derive(Clone, Copy, Debug)]
-pub struct ValueRange {
+pub struct FiniteParameterRange {
     /// Maximum mass and moment of inertia, whose squares are finite.
     pub max: f64,
     /// Maximum length; with a mass of one, its moment of inertia is in the range of the scalar type.
@@ -17,17 +17,19 @@ pub struct ValueRange {
     pub name: &'static str,
 }
 
-impl ValueRange {
+impl FiniteParameterRange {
     /// Returns the range of a scalar type; a type parameter has the range of `f64`.
-    pub fn of_scalar(scalar: &ScalarType) -> ValueRange {
+    pub fn range_of_scalar_type(scalar: &ScalarType) -> FiniteParameterRange {
         match scalar {
-            ScalarType::F32 => ValueRange { max: 1e18, length: 1e9, min_nonzero: 1e-36, name: "f32" },
-            _ => ValueRange { max: 1e150, length: 1e75, min_nonzero: 1e-300, name: "f64" },
+            ScalarType::F32 => {
+                FiniteParameterRange { max: 1e18, length: 1e9, min_nonzero: 1e-36, name: "f32" }
+            }
+            _ => FiniteParameterRange { max: 1e150, length: 1e75, min_nonzero: 1e-300, name: "f64" },
         }
     }
 
     /// Reports a constant mass or moment outside the range. Returns false then.
-    pub fn check_mass(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
+    pub fn check_mass_in_range(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
         let Some(n) = e.constant_value().filter(|n| *n != 0.0) else { return true };
         if n.abs() > self.max {
             cx.report_error(place.clone(), format!("this number is too large for `{}`: {n:e}", self.name))

@@ -5,7 +5,7 @@
 //! constraints.
 
 use super::call::Call;
-use super::scope::{Allowed, Axes, Placed, Scope, Terms, Value};
+use super::scope::{AllowedQuantities, Axes, Placed, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::symbols_in;
@@ -38,7 +38,7 @@ pub fn joints_to_release(model: &Model<'_>) -> Vec<usize> {
 }
 
 /// Joints that are released to six degrees of freedom each, with the data for free-body diagrams.
-pub struct Release<'a, 'g> {
+pub struct ReleasedJoints<'a, 'g> {
     /// Indices of the released joints and placements.
     pub joints: &'a [usize],
     /// Constraints that the mechanism with released joints keeps.
@@ -53,15 +53,15 @@ pub struct Release<'a, 'g> {
     pub contact_points: BTreeMap<String, Terms<'g>>,
 }
 
-impl<'a, 'g> Release<'a, 'g> {
+impl<'a, 'g> ReleasedJoints<'a, 'g> {
     /// Returns the release of joints, before any element is resolved.
-    pub fn of_joints(joints: &'a [usize], retained: &'a [Constraint<'g>]) -> Release<'a, 'g> {
+    pub fn of_joints(joints: &'a [usize], retained: &'a [Constraint<'g>]) -> ReleasedJoints<'a, 'g> {
         let (frames, contact_points) = (BTreeMap::new(), BTreeMap::new());
-        Release { joints, retained, frames, forces: Vec::new(), contact_points }
+        ReleasedJoints { joints, retained, frames, forces: Vec::new(), contact_points }
     }
 
     /// Returns the index of a joint among the released joints.
-    pub fn index_of(&self, joint: usize) -> Option<usize> {
+    pub fn index_of_released_joint(&self, joint: usize) -> Option<usize> {
         self.joints.iter().position(|released| *released == joint)
     }
 }
@@ -85,9 +85,9 @@ impl<'g> Scope<'_, 'g> {
                     return None;
                 }
             },
-            _ => return call.reject_arguments(cx),
+            _ => return call.report_wrong_arguments(cx),
         };
-        if !self.check_allowed(Allowed::Reaction, "a reaction", call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Reaction, "a reaction", call.place, cx) {
             return None;
         }
         let Some((j, link, rotation)) = kinematics.transmissions.get(name) else {
@@ -95,7 +95,7 @@ impl<'g> Scope<'_, 'g> {
                 let error =
                     cx.report_error(call.arguments[0].place.clone(), format!("unknown joint `{name}`"));
                 error.suggest_name(name, joint_names());
-                if error.is_bare() {
+                if error.has_no_help() {
                     error.add_help(format!("name the joint, as in `{}(hinge)`", call.function_name()));
                 }
             }

@@ -8,7 +8,12 @@ use crate::mechanism::{Model, Quantity, Requirement, Rule};
 
 impl<'g> Scope<'_, 'g> {
     /// Records a condition on values, if the values depend on parameters and on nothing else.
-    pub fn record_requirement(&self, rule: Rule, figure: impl FnOnce() -> String, values: &[Expr<'g>]) {
+    pub fn record_parameter_condition(
+        &self,
+        rule: Rule,
+        figure: impl FnOnce() -> String,
+        values: &[Expr<'g>],
+    ) {
         let parameter_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => Some(k),
             _ => None,
@@ -30,19 +35,23 @@ pub fn gather_requirements<'g>(scope: &Scope<'_, 'g>, model: &Model<'g>) -> Vec<
     for limit in &model.limits {
         let name = model.velocities.get(limit.v.0).map_or("", |(name, _)| name.as_str());
         if let (Some(lower), Some(upper)) = (limit.lower, limit.upper) {
-            scope.record_requirement(Rule::Order, || format!("the range of `{name}`"), &[lower, upper]);
+            scope.record_parameter_condition(
+                Rule::Order,
+                || format!("the range of `{name}`"),
+                &[lower, upper],
+            );
         }
         for (bound, what) in [(limit.speed, "speed"), (limit.effort, "effort")] {
             let describe_largest_value = || format!("the largest {what} of `{name}`");
             bound.iter().for_each(|bound| {
-                scope.record_requirement(Rule::NotNegative, describe_largest_value, &[*bound])
+                scope.record_parameter_condition(Rule::NotNegative, describe_largest_value, &[*bound])
             });
         }
     }
     for (k, parameter) in scope.description.parameters.iter().enumerate() {
         let value = Quantity::Parameter(k).expr(scope.graph);
         if !parameter.text.starts_with('_') {
-            scope.record_requirement(
+            scope.record_parameter_condition(
                 Rule::Finite,
                 || format!("the parameter `{}`", parameter.text),
                 &[value],

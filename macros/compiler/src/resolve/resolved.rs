@@ -19,7 +19,11 @@ impl<'g> ResolvedMatrix<'g> {
     }
 
     /// Returns `R M Rᵀ`, the matrix in the axes of `link`; `rotate` transforms the components of vectors.
-    pub fn in_axes(self, link: Option<LinkId>, rotate: impl Fn(Vec3<'g>) -> Vec3<'g>) -> ResolvedMatrix<'g> {
+    pub fn rotated_to_link_axes(
+        self,
+        link: Option<LinkId>,
+        rotate: impl Fn(Vec3<'g>) -> Vec3<'g>,
+    ) -> ResolvedMatrix<'g> {
         let columns = [0, 1, 2].map(|k| rotate(self.entries.column(k)));
         let half = Mat3::from_fn(|i, j| columns[j][i]);
         let rows = [0, 1, 2].map(|k| rotate(half.row(k)));

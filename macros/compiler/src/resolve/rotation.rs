@@ -1,6 +1,8 @@
 //! Resolution of rotations and matrices that are written in expressions.
 
-use super::corrections::{MATRIX_SYNTAX, check_angle, is_rotation, report_matrix, report_rotation};
+use super::corrections::{
+    MATRIX_SYNTAX, check_angle, may_be_rotation, report_expected_rotation, report_invalid_matrix,
+};
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::sample::always_equals;
@@ -14,8 +16,8 @@ impl<'g> Scope<'_, 'g> {
     pub fn resolve_rotation(&self, steps: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Rotation<'g>> {
         let mut whole = Some(Rotation::identity(self.graph));
         for step in steps {
-            if !is_rotation(step) {
-                report_rotation(step, cx);
+            if !may_be_rotation(step) {
+                report_expected_rotation(step, cx);
                 return None;
             }
             let next = self.rotation_step(step, cx);
@@ -29,11 +31,14 @@ impl<'g> Scope<'_, 'g> {
             ExprKind::Call(Callee { id: Some(Callable::Rotation(id)), .. }, arguments) => {
                 match (id, id.index_of_axis(), arguments.as_slice()) {
                     (_, Some(k), [angle]) => {
-                        return Some(Rotation::about_axis(k, self.plane_angle(angle, cx)?));
+                        return Some(Rotation::rotation_about_coordinate_axis(
+                            k,
+                            self.resolve_plane_angle(angle, cx)?,
+                        ));
                     }
                     (language::Rotation::Eigenaxis, _, [n, angle]) => {
                         let n = self.unit_vector(n, false, cx);
-                        let angle = self.plane_angle(angle, cx);
+                        let angle = self.resolve_plane_angle(angle, cx);
                         return Some(Rotation::rotation_about_axis(n?, angle?));
                     }
                     (language::Rotation::Quaternion, _, [x, y, z, w]) => {
@@ -45,7 +50,7 @@ impl<'g> Scope<'_, 'g> {
                                 .add_help("its four numbers are x, y, z, w, and their squares add up to one");
                             return None;
                         }
-                        self.record_requirement(Rule::Unit, || "a quaternion".to_string(), &[square]);
+                        self.record_parameter_condition(Rule::Unit, || "a quaternion".to_string(), &[square]);
                         return Some(Rotation::from_quaternion(q));
                     }
                     _ if id.row().natural => {
@@ -69,13 +74,13 @@ impl<'g> Scope<'_, 'g> {
             }
             _ => {}
         }
-        report_rotation(step, cx);
+        report_expected_rotation(step, cx);
         None
     }
 
     /// Returns an angle, rad. A plain number beyond a full revolution is most likely in degrees and is
     /// reported.
-    pub fn plane_angle(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+    pub fn resolve_plane_angle(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         if check_angle(e, cx) { self.resolve_scalar(e, cx) } else { None }
     }
 
@@ -85,12 +90,12 @@ impl<'g> Scope<'_, 'g> {
         let rows = match &e.kind {
             ExprKind::Array(rows) if rows.len() == 3 => rows,
             _ => {
-                report_matrix(e, cx);
+                report_invalid_matrix(e, cx);
                 return None;
             }
         };
         if rows.iter().all(|row| !matches!(row.kind, ExprKind::Array(_) | ExprKind::Tuple(_))) {
-            report_matrix(e, cx);
+            report_invalid_matrix(e, cx);
             return None;
         }
         for (i, row) in rows.iter().enumerate() {

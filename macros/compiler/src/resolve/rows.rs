@@ -21,7 +21,7 @@ pub struct ConstraintRows<'g> {
 }
 
 /// Returns a row of a declared constraint with this rate.
-pub fn constraint_row<'g>(
+pub fn constraint_from_residual_and_rate<'g>(
     scope: &Scope<'_, 'g>,
     (name, place): (String, &Place),
     measure: Measure,

@@ -3,7 +3,7 @@
 
 use super::resolved::ResolvedMatrix;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
-use crate::kinematics::{Joint, Spatial, change_axes};
+use crate::kinematics::{Joint, Spatial, express_in_link_axes};
 use crate::mechanism::{Chart, Coordinate, InQ, InV, LinkId, Pose, Requirement};
 use crate::syntax::{self, Description, Rank};
 use std::cell::RefCell;
@@ -22,14 +22,14 @@ pub struct Scope<'a, 'g> {
     /// Quantities on which expressions may depend, and the meaning of the unqualified axes `x`, `y` and `z`.
     pub context: RefCell<Context<'g>>,
     /// Elements placed so far, with their motion.
-    pub kinematics: Kinematics<'g>,
+    pub kinematics: PlacedElements<'g>,
     /// Facts that have been found while expressions were resolved.
-    pub records: RefCell<Records<'g>>,
+    pub records: RefCell<ResolutionRecords<'g>>,
 }
 
 /// Records of what was found while expressions were resolved, such as used parameters.
 #[derive(Debug, Default)]
-pub struct Records<'g> {
+pub struct ResolutionRecords<'g> {
     /// Whether each parameter was used in an expression.
     pub used: Vec<bool>,
     /// Whether each table was used in an expression.
@@ -52,7 +52,7 @@ pub struct Records<'g> {
 
 /// Values of definitions, by name, by allowed quantities, and by whether unqualified axes are those of the
 /// ground; `None` for definitions with errors.
-pub type DefinitionValues<'g> = BTreeMap<(String, Allowed, bool), Option<Value<'g>>>;
+pub type DefinitionValues<'g> = BTreeMap<(String, AllowedQuantities, bool), Option<Value<'g>>>;
 
 /// Axes in which the components of a vector are given.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -98,7 +98,7 @@ impl Value<'_> {
 
 /// Quantities on which an expression may depend; each kind includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Allowed {
+pub enum AllowedQuantities {
     /// The expression may depend on parameters only.
     Constant,
     /// The expression may depend on coordinates and time, in addition to parameters.
@@ -115,7 +115,7 @@ pub enum Allowed {
 #[derive(Clone, Debug)]
 pub struct Context<'g> {
     /// Quantities on which the expression may depend.
-    pub allowed: Allowed,
+    pub allowed: AllowedQuantities,
     /// Link and pose whose axes `x`, `y` and `z` denote; `None` for the attribute's own axes.
     pub axes: Option<(Option<LinkId>, Pose<'g>)>,
     /// Local names of the expression, such as `stretch`, with their values.
@@ -129,7 +129,7 @@ pub struct Context<'g> {
 
 impl<'g> Context<'g> {
     /// Returns a context for expressions without local names.
-    pub fn new(allowed: Allowed, axes: Option<(Option<LinkId>, Pose<'g>)>) -> Context<'g> {
+    pub fn new(allowed: AllowedQuantities, axes: Option<(Option<LinkId>, Pose<'g>)>) -> Context<'g> {
         Context { allowed, axes, locals: Vec::new(), compared: Vec::new(), defining: Vec::new() }
     }
 
@@ -142,7 +142,7 @@ impl<'g> Context<'g> {
 
 /// Kind of a placed element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlacedKind {
+pub enum PlacedElementKind {
     /// The placed element is a body: it has axes and an origin.
     Body,
     /// Particle or point: an origin, with the axes of the element that carries it.
@@ -159,7 +159,7 @@ pub struct Placed<'g> {
     /// Pose of the element relative to its link.
     pub pose: Pose<'g>,
     /// Kind of the placed element.
-    pub kind: PlacedKind,
+    pub kind: PlacedElementKind,
 }
 
 /// Coordinate on which force elements can act: full name, coordinate, and whether it is an angle.
@@ -181,7 +181,7 @@ pub type MassProperties<'g> = (Expr<'g>, Vec3<'g>, Sym3<'g>);
 
 /// Elements placed so far, with their motion.
 #[derive(Debug, Default)]
-pub struct Kinematics<'g> {
+pub struct PlacedElements<'g> {
     /// Placements of the elements, by name of the element.
     pub places: BTreeMap<String, Placed<'g>>,
     /// Plain coordinates by full name; true for an angle.
@@ -223,7 +223,7 @@ pub struct ContactLoads<'g> {
 
 impl<'g> ContactLoads<'g> {
     /// Adds a power to that of the element.
-    pub fn add_power(&mut self, power: Expr<'g>) {
+    pub fn add_contact_power(&mut self, power: Expr<'g>) {
         self.power = Some(self.power.map_or(power, |sum| sum + power));
     }
 }
@@ -234,10 +234,10 @@ pub type ElementPower<'g> = Result<Expr<'g>, &'static str>;
 /// A vector as a sum over the axes of links.
 pub type Terms<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
 
-impl<'g> Kinematics<'g> {
+impl<'g> PlacedElements<'g> {
     /// Returns the components of a sum in the axes of one link.
     pub fn resolve(&self, terms: &Terms<'g>, link: Option<LinkId>, zero: Vec3<'g>) -> Vec3<'g> {
-        terms.iter().fold(zero, |sum, (from, v)| sum + change_axes(&self.joints, *v, *from, link))
+        terms.iter().fold(zero, |sum, (from, v)| sum + express_in_link_axes(&self.joints, *v, *from, link))
     }
 
     /// Returns the position of a point relative to the ground's origin.
@@ -284,7 +284,7 @@ impl<'g> Kinematics<'g> {
 
 impl<'g> Scope<'_, 'g> {
     /// Calls a function while another context applies to expressions.
-    pub fn in_context<T>(&self, context: Context<'g>, f: impl FnOnce(&Self) -> T) -> T {
+    pub fn call_in_context<T>(&self, context: Context<'g>, f: impl FnOnce(&Self) -> T) -> T {
         let before = self.context.replace(context);
         let result = f(self);
         self.context.replace(before);
@@ -299,7 +299,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the quantities on which expressions may depend in the current context.
-    pub fn allowed_quantities(&self) -> Allowed {
+    pub fn allowed_quantities(&self) -> AllowedQuantities {
         self.context.borrow().allowed
     }
 }

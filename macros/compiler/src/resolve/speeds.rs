@@ -1,7 +1,7 @@
 //! Generalized speeds declared by the user: invertible linear combinations of the joint velocities.
 
-use super::scope::{Allowed, Context, Scope};
-use crate::diag::{Diagnostics, Place, all_of};
+use super::scope::{AllowedQuantities, Context, Scope};
+use crate::diag::{Diagnostics, Place, join_names_with_and};
 use crate::expr::Expr;
 use crate::expr::replace::substitute_symbols;
 use crate::kinematics::{speeds, symbols_in, velocity_gradient};
@@ -46,7 +46,7 @@ fn replace_velocities<'g>(
     cx: &mut Diagnostics,
 ) -> Option<(Speeds<'g>, Vec<(String, Place)>)> {
     let rows: Vec<Vec<Expr<'g>>> = declared.iter().map(|speed| speed.row.clone()).collect();
-    let columns = speeds::named_columns(model, &rows);
+    let columns = speeds::nonzero_columns(model, &rows);
     if !check_speeds(model, declared, &rows, &columns, cx) {
         return None;
     }
@@ -65,21 +65,22 @@ fn replace_velocities<'g>(
     let g = model.graph;
     let identity_entry = |i: usize, j: usize| if i == j { g.one() } else { g.zero() };
     let full_matrix = |block: &[Vec<Expr<'g>>]| -> Vec<Vec<Expr<'g>>> {
-        let named_index = |k: usize| columns.iter().position(|n| *n == k);
-        let entry_of_velocity_matrix = |i: usize, j: usize| match (named_index(i), named_index(j)) {
-            (Some(i), Some(j)) => block[i][j],
-            _ => identity_entry(i, j),
-        };
+        let position_among_columns = |k: usize| columns.iter().position(|n| *n == k);
+        let entry_of_velocity_matrix =
+            |i: usize, j: usize| match (position_among_columns(i), position_among_columns(j)) {
+                (Some(i), Some(j)) => block[i][j],
+                _ => identity_entry(i, j),
+            };
         (0..nv).map(|i| (0..nv).map(|j| entry_of_velocity_matrix(i, j)).collect()).collect()
     };
     let mut renamed = model.velocities.clone();
     for (k, speed) in columns.iter().zip(declared) {
         renamed[*k] = (speed.name.text.clone(), speed.name.place.clone());
     }
-    let (of_rates, rates) = (full_matrix(&block), full_matrix(&inverse));
+    let (velocity_to_speed_matrix, rates) = (full_matrix(&block), full_matrix(&inverse));
     let replaced = columns.into_iter().map(InV).collect();
     let velocities = model.velocities.clone();
-    Some((Speeds { of_rates, rates, replaced, velocities }, renamed))
+    Some((Speeds { velocity_to_speed_matrix, rates, replaced, velocities }, renamed))
 }
 
 /// Returns the coefficients of a speed; `None` if it is not a linear combination of rates.
@@ -91,9 +92,9 @@ fn speed_coefficients<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Vec<Expr<'g>>> {
     let g = scope.graph;
-    let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))));
+    let context = Context::new(AllowedQuantities::Motion, Some((None, Pose::identity(g))));
     let name_expression = syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
-    let e = scope.in_context(context, |scope| scope.resolve_scalar(&name_expression, cx))?;
+    let e = scope.call_in_context(context, |scope| scope.resolve_scalar(&name_expression, cx))?;
     let place_of_value = || value.place.clone();
     let mut row = vec![g.zero(); model.nv()];
     velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
@@ -140,7 +141,7 @@ fn speed_coefficients<'g>(
         matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero())
     });
     let remainder = [vec![at_rest]];
-    if !at_rest.is_zero() && !speeds::named_columns(model, &remainder.to_vec()).is_empty() {
+    if !at_rest.is_zero() && !speeds::nonzero_columns(model, &remainder.to_vec()).is_empty() {
         cx.report_error(place_of_value(), "a speed cannot have a term without rates").add_help(
             "speeds are velocities and zero at rest: take the rates relative to the moving frame, or \
              declare an `#[output(…)]`",
@@ -161,11 +162,11 @@ fn check_speeds<'g>(
 ) -> bool {
     let list_velocity_names = |indices: &[usize]| {
         let names: Vec<String> = indices.iter().map(|k| format!("`{}`", model.velocities[*k].0)).collect();
-        all_of(&names)
+        join_names_with_and(&names)
     };
     let (count, all) = (declared.len(), columns.len());
     let last = &declared[count - 1];
-    if let Some(k) = speeds::dependent_row(model, rows) {
+    if let Some(k) = speeds::index_of_first_dependent_row(model, rows) {
         let speed = &declared[k];
         let what = match k {
             0 => format!("the speed `{}` is zero in every motion", speed.name.text),

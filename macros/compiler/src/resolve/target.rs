@@ -1,8 +1,8 @@
 //! Targets of force elements and limits: coordinates, points, and lengths given by expressions.
 
 use super::scope::{Placed, Scope};
-use super::terms::{Stretch, expression_stretch};
-use crate::diag::{Diagnostics, Place, one_of};
+use super::terms::{Stretch, stretch_from_expression};
+use crate::diag::{Diagnostics, Place, join_with_or};
 use crate::language::Method;
 use crate::mechanism::Coordinate;
 use crate::syntax::{Expr, ExprKind, GROUND, Name};
@@ -52,8 +52,8 @@ pub fn resolve_target<'g>(
     cx: &mut Diagnostics,
 ) -> Option<ResolvedTarget<'g>> {
     match &on.kind {
-        ExprKind::Name(name) => named_target(scope, on, name, cx),
-        ExprKind::Field(joint, coordinate) => coordinate_of_joint(scope, on, joint, coordinate, cx),
+        ExprKind::Name(name) => resolve_named_target(scope, on, name, cx),
+        ExprKind::Field(joint, coordinate) => resolve_joint_coordinate(scope, on, joint, coordinate, cx),
         ExprKind::Method(inner, method, arguments)
             if method.id == Some(Method::At) && arguments.len() == 1 =>
         {
@@ -62,13 +62,13 @@ pub fn resolve_target<'g>(
                 return None;
             };
             if !scope.is_placeable(name) {
-                report_target(scope, name, &inner.place, cx);
+                report_invalid_target(scope, name, &inner.place, cx);
                 return None;
             }
-            scope.current_place(on, cx).map(ResolvedTarget::Point)
+            scope.placement_of_moving_point(on, cx).map(ResolvedTarget::Point)
         }
         ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
-            expression_stretch(scope, on, cx).map(ResolvedTarget::Expression)
+            stretch_from_expression(scope, on, cx).map(ResolvedTarget::Expression)
         }
         _ => {
             cx.report_error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
@@ -79,7 +79,7 @@ pub fn resolve_target<'g>(
 }
 
 /// Resolves a declared coordinate, a joint with one coordinate, a definition, or a placed element.
-fn named_target<'g>(
+fn resolve_named_target<'g>(
     scope: &Scope<'_, 'g>,
     on: &Expr,
     name: &str,
@@ -100,25 +100,25 @@ fn named_target<'g>(
                 .add_help("a force or a torque can act on one of its bodies, with a direction");
         } else {
             cx.report_error(on.place.clone(), format!("`{name}` has {} coordinates", list.len()))
-                .add_help(format!("write {}", one_of(&list)));
+                .add_help(format!("write {}", join_with_or(&list)));
         }
         return None;
     }
-    if let Some(c) = free_coordinate(scope, name) {
+    if let Some(c) = find_declared_coordinate(scope, name) {
         return Some(ResolvedTarget::Coordinate(c, None));
     }
     if scope.description.definitions.iter().any(|definition| definition.name.text == name) {
-        return expression_stretch(scope, on, cx).map(ResolvedTarget::Expression);
+        return stretch_from_expression(scope, on, cx).map(ResolvedTarget::Expression);
     }
     if !scope.is_placeable(name) {
-        report_target(scope, name, &on.place, cx);
+        report_invalid_target(scope, name, &on.place, cx);
         return None;
     }
     scope.resolve_placement(on, cx).map(ResolvedTarget::Point)
 }
 
 /// Resolves a target written as `joint.coordinate`.
-fn coordinate_of_joint<'g>(
+fn resolve_joint_coordinate<'g>(
     scope: &Scope<'_, 'g>,
     on: &Expr,
     inner: &Expr,
@@ -130,7 +130,7 @@ fn coordinate_of_joint<'g>(
         return None;
     };
     let Some(coordinates) = scope.joint_coordinates(joint) else {
-        if scope.is_jointed(joint) {
+        if scope.can_be_joint_child(joint) {
             cx.report_error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
                 .add_help(format!("write `on = {joint}` and give a direction, or name a joint"));
             return None;
@@ -139,7 +139,7 @@ fn coordinate_of_joint<'g>(
             let known = scope.joint_names();
             let error = cx.report_error(inner.place.clone(), format!("unknown joint `{joint}`"));
             error.suggest_name(joint, known.iter().map(String::as_str));
-            if error.is_bare() {
+            if error.has_no_help() {
                 error.add_help("name a joint and one of its coordinates, as in `on = slot.slide`");
             }
         }
@@ -156,7 +156,7 @@ fn coordinate_of_joint<'g>(
 }
 
 /// Returns the declared coordinate with this name.
-fn free_coordinate<'g>(scope: &Scope<'_, 'g>, name: &str) -> Option<Coordinate> {
+fn find_declared_coordinate<'g>(scope: &Scope<'_, 'g>, name: &str) -> Option<Coordinate> {
     let free = scope.description.coordinates.iter().any(|c| c.name.text == name);
     let kinematics = &scope.kinematics;
     let known = kinematics.coordinates.iter().find(|(known, ..)| free && known == name);
@@ -164,7 +164,7 @@ fn free_coordinate<'g>(scope: &Scope<'_, 'g>, name: &str) -> Option<Coordinate> 
 }
 
 /// Reports a name that cannot be a target, with the reason.
-fn report_target<'g>(scope: &Scope<'_, 'g>, name: &str, place: &Place, cx: &mut Diagnostics) {
+fn report_invalid_target<'g>(scope: &Scope<'_, 'g>, name: &str, place: &Place, cx: &mut Diagnostics) {
     if name == GROUND {
         cx.report_error(place.clone(), "a force on the ground has no effect")
             .add_help("name a body that moves, or one of its points: `on = body.at(length * x)`");
@@ -183,7 +183,7 @@ fn report_target<'g>(scope: &Scope<'_, 'g>, name: &str, place: &Place, cx: &mut 
         }
         let error = cx.report_error(place.clone(), format!("unknown joint or body `{name}`"));
         error.suggest_name(name, known.iter().map(String::as_str));
-        if error.is_bare() {
+        if error.has_no_help() {
             error.add_help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
         }
     }

@@ -2,12 +2,12 @@
 //! expressions.
 
 use super::element_forces::Forces;
-use super::scope::{Allowed, Context, Scope};
+use super::scope::{AllowedQuantities, Context, Scope};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
+use crate::kinematics::{coordinate_as_expression, symbols_in, time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, Model, Pose, Quantity};
 use crate::syntax::{self, ExprKind};
 
@@ -24,7 +24,7 @@ pub struct Stretch<'g> {
 }
 
 /// The length or the angle on which a force element acts.
-pub struct ActedOn<'g> {
+pub struct ForceElementCoordinate<'g> {
     /// Value and rate of the length or the angle; `None` for a coordinate.
     pub stretch: Option<Stretch<'g>>,
     /// Whether it is an angle; `None` if it may also be a length.
@@ -33,7 +33,7 @@ pub struct ActedOn<'g> {
     pub coordinate: Option<Coordinate>,
 }
 
-impl<'g> ActedOn<'g> {
+impl<'g> ForceElementCoordinate<'g> {
     /// Returns the value and the rate of the length or the angle.
     pub fn stretch(self, scope: &Scope<'_, 'g>) -> Option<Stretch<'g>> {
         self.stretch.or_else(|| self.coordinate.map(|c| coordinate_stretch(scope, &c)))
@@ -41,15 +41,19 @@ impl<'g> ActedOn<'g> {
 }
 
 /// Resolves a potential energy given as an expression.
-pub fn resolve_energy<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Forces<'g> {
-    let context = Context::new(Allowed::Placement, Some((None, Pose::identity(scope.graph))));
-    Forces::of_potentials(scope.in_context(context, |scope| scope.resolve_scalar(e, cx)))
+pub fn resolve_potential_energy<'g>(
+    scope: &Scope<'_, 'g>,
+    e: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Forces<'g> {
+    let context = Context::new(AllowedQuantities::Placement, Some((None, Pose::identity(scope.graph))));
+    Forces::forces_of_potentials(scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx)))
 }
 
 /// Resolves a dissipation function given as an expression.
 pub fn resolve_dissipation<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Forces<'g> {
-    let context = Context::new(Allowed::Motion, Some((None, Pose::identity(scope.graph))));
-    let function = scope.in_context(context, |scope| scope.resolve_scalar(e, cx));
+    let context = Context::new(AllowedQuantities::Motion, Some((None, Pose::identity(scope.graph))));
+    let function = scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx));
     // Zero is not an error: the bodies may be welded together.
     if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
         cx.report_error(e.place.clone(), "this contains no velocity, and has no effect").add_help(
@@ -61,17 +65,17 @@ pub fn resolve_dissipation<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut
 }
 
 /// Reports errors of definitions, also of those without uses.
-pub fn check_definitions(scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
+pub fn report_definition_errors(scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     for definition in &scope.description.definitions {
-        let context = Context::new(Allowed::Reaction, Some((None, Pose::identity(scope.graph))));
+        let context = Context::new(AllowedQuantities::Reaction, Some((None, Pose::identity(scope.graph))));
         let name = ExprKind::Name(definition.name.text.clone());
         let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
-        let _ = scope.in_context(context, |scope| scope.resolve_value(&e, cx));
+        let _ = scope.call_in_context(context, |scope| scope.resolve_value(&e, cx));
     }
 }
 
 /// Sets the quantities on which the signatures of the generated functions depend.
-pub fn find_dependencies(m: &mut Model<'_>) {
+pub fn set_signature_dependencies(m: &mut Model<'_>) {
     let mut all: Vec<Expr<'_>> = m.potentials.iter().chain(&m.dissipations).copied().collect();
     all.extend(m.loads.iter().flat_map(|l| [l.rate, l.force]));
     all.extend(m.inertances.iter().flat_map(|i| [i.rate, i.inertance]));
@@ -97,17 +101,17 @@ pub fn find_dependencies(m: &mut Model<'_>) {
 /// Returns the stretch of a coordinate.
 pub fn coordinate_stretch<'g>(scope: &Scope<'_, 'g>, c: &Coordinate) -> Stretch<'g> {
     let g = scope.graph;
-    let value = position_in(g, c);
+    let value = coordinate_as_expression(g, c);
     Stretch { value, square: value.square(), rate: c.v.expr(g) * g.num(c.ratio), signed: false }
 }
 
 /// Returns a length or an angle given by an expression of the coordinates, such as the length of a cable.
-pub fn expression_stretch<'g>(
+pub fn stretch_from_expression<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,
 ) -> Option<Stretch<'g>> {
-    let stretch = stretch_of(scope, e, cx)?;
+    let stretch = position_value_and_rate(scope, e, cx)?;
     if velocity_gradient(stretch.rate).is_empty() {
         let message = "this contains no coordinate: a force on it has no effect";
         cx.report_error(e.place.clone(), message).add_help(
@@ -120,9 +124,13 @@ pub fn expression_stretch<'g>(
 }
 
 /// Returns the value and the rate of an expression of positions, which may be constant.
-pub fn stretch_of<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
-    let context = Context::new(Allowed::Placement, Some((None, Pose::identity(scope.graph))));
-    let value = scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?;
+pub fn position_value_and_rate<'g>(
+    scope: &Scope<'_, 'g>,
+    e: &syntax::Expr,
+    cx: &mut Diagnostics,
+) -> Option<Stretch<'g>> {
+    let context = Context::new(AllowedQuantities::Placement, Some((None, Pose::identity(scope.graph))));
+    let value = scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx))?;
     let rate = time_derivative(scope.configuration_space(), value);
     Some(Stretch { value, rate, square: value.square(), signed: false })
 }
@@ -149,8 +157,8 @@ pub fn distance_between_points<'g>(
     let axes = terms.first().and_then(|(link, _)| *link);
     let r = kinematics.resolve(&terms, axes, zero);
     // The test for a common line ignores released joints.
-    let with_closed_joints = Vec3(scope.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
-    if always_zero(with_closed_joints) {
+    let with_closed_joints = Vec3(scope.with_released_coordinates_zero(&r.0).try_into().unwrap_or(r.0));
+    if is_zero_for_all_values(with_closed_joints) {
         cx.report_error(b.place.clone(), "these two points always coincide")
             .add_help("let the element act between points that move relative to each other");
         return None;
@@ -158,7 +166,7 @@ pub fn distance_between_points<'g>(
     let mut v = kinematics.velocity_of_point(&second);
     v.extend(kinematics.velocity_of_point(&first).into_iter().map(|(link, v)| (link, -v)));
     if let Some(line) = constant_direction(with_closed_joints) {
-        let e = Vec3::from_numbers(scope.graph, line);
+        let e = Vec3::vector_from_constants(scope.graph, line);
         let rate = e.dot(kinematics.resolve(&v, axes, zero));
         let value = r.dot(e);
         return Some(Stretch { value, square: value.square(), rate, signed: true });
@@ -170,7 +178,7 @@ pub fn distance_between_points<'g>(
 }
 
 /// Whether a vector is zero for all coordinates and parameters.
-fn always_zero(r: Vec3<'_>) -> bool {
+fn is_zero_for_all_values(r: Vec3<'_>) -> bool {
     r.is_zero()
         || (0..4).all(|seed| {
             eval(&r.0, &|s| 2.0 * sample_of_symbol(s, seed) - 1.7).iter().all(|c| c.abs() < 1e-14)
@@ -179,19 +187,19 @@ fn always_zero(r: Vec3<'_>) -> bool {
 
 /// Returns the direction of a vector, if it is the same for all coordinates and parameters.
 fn constant_direction(r: Vec3<'_>) -> Option<[f64; 3]> {
-    let evaluate_with_seed = |seed| eval(&r.0, &|s| 2.0 * sample_of_symbol(s, seed) - 1.7);
-    let first = evaluate_with_seed(0);
+    let vector_at_sample_values = |seed| eval(&r.0, &|s| 2.0 * sample_of_symbol(s, seed) - 1.7);
+    let first = vector_at_sample_values(0);
     let norm = first.iter().map(|c| c * c).sum::<f64>().sqrt();
     let e = [first[0] / norm, first[1] / norm, first[2] / norm];
     let parallel = (1..5).all(|seed| {
-        let v = evaluate_with_seed(seed);
+        let v = vector_at_sample_values(seed);
         let along: f64 = (0..3).map(|k| v[k] * e[k]).sum();
         let size = v.iter().map(|c| c * c).sum::<f64>().sqrt();
         (0..3).all(|k| (v[k] - along * e[k]).abs() <= 1e-12 * size)
     });
     // The first nonzero component of the direction is positive.
     let flip = e.iter().find(|c| c.abs() > 1e-9).is_some_and(|c| *c < 0.0);
-    let snap_to_unit = |c: f64| {
+    let snap_to_zero_or_unit = |c: f64| {
         if c.abs() < 1e-12 {
             0.0
         } else if (c.abs() - 1.0).abs() < 1e-12 {
@@ -200,5 +208,6 @@ fn constant_direction(r: Vec3<'_>) -> Option<[f64; 3]> {
             c
         }
     };
-    (parallel && norm.is_finite() && norm > 0.0).then(|| e.map(|c| snap_to_unit(if flip { -c } else { c })))
+    (parallel && norm.is_finite() && norm > 0.0)
+        .then(|| e.map(|c| snap_to_zero_or_unit(if flip { -c } else { c })))
 }

@@ -68,7 +68,7 @@ pub fn base_name(e: &Expr) -> Option<&str> {
 }
 
 /// Finds the spanning tree of the joints.
-pub fn find_tree(
+pub fn find_spanning_tree(
     description: &Description,
     jointed: &[&Name],
     scope: &Scope<'_, '_>,
@@ -83,7 +83,7 @@ pub fn find_tree(
         match jointed.iter().position(|h| h.text == name.text) {
             Some(k) => Ok(Some(k)),
             None => {
-                unknown_body(name, jointed, scope, cx);
+                report_unknown_body(name, jointed, scope, cx);
                 Err(())
             }
         }
@@ -138,15 +138,15 @@ pub fn find_tree(
 /// may be its own ancestor.
 fn report_unattached(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
     let name = &body.text;
-    let loop_joints = || loops.iter().map(|j| &description.joints[*j]);
-    if let Some(joint) = loop_joints().find(|j| j.child.body.text == *name) {
+    let joints_closing_loops = || loops.iter().map(|j| &description.joints[*j]);
+    if let Some(joint) = joints_closing_loops().find(|j| j.child.body.text == *name) {
         cx.report_error(
             joint.name.place.clone(),
             format!("the joints of `{name}` form a cycle without the ground"),
         )
         .add_help(format!("start one of them at the ground, as in `ground -> {name}`"));
     } else if let Some(joint) =
-        loop_joints().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
+        joints_closing_loops().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
     {
         cx.report_error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
             .add_help(format!("reverse the joint, `ground -> {name}`, or connect `{name}` by another one"));
@@ -178,7 +178,7 @@ fn sort_joints_depth_first(
     order
 }
 
-fn unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
+fn report_unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
     if let Some(what) = scope.kind_of_name(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
         cx.report_error(place, format!("`{}` is {what}, not a body", name.text))
@@ -202,9 +202,9 @@ fn unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut 
     let error = cx.report_error(place, format!("unknown body `{}`", name.text));
     match crate::diag::nearest_candidate(&name.text, &known) {
         Some(_) => drop(error.suggest_name(&name.text, known)),
-        None => words::suggest_meaning(error, words::BODIES, &name.text, &known),
+        None => words::suggest_meaning_or_known_word(error, words::BODIES, &name.text, &known),
     }
-    if error.is_bare() {
+    if error.has_no_help() {
         error.add_help(format!("declare it: `#[body(mass = m)] {}: Body`", name.text));
     }
 }

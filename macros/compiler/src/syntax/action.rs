@@ -1,28 +1,34 @@
 //! Parsing of force elements with their targets and laws.
 
 use super::arguments::Arguments;
-use super::keys::{Keys, check_relations};
+use super::keys::{ElementArgumentKeys, check_argument_relations};
 use super::{Action, Expr, ExprKind, Name, Target};
 use crate::diag::Diagnostics;
 use crate::language::{ForceKind, Key};
 
 /// Reads a force element according to its row in the table.
-pub fn read_action(
+pub fn read_force_element(
     name: &Name,
     kind: ForceKind,
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Action> {
     let (row, names) = (kind.row(), &kind.argument_names());
-    let refused = arguments.place_of("between").is_some() && !row.between;
+    let refused = arguments.span_of_key("between").is_some() && !row.between;
     let on = read_target(kind, arguments, names, cx);
     if refused {
         return None;
     }
     reject_second_law(arguments, row.laws, cx);
-    let keys = Keys { all: row.arguments, laws: row.laws, required: row.required, attribute: "acts", names };
-    let (given, is_complete) = keys.read_arguments(arguments, cx);
-    check_relations(row.relations, &given, name, cx);
+    let keys = ElementArgumentKeys {
+        all: row.arguments,
+        laws: row.laws,
+        required: row.required,
+        attribute: "acts",
+        names,
+    };
+    let (given, is_complete) = keys.read_element_arguments(arguments, cx);
+    check_argument_relations(row.relations, &given, name, cx);
     arguments.report_remaining_arguments(&kind.name_with_article(), names, cx);
     is_complete.then_some(())?;
     Some(Action { name: name.clone(), kind, on: on?, arguments: given })
@@ -35,15 +41,18 @@ fn report_unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Di
         true => format!("write `between = ({}, {})`", a.to_source(), b.to_source()),
         false => "say what it acts on: `on = …`".to_string(),
     };
-    if let Some((a, b)) = arguments.take_arrow() {
-        cx.report_error(a.place.extend_to(&b.place), format!("{} is not a joint", kind.name_with_article()))
-            .add_help(between_help(&a, &b));
+    if let Some((a, b)) = arguments.take_arrow_relation() {
+        cx.report_error(
+            a.place.extend_to_end_of(&b.place),
+            format!("{} is not a joint", kind.name_with_article()),
+        )
+        .add_help(between_help(&a, &b));
         return true;
     }
-    if arguments.place_of("on").is_some() || arguments.place_of("between").is_some() {
+    if arguments.span_of_key("on").is_some() || arguments.span_of_key("between").is_some() {
         return false;
     }
-    if let Some((place, a, b)) = arguments.take_ends() {
+    if let Some((place, a, b)) = arguments.take_ends_with_own_keys() {
         cx.report_error(place, format!("{} has no such ends", kind.name_with_article()))
             .add_help(between_help(&a, &b));
         return true;
@@ -55,7 +64,7 @@ fn report_unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Di
         [a, b, ..] => between_help(a, b),
         _ => "write `between = (first, second)`".to_string(),
     };
-    cx.report_error(first.place.extend_to(&last.place), "expected `name = value`").add_help(help);
+    cx.report_error(first.place.extend_to_end_of(&last.place), "expected `name = value`").add_help(help);
     arguments.take_positional_arguments();
     true
 }
@@ -71,7 +80,7 @@ fn read_target(
     if report_unnamed_target(kind, arguments, cx) {
         return None;
     }
-    let Some(place) = arguments.place_of("between") else {
+    let Some(place) = arguments.span_of_key("between") else {
         if !row.on {
             return arguments.require_expression("between", "(first, second)", "acts", keys, cx).and(None);
         }
@@ -91,15 +100,15 @@ fn read_target(
     if !row.between {
         cx.report_error(place, format!("{} does not act between two points", kind.name_with_article()))
             .add_help("say what it acts on: `on = …`");
-        arguments.remove_all();
+        arguments.remove_all_keys();
         return None;
     }
-    if let Some(on) = arguments.place_of("on") {
+    if let Some(on) = arguments.span_of_key("on") {
         cx.report_error(on, "an element has either `on` or `between`")
             .add_help("`on` names a joint, `between` two points");
         arguments.remove_key("on");
     }
-    match arguments.take_expr("between", cx)? {
+    match arguments.take_expression_of_key("between", cx)? {
         Expr { kind: ExprKind::Tuple(mut ends), .. } if ends.len() == 2 => {
             let second = ends.pop()?;
             Some(Target::Between(ends.pop()?, second))
@@ -128,12 +137,12 @@ fn read_target(
 /// Reports a second law of an element; the first key is kept.
 fn reject_second_law(arguments: &mut Arguments, keys: &[Key], cx: &mut Diagnostics) {
     let given: Vec<&str> =
-        keys.iter().map(|key| key.name()).filter(|key| arguments.place_of(key).is_some()).collect();
+        keys.iter().map(|key| key.name()).filter(|key| arguments.span_of_key(key).is_some()).collect();
     for key in given.iter().skip(1) {
-        if let Some(place) = arguments.place_of(key) {
+        if let Some(place) = arguments.span_of_key(key) {
             let list: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name())).collect();
             cx.report_error(place, format!("a second force law: `{}` is already given", given[0]))
-                .add_help(format!("give one of {}", crate::diag::one_of(&list)));
+                .add_help(format!("give one of {}", crate::diag::join_with_or(&list)));
             arguments.remove_key(key);
         }
     }

@@ -53,8 +53,8 @@ impl Arguments {
     /// Parses the arguments of an attribute.
     pub fn parse_attribute_arguments(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Arguments> {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        let has_attribute_name = |word: &str| attribute.path().is_ident(word);
-        let grammar = match (has_attribute_name("joint"), has_attribute_name("equilibrium")) {
+        let is_attribute_named = |word: &str| attribute.path().is_ident(word);
+        let grammar = match (is_attribute_named("joint"), is_attribute_named("equilibrium")) {
             (true, _) => Grammar::Joint,
             (_, true) => Grammar::Equilibrium,
             _ => Grammar::Other,
@@ -121,7 +121,7 @@ impl Arguments {
     }
 
     /// Returns the span of a key that has not been taken.
-    pub fn place_of(&self, key: &str) -> Option<Place> {
+    pub fn span_of_key(&self, key: &str) -> Option<Place> {
         self.named.iter().find(|(name, _)| name.text == key).map(|(name, _)| name.place.clone())
     }
 
@@ -131,12 +131,12 @@ impl Arguments {
     }
 
     /// Removes all keys with their values from the arguments of an attribute.
-    pub fn remove_all(&mut self) {
+    pub fn remove_all_keys(&mut self) {
         self.named.clear();
     }
 
     /// Returns the span of a key that has been taken.
-    pub fn place_of_taken_key(&self, key: &str) -> Option<Place> {
+    pub fn span_of_taken_key(&self, key: &str) -> Option<Place> {
         self.seen.iter().find(|name| name.text == key).map(|name| name.place.clone())
     }
 
@@ -167,7 +167,7 @@ impl Arguments {
     }
 
     /// Removes an option without a value, and returns its span.
-    pub fn take_option(&mut self, word: &str) -> Option<Place> {
+    pub fn take_flag_option(&mut self, word: &str) -> Option<Place> {
         let is_option_name = |e: &Expr| matches!(&e.kind, ExprKind::Name(name) if name == word);
         let index = self.plain.iter().position(is_option_name)?;
         Some(self.plain.remove(index).place)
@@ -175,7 +175,7 @@ impl Arguments {
 
     /// Reports a value or parentheses after an option, which has neither; the option counts as given. Returns
     /// true if there are any.
-    pub fn check_option(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
+    pub fn report_option_value(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
         let is_option_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
         let call = self.plain.iter().position(is_option_call).map(|index| self.plain.remove(index).place);
         let argument = self.take_named_argument(word);
@@ -195,7 +195,7 @@ impl Arguments {
     }
 
     /// Returns the expression of a key, if the key is present.
-    pub fn take_expr(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
+    pub fn take_expression_of_key(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
         match self.take_named_argument(key)? {
             (_, ArgumentValue::Expr(e)) => Some(e),
             (_, ArgumentValue::Text(text)) => {
@@ -222,7 +222,7 @@ impl Arguments {
     ) -> Option<Expr> {
         // An unknown key or a value without a key is reported instead, because it is most likely the missing
         // one.
-        if self.place_of(key).is_none()
+        if self.span_of_key(key).is_none()
             && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str()))
         {
             if let [value, others @ ..] = self.plain.as_slice()
@@ -240,12 +240,12 @@ impl Arguments {
             cx.report_error(self.place.clone(), format!("missing `{key}`"))
                 .add_help(format!("write `#[{attribute}(…, {key} = {example})]`").replace("(…, on", "(on"));
         }
-        self.take_expr(key, cx)
+        self.take_expression_of_key(key, cx)
     }
 
     /// Removes a key and returns its expressions: one expression, or several in parentheses.
     pub fn take_list(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Expr> {
-        match self.take_expr(key, cx) {
+        match self.take_expression_of_key(key, cx) {
             Some(Expr { kind: ExprKind::Tuple(items), .. }) => items,
             Some(e) => vec![e],
             None => Vec::new(),
@@ -268,7 +268,7 @@ impl Arguments {
             }
             ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place }) => {
                 let synonyms = if key == "formulation" { words::FORMULATIONS } else { &[] };
-                words::suggest_meaning(
+                words::suggest_meaning_or_known_word(
                     cx.report_error(place, format!("unknown value `{word}` for `{key}`")),
                     synonyms,
                     &word,
@@ -302,7 +302,7 @@ impl Arguments {
     }
 
     /// Returns the strings in brackets that are the value of a key.
-    pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
+    pub fn take_string_list(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
         let name_of_literal = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
         match self.take_named_argument(key) {
             None => Vec::new(),
@@ -328,13 +328,13 @@ impl Arguments {
     }
 
     /// Returns the relation `a -> b` of an element that is not a joint.
-    pub fn take_arrow(&mut self) -> Option<(Expr, Expr)> {
+    pub fn take_arrow_relation(&mut self) -> Option<(Expr, Expr)> {
         self.relation.take()
     }
 
     /// Removes and returns the only equation `a = b`. The left side may be a single name; `b` is `None` for
     /// an expression without an equals sign.
-    pub fn take_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
+    pub fn take_only_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
         if let Some((left, right)) = self.equations.pop() {
             return Some((left, Some(right)));
         }
@@ -351,7 +351,7 @@ impl Arguments {
     }
 
     /// Removes and returns all equations; equations with a single name on the left side come first.
-    pub fn take_values(&mut self) -> Vec<(Expr, Expr)> {
+    pub fn take_equations(&mut self) -> Vec<(Expr, Expr)> {
         let mut values = Vec::new();
         let mut rest = Vec::new();
         for (name, value) in self.named.drain(..) {
@@ -381,7 +381,7 @@ impl Arguments {
         for (name, value) in self.named.drain(..) {
             let word = name.text.as_str();
             let near = nearest_candidate(word, known).is_some();
-            let help = words::argument_help(whose, owner, word, known)
+            let help = words::help_for_unknown_argument(whose, owner, word, known)
                 .or((!near && known.len() < 2).then(|| format!("write `{example}`")));
             if let Some(help) = &help {
                 if answers.contains(help) {
@@ -394,7 +394,7 @@ impl Arguments {
                 Some(help) => error.add_help(help),
                 None => error.suggest_name(word, known.iter().copied()),
             };
-            if whose == "`#[mechanism]`" && error.is_bare() {
+            if whose == "`#[mechanism]`" && error.has_no_help() {
                 error.add_help(match value {
                     ArgumentValue::Text(_) => "a file is named by `urdf = \"path/to/robot.urdf\"`",
                     _ => "the documentation of `mechanism` lists its arguments",
@@ -405,7 +405,7 @@ impl Arguments {
             report_unnamed_argument(&e, known, example, cx);
         }
         if let Some((left, right)) = self.equations.pop() {
-            let error = cx.report_error(left.place.extend_to(&right.place), "expected `name = value`");
+            let error = cx.report_error(left.place.extend_to_end_of(&right.place), "expected `name = value`");
             match left.as_name().filter(|name| known.contains(name)) {
                 Some(name) => error.add_help(format!("write `{name} = {}`", right.to_source())),
                 None if known.is_empty() => error.add_help(format!("write `{example}`")),
@@ -413,8 +413,11 @@ impl Arguments {
             };
         }
         if let Some((parent, child)) = self.relation.take() {
-            cx.report_error(parent.place.extend_to(&child.place), format!("{whose} does not connect bodies"))
-                .add_help("`parent -> child` belongs to a joint");
+            cx.report_error(
+                parent.place.extend_to_end_of(&child.place),
+                format!("{whose} does not connect bodies"),
+            )
+            .add_help("`parent -> child` belongs to a joint");
         }
     }
 }

@@ -1,16 +1,16 @@
 //! Parsing of the struct and its attributes: fields are classified as parameters and elements.
 
 use super::expression::name_from_identifier;
-use super::field::{check_duplicates, is_known, read_field};
-use super::lists::Lists;
+use super::field::{is_known, read_field, report_duplicate_fields};
+use super::lists::ElementListLengths;
 use super::mechanism::{Mechanism, Shell};
 use super::options::read_options;
 use super::parameter::type_name;
-use super::readable::Reading;
-use super::request::Requests;
+use super::readable::FieldReadability;
+use super::request::RequestedFunctions;
 use super::separate::insert_missing_commas;
 use super::state::set_state_types;
-use super::table::table_variables;
+use super::table::table_variable_count;
 use super::{Description, ScalarType, crate_path, declaration, guard};
 use crate::diag::{Diagnostics, Place};
 use proc_macro2::{Span, TokenStream};
@@ -20,20 +20,20 @@ use syn::{Fields, GenericParam, Ident, Item, ItemStruct};
 /// Parses `#[mechanism(arguments)] item`. Returns `None` if the item is not a valid struct; all errors are in
 /// `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
-    if !guard::check_argument_size(&arguments, cx) || !guard::check_item_size(&item, cx) {
+    if !guard::check_argument_size(&arguments, cx) || !guard::report_oversized_item(&item, cx) {
         return None;
     }
     let fields = declaration::fields_source_text(&item);
     let mut item = parse_struct(item, cx)?;
     let before = cx.len();
-    let mut lists = Lists::expand_lists(&mut item.fields, cx);
+    let mut lists = ElementListLengths::expand_lists(&mut item.fields, cx);
     let arguments = lists.rewrite_list_index(arguments, None, cx);
-    let mut reading = Reading::default();
+    let mut reading = FieldReadability::default();
     if cx.len() > before {
-        reading.mark_unreadable();
+        reading.mark_mechanism_unreadable();
     }
-    let (arguments, runtime) = crate_path::take_path(arguments, cx);
-    let (generic, refused) = check_generics(&mut item, cx);
+    let (arguments, runtime) = crate_path::take_crate_path(arguments, cx);
+    let (generic, refused) = find_scalar_type_parameter(&mut item, cx);
     let mut description = Description::empty_description(name_from_identifier(&item.ident));
     let mut shell = Shell {
         attributes: item.attrs.clone(),
@@ -44,7 +44,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         tables: Vec::new(),
         file_fields: Vec::new(),
         elements: Vec::new(),
-        notes: declaration::field_notes(&item),
+        notes: declaration::field_doc_paragraphs(&item),
         declaration: declaration::declaration_text(&item, fields),
         runtime,
     };
@@ -52,23 +52,23 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     // An unknown type is reported once.
     let mut unknown_types: Vec<Ident> = Vec::new();
     for field in item.fields {
-        reading.record_field(&field);
-        let kind = type_name(&field.ty).filter(|_| table_variables(&field.ty).is_none());
+        reading.record_field_identifiers(&field);
+        let kind = type_name(&field.ty).filter(|_| table_variable_count(&field.ty).is_none());
         if kind.as_ref().is_some_and(|kind| refused.contains(kind) || unknown_types.contains(kind)) {
-            reading.mark_last_field();
+            reading.mark_last_field_unreadable();
             continue;
         }
         unknown_types.extend(kind.filter(|kind| !is_known(kind, generic.as_deref())));
         let before = cx.len();
         read_field(field, generic.as_deref(), &mut description, &mut shell, &mut scalar, cx);
         if cx.len() > before {
-            reading.mark_last_field();
+            reading.mark_last_field_unreadable();
         }
     }
-    let (mut requests, before) = (Requests::default(), cx.len());
+    let (mut requests, before) = (RequestedFunctions::default(), cx.len());
     let file = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
     if cx.len() > before {
-        reading.mark_arguments(arguments);
+        reading.mark_unreadable_arguments(arguments);
     }
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
@@ -96,7 +96,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     set_state_types(&description, &mut shell);
     // Linear systems include the derivatives by states, which are parameters.
     requests.sensitivities |= requests.derivatives && !description.states.is_empty();
-    check_duplicates(&description, cx).iter().for_each(|name| reading.mark_fields_named(name));
+    report_duplicate_fields(&description, cx).iter().for_each(|name| reading.mark_ambiguous_fields(name));
     Some(Mechanism { description, shell, file, requests, reading })
 }
 
@@ -107,7 +107,7 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
             match insert_missing_commas(&tokens) {
                 Some((_, slip)) => cx.report_syn_error(slip),
                 None => {
-                    _ = cx.report_error(error.span(), error.to_string()).add_help(field_syntax_help(&error))
+                    _ = cx.report_error(error.span(), error.to_string()).add_help(invalid_rust_help(&error))
                 }
             }
             return None;
@@ -135,7 +135,7 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
 }
 
 /// Returns the help for an item that is not valid Rust.
-fn field_syntax_help(error: &syn::Error) -> &'static str {
+fn invalid_rust_help(error: &syn::Error) -> &'static str {
     match error.to_string().contains("keyword") {
         true => "this is a keyword of Rust: choose another name for the field, and write it as `name: Type`",
         false => {
@@ -148,7 +148,7 @@ fn field_syntax_help(error: &syn::Error) -> &'static str {
 /// Returns the struct's type parameter, if one can be the scalar type, and the names of the other type
 /// parameters. Parameters that cannot be the scalar type are removed, so that the Rust compiler does not
 /// report them again.
-fn check_generics(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String>, Vec<Ident>) {
+fn find_scalar_type_parameter(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String>, Vec<Ident>) {
     let (mut found, mut refused) = (None, Vec::new());
     let parameters = std::mem::take(&mut item.generics.params);
     let count = parameters.len();

@@ -1,7 +1,7 @@
 //! Constraints, equations and surfaces in contact, and limits of coordinates.
 
 use super::arguments::Arguments;
-use super::keys::{Keys, check_relations};
+use super::keys::{ElementArgumentKeys, check_argument_relations};
 use super::{Constraint, ConstraintKind, Description, Limit, Name};
 use crate::diag::Diagnostics;
 use crate::language::{Key, OtherKind};
@@ -16,8 +16,8 @@ pub fn read_constraint(
 ) {
     let element = kind.catalogue_row();
     let (row, names) = (element.row(), &element.argument_names());
-    let (given, _) = Keys::new(element, names).read_arguments(arguments, cx);
-    let found = arguments.take_equation();
+    let (given, _) = ElementArgumentKeys::new(element, names).read_element_arguments(arguments, cx);
+    let found = arguments.take_only_equation();
     let (whose, example) = (format!("a {} constraint", row.name), row.example);
     if let (Some((value, None)), [second, ..]) = (&found, arguments.positional_arguments()) {
         let (message, help) = match kind.surface_pair_function() {
@@ -29,7 +29,7 @@ pub fn read_constraint(
                 ("expected one equation".to_string(), help)
             }
         };
-        cx.report_error(value.place.extend_to(&second.place), message).add_help(help);
+        cx.report_error(value.place.extend_to_end_of(&second.place), message).add_help(help);
         return;
     }
     let is_empty = arguments.is_empty();
@@ -58,7 +58,7 @@ pub fn read_limit(
 ) {
     let (row, names) = (OtherKind::Limit.row(), &OtherKind::Limit.argument_names());
     let on = arguments.require_expression("on", "joint", "limit", names, cx);
-    let (given, _) = Keys::new(OtherKind::Limit, names).read_arguments(arguments, cx);
+    let (given, _) = ElementArgumentKeys::new(OtherKind::Limit, names).read_element_arguments(arguments, cx);
     let is_empty = arguments.is_empty();
     arguments.report_remaining_arguments("a Limit", names, cx);
     let Some(on) = on else { return };
@@ -67,7 +67,7 @@ pub fn read_limit(
             cx.report_error(name.place.clone(), format!("the limit `{}` has no bound", name.text))
                 .add_help("add a bound: `from = …`, `to = …`, `max_speed = …`, `max_effort = …`");
         }
-    } else if check_relations(row.relations, &given, &name, cx) {
+    } else if check_argument_relations(row.relations, &given, &name, cx) {
         description.limits.push(Limit { name, on, arguments: given });
     }
 }

@@ -1,7 +1,7 @@
 //! Unilateral contacts: two surfaces that may separate, collide, slide and stick.
 
 use super::arguments::Arguments;
-use super::keys::{Keys, check_relations};
+use super::keys::{ElementArgumentKeys, check_argument_relations};
 use super::{Collision, Contact, Description, Expr, ExprKind, Name};
 use crate::diag::Diagnostics;
 use crate::language::{Callable, Method, OtherKind};
@@ -21,8 +21,9 @@ pub fn read_contact(
     cx: &mut Diagnostics,
 ) {
     let (row, names) = (OtherKind::Contact.row(), &OtherKind::Contact.argument_names());
-    let (given, _) = Keys::new(OtherKind::Contact, names).read_arguments(arguments, cx);
-    check_relations(row.relations, &given, &name, cx);
+    let (given, _) =
+        ElementArgumentKeys::new(OtherKind::Contact, names).read_element_arguments(arguments, cx);
+    check_argument_relations(row.relations, &given, &name, cx);
     let mut surfaces = arguments.take_positional_arguments().into_iter();
     let is_empty = arguments.is_empty();
     arguments.report_remaining_arguments("a Contact", names, cx);

@@ -7,7 +7,7 @@ use syn::Path;
 use syn::parse::Parser;
 
 /// Returns the arguments without the option `crate`, and its path if it is present.
-pub fn take_path(arguments: TokenStream, cx: &mut Diagnostics) -> (TokenStream, Option<Path>) {
+pub fn take_crate_path(arguments: TokenStream, cx: &mut Diagnostics) -> (TokenStream, Option<Path>) {
     let mut rest: Vec<TokenTree> = Vec::new();
     let mut found = None;
     let mut tokens = arguments.into_iter().peekable();

@@ -46,13 +46,13 @@ fn remove_indentation(text: &str) -> String {
 }
 
 /// Returns the first paragraph of the doc comment of every field that has one.
-pub fn field_notes(item: &ItemStruct) -> Vec<(String, String)> {
-    let note_of_field = |field: &syn::Field| {
+pub fn field_doc_paragraphs(item: &ItemStruct) -> Vec<(String, String)> {
+    let field_doc_paragraph = |field: &syn::Field| {
         let name = field.ident.as_ref()?.to_string();
         let paragraph = first_paragraph(&field.attrs);
         (!paragraph.is_empty()).then(|| (name.trim_start_matches("r#").to_string(), paragraph))
     };
-    item.fields.iter().filter_map(note_of_field).collect()
+    item.fields.iter().filter_map(field_doc_paragraph).collect()
 }
 
 /// Returns the lines of documentation comments.
@@ -97,7 +97,7 @@ mod tests {
             }
         };
         assert_eq!(
-            field_notes(&item),
+            field_doc_paragraphs(&item),
             [("length".to_string(), "Length of the rod in the test struct.".to_string())]
         );
     }

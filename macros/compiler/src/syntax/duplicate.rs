@@ -7,8 +7,8 @@ use syn::{Attribute, Item, ItemStruct, Stmt};
 
 /// Returns the struct without fields if the source file defines its name in the same scope before the
 /// attribute's line, counted from one.
-pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<TokenStream> {
-    let definitions_of = |ident: &str| {
+pub fn duplicate_struct_without_fields(item: &TokenStream, text: &str, line: usize) -> Option<TokenStream> {
+    let positions_of_definitions = |ident: &str| {
         let definition = format!("struct {ident}");
         let is_end_of_word =
             |end: usize| text[end..].chars().next().is_none_or(|next| !next.is_alphanumeric() && next != '_');
@@ -20,7 +20,7 @@ pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<
         0 | 1 => return None,
         _ => syn::parse2(item.clone()).ok()?,
     };
-    let found = definitions_of(&ident.to_string());
+    let found = positions_of_definitions(&ident.to_string());
     let first = found.first().map(|at| 1 + text[..*at].matches('\n').count())?;
     if found.len() < 2 || first >= line {
         return None;
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     fn is_second_definition(text: &str, line: usize) -> bool {
-        second_definition(
+        duplicate_struct_without_fields(
             &quote!(
                 pub struct Cart {
                     mass: f64,

@@ -1,6 +1,6 @@
 //! Elements: the attributes of each type, and the arguments of each attribute.
 
-use super::action::read_action;
+use super::action::read_force_element;
 use super::arguments::Arguments;
 use super::constraint::{read_constraint, read_limit};
 use super::contact::read_contact;
@@ -10,8 +10,8 @@ use super::{
     Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate, Name, Particle,
     Point, Rank, words,
 };
-use crate::diag::{Diagnostics, Place, nearest_candidate, one_of, syn_error};
-use crate::language::elements::article;
+use crate::diag::{Diagnostics, Place, join_with_or, nearest_candidate, syn_error_with_help};
+use crate::language::elements::indefinite_article;
 use crate::language::{ElementKind, OtherKind};
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
@@ -61,11 +61,11 @@ pub fn report_unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx
                  (`Body`, `Pin`, …); a vector is three parameters, `[a, b, c]` in expressions",
         );
     } else {
-        let types = element_types();
+        let types = element_type_names();
         let diagnostic = cx.report_error(place, format!("unknown element type `{kind}`"));
         let near = crate::diag::nearest_candidate(kind, &types);
         if near.is_some_and(|near| near.eq_ignore_ascii_case(kind))
-            || !words::explain_element(diagnostic, kind, &types)
+            || !words::suggest_meant_element(diagnostic, kind, &types)
         {
             diagnostic.suggest_name(kind, types);
         }
@@ -75,7 +75,7 @@ pub fn report_unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx
             diagnostic
                 .add_help(format!("or declare it as the type of all parameters: `struct Robot<{kind}>`"));
         }
-        if diagnostic.is_bare() {
+        if diagnostic.has_no_help() {
             diagnostic
                 .add_help("`linkwork::elements` lists them: `Body`, `Pin`, `Sleeve`, `Spring`, `Force`, …");
         }
@@ -84,11 +84,11 @@ pub fn report_unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx
 
 /// Whether a type is an element of the language or that of parameters.
 pub fn is_element(kind: &str) -> bool {
-    kind == "f64" || ElementKind::of_name(kind).is_some()
+    kind == "f64" || ElementKind::find_by_name(kind).is_some()
 }
 
 /// Returns all element types of the language, and that of parameters.
-fn element_types() -> Vec<&'static str> {
+fn element_type_names() -> Vec<&'static str> {
     ["f64"].into_iter().chain(ElementKind::element_names()).collect()
 }
 
@@ -101,16 +101,16 @@ pub fn read_element(
     cx: &mut Diagnostics,
 ) {
     let kind_name = kind.to_string();
-    let Some(element) = ElementKind::of_name(&kind_name) else {
+    let Some(element) = ElementKind::find_by_name(&kind_name) else {
         report_unknown_type(name, &kind_name, kind.span(), cx);
         return;
     };
     let expected = element.element_attributes();
-    let given = attributes.iter().find(|a| is_one_of(a, expected));
+    let given = attributes.iter().find(|a| is_attribute_among(a, expected));
     let word = given.map(attribute_name).or(expected.first().map(ToString::to_string));
     let arguments = match &word {
         Some(word) => attribute_arguments(name, (&kind_name, element), word, attributes, cx),
-        None => empty_arguments(name, &kind_name, attributes, cx),
+        None => arguments_without_attribute(name, &kind_name, attributes, cx),
     };
     let Some(arguments) = arguments else { return };
     let mut arguments = arguments.with_owner(name);
@@ -122,18 +122,23 @@ pub fn read_element(
         ElementKind::Particle => description.particles.extend(read_particle(name, &mut arguments, cx)),
         ElementKind::Joint(joint) => description.joints.extend(read_joint(name, joint, &mut arguments, cx)),
         ElementKind::Force(force) => {
-            let action = read_action(name, force, &mut arguments, cx);
+            let action = read_force_element(name, force, &mut arguments, cx);
             description.inputs.extend(action.iter().filter(|action| action.is_input()).map(|_| name.clone()));
             description.actions.extend(action);
         }
         ElementKind::Other(other) => {
-            read_other_element(name, other, word.as_deref(), &mut arguments, description, cx);
+            read_auxiliary_element(name, other, word.as_deref(), &mut arguments, description, cx);
         }
     }
 }
 
 /// Reads the rate of a first-order state from its attributes.
-pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
+pub fn read_state_rate(
+    name: &Name,
+    kind: &Ident,
+    attributes: &[Attribute],
+    cx: &mut Diagnostics,
+) -> Option<Expr> {
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
     let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
     let mut arguments = arguments.with_owner(name);
@@ -144,7 +149,7 @@ pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut D
 }
 
 /// Returns whether the name of an attribute is in a list.
-pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
+pub fn is_attribute_among(attribute: &Attribute, words: &[&str]) -> bool {
     attribute.path().get_ident().is_some_and(|i| words.contains(&i.to_string().as_str()))
 }
 
@@ -155,7 +160,7 @@ pub const CONDITION_HELP: &str =
 /// Whether an attribute removes a parameter conditionally, or conditionally adds an attribute of the
 /// language.
 pub fn is_conditional(attribute: &Attribute) -> bool {
-    let is_conditional_list = |list: &syn::MetaList| {
+    let has_conditional_attribute = |list: &syn::MetaList| {
         let parse = syn::punctuated::Punctuated::<Meta, syn::Token![,]>::parse_terminated;
         let parts = parse.parse2(list.tokens.clone()).unwrap_or_default();
         parts.iter().skip(1).any(|part| {
@@ -165,7 +170,7 @@ pub fn is_conditional(attribute: &Attribute) -> bool {
     };
     match &attribute.meta {
         meta if meta.path().is_ident("cfg") => true,
-        Meta::List(list) if list.path.is_ident("cfg_attr") => is_conditional_list(list),
+        Meta::List(list) if list.path.is_ident("cfg_attr") => has_conditional_attribute(list),
         _ => false,
     }
 }
@@ -184,7 +189,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
         if input.peek(LitStr) {
             let text: LitStr = input.parse()?;
             let help = format!("write it without quotes: `#[unit({})]`", text.value());
-            return Err(syn_error(text.span(), "expected a unit, found a string", &help));
+            return Err(syn_error_with_help(text.span(), "expected a unit, found a string", &help));
         }
         let unit = parse_expr(input)?;
         if input.is_empty() {
@@ -194,7 +199,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
             true => "write `m2` for a power of a unit",
             false => "units are products and quotients: `#[unit(N * m / rad)]`, `#[unit(kg * m2)]`",
         };
-        Err(syn_error(input.span(), "expected `*` or `/`", help))
+        Err(syn_error_with_help(input.span(), "expected `*` or `/`", help))
     };
     parse_whole_unit.parse2(tokens).map_err(|error| cx.report_syn_error(error)).ok()
 }
@@ -253,14 +258,14 @@ fn check_foreign_attribute(
     }
     let diagnostic = cx.report_error(span, format!("unknown attribute `#[{word}]` on an element"));
     if own.is_empty() {
-        diagnostic.add_help(format!("{} `{kind}` has no attribute", article(kind)));
+        diagnostic.add_help(format!("{} `{kind}` has no attribute", indefinite_article(kind)));
     } else if let Some(last) = word.rsplit("::").next().filter(|last| nearest_candidate(last, own).is_some())
     {
         diagnostic.suggest_name(last, own.iter().copied());
         return false;
     } else {
         let list: Vec<String> = own.iter().map(|word| format!("`#[{word}(…)]`")).collect();
-        diagnostic.add_help(format!("expected {}", one_of(&list)));
+        diagnostic.add_help(format!("expected {}", join_with_or(&list)));
     }
     diagnostic.add_help(
         "elements are removed from the struct; only parameters can have attributes of other crates",
@@ -269,15 +274,15 @@ fn check_foreign_attribute(
 }
 
 fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
-    let massive = arguments.take_option("massive");
+    let massive = arguments.take_flag_option("massive");
     let body = Body {
         name: name.clone(),
-        mass: arguments.take_expr("mass", cx),
-        com: arguments.take_expr("com", cx),
-        inertia: arguments.take_expr("inertia", cx),
-        about: arguments.take_expr("about", cx),
-        at: arguments.take_expr("at", cx),
-        frame: arguments.take_expr("frame", cx),
+        mass: arguments.take_expression_of_key("mass", cx),
+        com: arguments.take_expression_of_key("com", cx),
+        inertia: arguments.take_expression_of_key("inertia", cx),
+        about: arguments.take_expression_of_key("about", cx),
+        at: arguments.take_expression_of_key("at", cx),
+        frame: arguments.take_expression_of_key("frame", cx),
     };
     arguments.report_remaining_arguments("a Body", &["mass", "com", "inertia", "about", "at", "frame"], cx);
     if let (Some(about), None) = (&body.about, &body.inertia) {
@@ -306,7 +311,7 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
 fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Particle> {
     let keys = ["mass", "at"];
     let mass = arguments.require_expression("mass", "m", "particle", &keys, cx);
-    let at = arguments.take_expr("at", cx);
+    let at = arguments.take_expression_of_key("at", cx);
     arguments.report_remaining_arguments("a Particle", &keys, cx);
     Some(Particle { name: name.clone(), mass: mass?, at })
 }
@@ -317,17 +322,17 @@ fn attribute_name(attribute: &Attribute) -> String {
 }
 
 /// Returns empty arguments for an element without an attribute, and reports attributes of the language.
-fn empty_arguments(
+fn arguments_without_attribute(
     name: &Name,
     kind: &str,
     attributes: &[Attribute],
     cx: &mut Diagnostics,
 ) -> Option<Arguments> {
-    if let Some(attribute) = attributes.iter().find(|a| is_one_of(a, &ATTRIBUTES)) {
+    if let Some(attribute) = attributes.iter().find(|a| is_attribute_among(a, &ATTRIBUTES)) {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         cx.report_error(
             span,
-            format!("{} `{kind}` has no `#[{}]`", article(kind), attribute_name(attribute)),
+            format!("{} `{kind}` has no `#[{}]`", indefinite_article(kind), attribute_name(attribute)),
         )
         .add_help("the field alone declares it: remove the attribute");
         return None;
@@ -342,7 +347,7 @@ fn empty_arguments(
 }
 
 /// Reads frames, points, coordinates, inputs, definitions, energies, limits, constraints and contacts.
-fn read_other_element(
+fn read_auxiliary_element(
     name: &Name,
     kind: OtherKind,
     attribute: Option<&str>,
@@ -375,10 +380,12 @@ fn read_other_element(
             arguments.report_remaining_arguments("a Frame", &[], cx);
         }
         OtherKind::Point => {
-            let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
+            let (on, at) =
+                (arguments.take_expression_of_key("on", cx), arguments.take_expression_of_key("at", cx));
             if let [body, place] = arguments.positional_arguments() {
                 let help = format!("write `#[point(on = {}, at = {})]`", body.to_source(), place.to_source());
-                cx.report_error(body.place.extend_to(&place.place), "expected `name = value`").add_help(help);
+                cx.report_error(body.place.extend_to_end_of(&place.place), "expected `name = value`")
+                    .add_help(help);
                 return;
             }
             if on.is_none() && at.is_none() && arguments.is_empty() {
@@ -390,7 +397,7 @@ fn read_other_element(
         }
         OtherKind::Limit => read_limit(name, arguments, description, cx),
         OtherKind::Equilibrium => {
-            let values = arguments.take_values();
+            let values = arguments.take_equations();
             arguments.report_remaining_arguments("an Equilibrium", &[], cx);
             description.equilibria.push(Equilibrium { name, values });
         }
@@ -440,7 +447,7 @@ fn read_definition(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let resolved_in = kind.row().own.first().and_then(|axes| arguments.take_expr(axes, cx));
+    let resolved_in = kind.row().own.first().and_then(|axes| arguments.take_expression_of_key(axes, cx));
     let Some(value) = read_expression(&name, kind, attribute, arguments, cx) else { return };
     let list = match attribute {
         Some(OUTPUT) => &mut description.outputs,
@@ -463,7 +470,7 @@ fn read_expression(
     if !plain.is_empty() {
         let last = value.as_ref().map_or(&name.place, |e| &e.place);
         cx.report_error(
-            plain[0].place.extend_to(last),
+            plain[0].place.extend_to_end_of(last),
             format!("`#[{word}(…)]` takes one expression, found {}", plain.len() + 1),
         )
         .add_help("declare a field for each");

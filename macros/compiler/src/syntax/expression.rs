@@ -2,7 +2,7 @@
 //! bounded depth.
 
 use super::{BinaryOp, Callee, Expr, ExprKind, Member, Name, guard};
-use crate::diag::{Place, syn_error};
+use crate::diag::{Place, syn_error_with_help};
 use crate::language::SurfaceId;
 use crate::language::callable::IF;
 use proc_macro2::{Span, TokenTree};
@@ -18,7 +18,7 @@ const PIECEWISE_HELP: &str =
     "a piecewise law is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
 /// Parsed expression with its size, for the limit on nesting.
-struct Parsed(Expr, ExpressionSize);
+struct ParsedExpression(Expr, ExpressionSize);
 
 /// Size of an expression, whose bounds limit the recursion of every traversal.
 #[derive(Clone, Copy, Default)]
@@ -37,7 +37,7 @@ impl ExpressionSize {
     }
 
     /// Returns the size of an expression in which these operands are nested.
-    fn size_of_nested(self) -> Self {
+    fn size_of_nested_expression(self) -> Self {
         Self { depth: self.depth + 1, length: self.length + 1 }
     }
 
@@ -62,18 +62,26 @@ pub fn name_from_identifier(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
 
-fn check_expression_size(kind: ExprKind, place: Place, size: ExpressionSize) -> syn::Result<Parsed> {
+fn check_expression_size(
+    kind: ExprKind,
+    place: Place,
+    size: ExpressionSize,
+) -> syn::Result<ParsedExpression> {
     let message = if size.depth > guard::MAX_DEPTH {
         "this expression is nested too deeply"
     } else if size.length > MAX_LENGTH {
         "this expression is too long"
     } else {
-        return Ok(Parsed(Expr { kind, place }, size));
+        return Ok(ParsedExpression(Expr { kind, place }, size));
     };
-    Err(syn_error(place.span, message, "define a part of it as a quantity of its own with `#[define(…)]`"))
+    Err(syn_error_with_help(
+        place.span,
+        message,
+        "define a part of it as a quantity of its own with `#[define(…)]`",
+    ))
 }
 
-fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_sum(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     let mut left = parse_product(input)?;
     loop {
         let assigns = input.peek(Token![+=]) || input.peek(Token![-=]);
@@ -89,7 +97,7 @@ fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
     }
 }
 
-fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_product(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     let mut left = parse_unary(input)?;
     loop {
         if input.peek(Token![*=]) || input.peek(Token![/=]) {
@@ -112,10 +120,10 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
 fn parse_operand(
     operator: Span,
     input: ParseStream<'_>,
-    parse: fn(ParseStream<'_>) -> syn::Result<Parsed>,
-) -> syn::Result<Parsed> {
+    parse: fn(ParseStream<'_>) -> syn::Result<ParsedExpression>,
+) -> syn::Result<ParsedExpression> {
     if input.is_empty() || input.peek(Token![,]) {
-        return Err(syn_error(
+        return Err(syn_error_with_help(
             operator,
             "missing operand after this operator",
             "write an operand, or remove it",
@@ -124,9 +132,14 @@ fn parse_operand(
     parse(input)
 }
 
-fn binary_expression(op: BinaryOp, operator: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
-    let size = left.1.size_of_longer_chain().max(right.1.size_of_nested());
-    let place = left.0.place.extend_to(&right.0.place);
+fn binary_expression(
+    op: BinaryOp,
+    operator: Span,
+    left: ParsedExpression,
+    right: ParsedExpression,
+) -> syn::Result<ParsedExpression> {
+    let size = left.1.size_of_longer_chain().max(right.1.size_of_nested_expression());
+    let place = left.0.place.extend_to_end_of(&right.0.place);
     check_expression_size(
         ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), operator.into()),
         place,
@@ -134,46 +147,50 @@ fn binary_expression(op: BinaryOp, operator: Span, left: Parsed, right: Parsed) 
     )
 }
 
-fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_unary(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     if input.peek(Token![-]) && !input.peek(Token![->]) {
         let span = input.parse::<Token![-]>()?.span;
         let inner = parse_operand(span, input, parse_unary)?;
-        let place = Place::from(span).extend_to(&inner.0.place);
-        return check_expression_size(ExprKind::Neg(Box::new(inner.0)), place, inner.1.size_of_nested());
+        let place = Place::from(span).extend_to_end_of(&inner.0.place);
+        return check_expression_size(
+            ExprKind::Neg(Box::new(inner.0)),
+            place,
+            inner.1.size_of_nested_expression(),
+        );
     }
     parse_postfix(input)
 }
 
-fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_postfix(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     let mut inner = parse_primary(input)?;
     while input.peek(Token![.]) {
         let dot = input.parse::<Token![.]>()?.span;
         if !input.peek(Ident::peek_any) {
             let help = "`body.x` is an axis of a body, `body.at(vector)` a point of it";
-            return Err(syn_error(dot, "expected a name after this dot", help));
+            return Err(syn_error_with_help(dot, "expected a name after this dot", help));
         }
         let member = parse_name(input)?;
         let size = inner.1.size_of_longer_chain();
         inner = if input.peek(token::Paren) {
             let (arguments, arguments_size, close) = match member.text == SurfaceId::Hull.name() {
-                true => parse_hull(input)?,
+                true => parse_hull_arguments(input)?,
                 false => parse_arguments(input)?,
             };
-            let place = inner.0.place.extend_to(&close.into());
+            let place = inner.0.place.extend_to_end_of(&close.into());
             check_expression_size(
                 ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
                 place,
-                size.max(arguments_size.size_of_nested()),
+                size.max(arguments_size.size_of_nested_expression()),
             )?
         } else {
-            let place = inner.0.place.extend_to(&member.place);
+            let place = inner.0.place.extend_to_end_of(&member.place);
             check_expression_size(ExprKind::Field(Box::new(inner.0), member), place, size)?
         };
     }
     Ok(inner)
 }
 
-fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_primary(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     if input.peek(token::Group) {
         return parse_macro_fragment(input);
     }
@@ -183,20 +200,20 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(token::Paren) {
         let content;
         let span = parenthesized!(content in input).span;
-        let place = Place::from(span.open()).extend_to(&span.close().into());
+        let place = Place::from(span.open()).extend_to_end_of(&span.close().into());
         let (mut items, size, trailing) = parse_list(&content)?;
         if items.len() == 1 && !trailing {
             let item = items.remove(0);
-            return Ok(Parsed(Expr { place, ..item }, size.size_of_nested()));
+            return Ok(ParsedExpression(Expr { place, ..item }, size.size_of_nested_expression()));
         }
-        return check_expression_size(ExprKind::Tuple(items), place, size.size_of_nested());
+        return check_expression_size(ExprKind::Tuple(items), place, size.size_of_nested_expression());
     }
     if input.peek(token::Bracket) {
         let content;
         let span = bracketed!(content in input).span;
-        let place = Place::from(span.open()).extend_to(&span.close().into());
+        let place = Place::from(span.open()).extend_to_end_of(&span.close().into());
         let (items, size, _) = parse_list(&content)?;
-        return check_expression_size(ExprKind::Array(items), place, size.size_of_nested());
+        return check_expression_size(ExprKind::Array(items), place, size.size_of_nested_expression());
     }
     if input.peek(Token![if]) {
         return parse_if_expression(input);
@@ -209,8 +226,8 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
             let (arguments, size, close) = parse_arguments(input)?;
             return check_expression_size(
                 ExprKind::Call(Callee::new(name), arguments),
-                place.extend_to(&close.into()),
-                size.size_of_nested(),
+                place.extend_to_end_of(&close.into()),
+                size.size_of_nested_expression(),
             );
         }
         return check_expression_size(ExprKind::Name(name.text), place, ExpressionSize::ONE);
@@ -219,48 +236,55 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
 }
 
 /// One branch `if left < right { piece }` of a piecewise law.
-struct Branch {
+struct PiecewiseBranch {
     keyword: Span,
-    left: Parsed,
-    right: Parsed,
+    left: ParsedExpression,
+    right: ParsedExpression,
     is_less: bool,
-    piece: Parsed,
+    piece: ParsedExpression,
 }
 
 /// Parses `if a < b { below } else { above }` into a call of `IF`. Its arguments are the operands of the
 /// comparison, the piece below and the piece above the border; `a > b` swaps the pieces. Further branches
 /// `else if` are nested in the last argument.
-fn parse_if_expression(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_if_expression(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     let mut branches = vec![parse_branch(input)?];
     let (mut last, end) = loop {
         if !input.peek(Token![else]) {
             let message = "an `if` needs an `else`: both branches need a value";
             let keyword = branches.last().map_or(input.span(), |branch| branch.keyword);
-            return Err(syn_error(keyword, message, PIECEWISE_HELP));
+            return Err(syn_error_with_help(keyword, message, PIECEWISE_HELP));
         }
         input.parse::<Token![else]>()?;
         if input.peek(Token![if]) {
             branches.push(parse_branch(input)?);
         } else if input.peek(token::Brace) {
-            break parse_piece(input)?;
+            break parse_braced_expression(input)?;
         } else {
-            return Err(syn_error(input.span(), "expected `{` or `if` after `else`", PIECEWISE_HELP));
+            return Err(syn_error_with_help(
+                input.span(),
+                "expected `{` or `if` after `else`",
+                PIECEWISE_HELP,
+            ));
         }
     };
-    for Branch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
-        let size = left.1.max(right.1).max(piece.1).max(last.1).size_of_nested();
+    for PiecewiseBranch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
+        let size = left.1.max(right.1).max(piece.1).max(last.1).size_of_nested_expression();
         let pieces = if is_less { [piece.0, last.0] } else { [last.0, piece.0] };
         let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
         let place = Place::from(keyword);
         let name = Name { text: IF.to_string(), place: place.clone() };
-        last =
-            check_expression_size(ExprKind::Call(Callee::new(name), arguments), place.extend_to(&end), size)?;
+        last = check_expression_size(
+            ExprKind::Call(Callee::new(name), arguments),
+            place.extend_to_end_of(&end),
+            size,
+        )?;
     }
     Ok(last)
 }
 
 /// Parses the branch `if a < b { piece }` of a piecewise expression.
-fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
+fn parse_branch(input: ParseStream<'_>) -> syn::Result<PiecewiseBranch> {
     let keyword = input.parse::<Token![if]>()?.span;
     let left = parse_operand(keyword, input, parse_sum)?;
     let is_less = input.peek(Token![<]) || input.peek(Token![<=]);
@@ -274,33 +298,33 @@ fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
         input.parse::<Token![>]>()?;
     } else {
         let message = "expected `<` or `>`: a condition compares two quantities";
-        return Err(syn_error(input.span(), message, PIECEWISE_HELP));
+        return Err(syn_error_with_help(input.span(), message, PIECEWISE_HELP));
     }
     let right = parse_sum(input)?;
     if !input.peek(token::Brace) {
-        return Err(syn_error(
+        return Err(syn_error_with_help(
             input.span(),
             "expected `{` and the expression for a true comparison",
             PIECEWISE_HELP,
         ));
     }
-    let piece = parse_piece(input)?.0;
-    Ok(Branch { keyword, left, right, is_less, piece })
+    let piece = parse_braced_expression(input)?.0;
+    Ok(PiecewiseBranch { keyword, left, right, is_less, piece })
 }
 
 /// Parses an expression in braces; returns it with the position of the closing brace.
-fn parse_piece(input: ParseStream<'_>) -> syn::Result<(Parsed, Place)> {
+fn parse_braced_expression(input: ParseStream<'_>) -> syn::Result<(ParsedExpression, Place)> {
     let content;
     let close = braced!(content in input).span.close();
     if content.is_empty() {
-        return Err(syn_error(close, "expected an expression in these braces", PIECEWISE_HELP));
+        return Err(syn_error_with_help(close, "expected an expression in these braces", PIECEWISE_HELP));
     }
     let piece = parse_sum(&content)?;
     if content.is_empty() { Ok((piece, close.into())) } else { Err(unexpected_token_error(&content)) }
 }
 
 /// Parses an expression that a macro of the user passes on: one operand without parentheses.
-fn parse_macro_fragment(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_macro_fragment(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     let TokenTree::Group(group) = input.parse()? else { return Err(missing_expression_error(input)) };
     let parse_whole_fragment = |inner: ParseStream<'_>| {
         let parsed = parse_sum(inner)?;
@@ -331,7 +355,7 @@ fn missing_expression_error(input: ParseStream<'_>) -> syn::Error {
     } else {
         "expressions are made of numbers, names, `+`, `-`, `*`, `/`, parentheses and calls"
     };
-    syn_error(input.span(), message, help)
+    syn_error_with_help(input.span(), message, help)
 }
 
 /// Returns the error for an unexpected token after an expression.
@@ -363,7 +387,7 @@ pub fn unexpected_token_error(input: ParseStream<'_>) -> syn::Error {
     } else {
         "the operators are `+`, `-`, `*` and `/`"
     };
-    syn_error(input.span(), message, help)
+    syn_error_with_help(input.span(), message, help)
 }
 
 /// Returns a text in quotes.
@@ -371,7 +395,7 @@ pub fn quote_text(text: &str) -> String {
     format!("\"{text}\"")
 }
 
-fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
+fn parse_number(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
     let literal: Lit = input.parse()?;
     let (digits, suffix) = match &literal {
         Lit::Int(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
@@ -386,13 +410,19 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         }
         Lit::Str(_) | Lit::Char(_) => {
             let message = "expected an expression, found a string";
-            return Err(syn_error(literal.span(), message, "write it without quotes"));
+            return Err(syn_error_with_help(literal.span(), message, "write it without quotes"));
         }
-        _ => return Err(syn_error(literal.span(), "expected a number", "write it in digits, as in `9.81`")),
+        _ => {
+            return Err(syn_error_with_help(
+                literal.span(),
+                "expected a number",
+                "write it in digits, as in `9.81`",
+            ));
+        }
     };
     if !matches!(suffix.as_str(), "" | "f64" | "f32") {
         let message = format!("a number cannot have the suffix `{suffix}`");
-        return Err(syn_error(
+        return Err(syn_error_with_help(
             literal.span(),
             &message,
             "all quantities are in SI units, all angles in radians",
@@ -402,7 +432,9 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         Ok(value) if value.is_finite() => {
             check_expression_size(ExprKind::Number(value), literal.span().into(), ExpressionSize::ONE)
         }
-        _ => Err(syn_error(literal.span(), "this number is too large", "the largest is about 1e308")),
+        _ => {
+            Err(syn_error_with_help(literal.span(), "this number is too large", "the largest is about 1e308"))
+        }
     }
 }
 
@@ -415,7 +447,7 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Expression
 }
 
 /// Parses the arguments of `hull(points)` or `hull("path")` with their size, and the closing parenthesis.
-fn parse_hull(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSize, Span)> {
+fn parse_hull_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSize, Span)> {
     let ahead = input.fork();
     let content;
     let close = parenthesized!(content in ahead).span.close();

@@ -2,9 +2,9 @@
 
 use super::expression::name_from_identifier;
 use super::mechanism::Shell;
-use super::parameter::{check_parameter_attributes, read_units, span_of, type_name, unify_scalar};
+use super::parameter::{check_parameter_attributes, read_units, span_of_type, type_name, unify_scalar_types};
 use super::state::read_state;
-use super::table::{read_table, table_variables};
+use super::table::{read_table, table_variable_count};
 use super::{Description, Name, ScalarType, element};
 use crate::diag::{Diagnostics, Place};
 use syn::spanned::Spanned;
@@ -26,12 +26,12 @@ pub fn read_field(
             .add_help("write a name, such as `_unused`");
         return;
     }
-    if let Some(variables) = table_variables(&field.ty) {
+    if let Some(variables) = table_variable_count(&field.ty) {
         read_table(field, &field_name, variables, description, shell, cx);
         return;
     }
     let Some(kind) = type_name(&field.ty) else {
-        element::report_unknown_type(&field_name, "", span_of(&field.ty), cx);
+        element::report_unknown_type(&field_name, "", span_of_type(&field.ty), cx);
         return;
     };
     let found = match kind.to_string().as_str() {
@@ -50,8 +50,8 @@ pub fn read_field(
     };
     check_parameter_attributes(&field_name, &field.attrs, cx);
     read_units(&field.attrs, description, cx);
-    field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
-    unify_scalar(scalar, found, field.ty.span().into(), cx);
+    field.attrs.retain(|a| !element::is_attribute_among(a, &element::ATTRIBUTES));
+    unify_scalar_types(scalar, found, field.ty.span().into(), cx);
     // The Rust compiler would also report a second field with the same name.
     if !shell.parameters.iter().any(|known| known.ident == field.ident) {
         shell.parameters.push(field);
@@ -67,7 +67,7 @@ pub fn is_known(kind: &Ident, generic: Option<&str>) -> bool {
 
 /// Reports fields with equal names and returns these names. The Rust compiler also reports them, but later
 /// and less clearly.
-pub fn check_duplicates(description: &Description, cx: &mut Diagnostics) -> Vec<String> {
+pub fn report_duplicate_fields(description: &Description, cx: &mut Diagnostics) -> Vec<String> {
     let mut names: Vec<&Name> = Vec::new();
     names.extend(&description.parameters);
     names.extend(description.tables.iter().map(|t| &t.name));

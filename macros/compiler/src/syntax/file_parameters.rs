@@ -3,7 +3,7 @@
 
 use super::Name;
 use super::expression::parse_name;
-use crate::diag::{Diagnostics, one_of, syn_error};
+use crate::diag::{Diagnostics, join_with_or, syn_error_with_help};
 use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
 use syn::{Ident, LitStr, Token, bracketed, parenthesized, token};
@@ -50,7 +50,7 @@ pub struct FileField {
     pub of: String,
     /// Documentation of the generated field.
     pub about: String,
-    /// Values in the robot file, in the order of [`member_accesses`](Self::member_accesses).
+    /// Values in the robot file, in the order of [`value_access_paths`](Self::value_access_paths).
     pub values: Vec<f64>,
     /// Units of the values, in the order of the values.
     pub units: Vec<&'static str>,
@@ -58,7 +58,7 @@ pub struct FileField {
 
 impl FileField {
     /// Returns the member access of each value relative to a mechanism: `trunk.mass`.
-    pub fn member_accesses(&self) -> Vec<String> {
+    pub fn value_access_paths(&self) -> Vec<String> {
         let members: &[&str] = match self.kind {
             FileFieldKind::Inertial => {
                 &["mass", "com[0]", "com[1]", "com[2]", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"]
@@ -86,11 +86,15 @@ fn parse_file_parameters(input: ParseStream<'_>) -> syn::Result<FileParameters> 
     if input.peek(LitStr) {
         let text: LitStr = input.parse()?;
         let help = format!("write `{INERTIAL}(\"{}\")` for the mass properties of a link", text.value());
-        return Err(syn_error(text.span(), "expected a group of file parameters, found a string", &help));
+        return Err(syn_error_with_help(
+            text.span(),
+            "expected a group of file parameters, found a string",
+            &help,
+        ));
     }
     if !input.peek(Ident) {
         let help = format!("write `parameters = {INERTIAL}(\"link\")`");
-        return Err(syn_error(input.span(), "expected a group of file parameters", &help));
+        return Err(syn_error_with_help(input.span(), "expected a group of file parameters", &help));
     }
     let word = parse_name(input)?;
     if !input.peek(token::Paren) {
@@ -100,12 +104,12 @@ fn parse_file_parameters(input: ParseStream<'_>) -> syn::Result<FileParameters> 
     parenthesized!(list in input);
     if list.is_empty() {
         let help = format!("write `{}` alone for all of them", word.text);
-        return Err(syn_error(word.place.span, "missing name in these parentheses", &help));
+        return Err(syn_error_with_help(word.place.span, "missing name in these parentheses", &help));
     }
     let parse_quoted_name = |input: ParseStream<'_>| -> syn::Result<Name> {
         if !input.peek(LitStr) {
             let help = "names of the file are strings: `inertial(\"trunk\")`";
-            return Err(syn_error(input.span(), "expected a name in quotation marks", help));
+            return Err(syn_error_with_help(input.span(), "expected a name in quotation marks", help));
         }
         let text: LitStr = input.parse()?;
         Ok(Name { text: text.value(), place: text.span().into() })
@@ -115,7 +119,10 @@ fn parse_file_parameters(input: ParseStream<'_>) -> syn::Result<FileParameters> 
 }
 
 /// Returns the known kinds, each once; reports unknown kinds and duplicates.
-pub fn check_file_parameters(requested: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
+pub fn validated_file_parameters(
+    requested: Vec<FileParameters>,
+    cx: &mut Diagnostics,
+) -> Vec<FileParameters> {
     let mut good: Vec<FileParameters> = Vec::new();
     for figures in requested {
         let word = &figures.word;
@@ -124,7 +131,7 @@ pub fn check_file_parameters(requested: Vec<FileParameters>, cx: &mut Diagnostic
             let error =
                 cx.report_error(word.place.clone(), format!("unknown file parameters `{}`", word.text));
             error.suggest_name(&word.text, WORDS);
-            error.add_help(format!("parameters of a file are {}", one_of(&words)));
+            error.add_help(format!("parameters of a file are {}", join_with_or(&words)));
         } else if good.iter().any(|known| known.word.text == word.text) {
             cx.report_error(word.place.clone(), format!("`{}` is given twice", word.text))
                 .add_help(format!("list all names in one: `{}(\"…\", \"…\")`", word.text));

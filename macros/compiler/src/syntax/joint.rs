@@ -15,19 +15,19 @@ pub fn read_joint(
     let ends = arguments.take_relation(&["about", "along", "pitch", "lead", "branch"], cx);
     let about = read_axes("about", arguments, cx);
     let along = read_axes("along", arguments, cx);
-    let pitch = arguments.take_expr("pitch", cx);
-    let lead = arguments.take_expr("lead", cx);
-    let branch = arguments.take_expr("branch", cx);
+    let pitch = arguments.take_expression_of_key("pitch", cx);
+    let lead = arguments.take_expression_of_key("lead", cx);
+    let branch = arguments.take_expression_of_key("branch", cx);
     let allowed = kind.row().arguments;
     for key in ["about", "along", "pitch", "lead"] {
-        if let Some(place) = arguments.place_of_taken_key(key)
+        if let Some(place) = arguments.span_of_taken_key(key)
             && !allowed.contains(&key)
         {
             let list: Vec<String> = allowed.iter().map(|k| format!("`{k}`")).collect();
             let help = if list.is_empty() {
                 "it has no axis".to_string()
             } else {
-                format!("expected {}", crate::diag::one_of(&list))
+                format!("expected {}", crate::diag::join_with_or(&list))
             };
             cx.report_error(place, format!("{} has no argument `{key}`", kind.name_with_article()))
                 .add_help(help);
@@ -68,7 +68,7 @@ fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
         [0.0, 0.0, -1.0] => "-z".to_string(),
         _ => format!("[{a}, {b}, {c}]"),
     };
-    let place = axes[0].place.extend_to(&axes[2].place);
+    let place = axes[0].place.extend_to_end_of(&axes[2].place);
     cx.report_error(place, "expected a direction, found three numbers")
         .add_help(format!("write `{key} = {axis}`"));
     None
@@ -115,7 +115,7 @@ fn read_joint_endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                     let other = method.text.as_str();
                     let error =
                         cx.report_error(method.place, format!("unknown method `.{other}(…)` of a body"));
-                    words::suggest_meaning(error, words::METHODS, other, &["at", "rotated"]);
+                    words::suggest_meaning_or_known_word(error, words::METHODS, other, &["at", "rotated"]);
                     None
                 }
             }

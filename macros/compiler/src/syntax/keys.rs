@@ -4,10 +4,10 @@
 use super::arguments::Arguments;
 use super::{Expr, ExprKind, Name, WrittenArguments};
 use crate::diag::Diagnostics;
-use crate::language::{Callable, Key, OtherKind, Relation};
+use crate::language::{ArgumentRelation, Callable, Key, OtherKind};
 
 /// Arguments of an element that its row in the table lists.
-pub struct Keys<'a> {
+pub struct ElementArgumentKeys<'a> {
     /// All arguments that the element's row lists.
     pub all: &'a [Key],
     /// Arguments that give alternative laws; one of them is given.
@@ -20,17 +20,17 @@ pub struct Keys<'a> {
     pub names: &'a [&'a str],
 }
 
-impl<'a> Keys<'a> {
+impl<'a> ElementArgumentKeys<'a> {
     /// Returns the arguments of an element that is no force element.
-    pub fn new(kind: OtherKind, names: &'a [&'a str]) -> Keys<'a> {
+    pub fn new(kind: OtherKind, names: &'a [&'a str]) -> ElementArgumentKeys<'a> {
         let row = kind.row();
         let attribute = row.attributes.first().copied().unwrap_or_default();
-        Keys { all: row.arguments, laws: &[], required: row.required, attribute, names }
+        ElementArgumentKeys { all: row.arguments, laws: &[], required: row.required, attribute, names }
     }
 
     /// Reads the arguments of an element, laws first. The second result is false if a required argument is
     /// missing.
-    pub fn read_arguments(
+    pub fn read_element_arguments(
         &self,
         arguments: &mut Arguments,
         cx: &mut Diagnostics,
@@ -47,7 +47,7 @@ impl<'a> Keys<'a> {
                     is_complete &= value.is_some();
                     value
                 }
-                _ => arguments.take_expr(key.name(), cx),
+                _ => arguments.take_expression_of_key(key.name(), cx),
             };
             let value = value.filter(|e| *key != Key::Restitution || check_restitution(e, cx));
             given.extend(value.map(|value| (*key, value)));
@@ -70,18 +70,18 @@ fn check_restitution(e: &Expr, cx: &mut Diagnostics) -> bool {
 }
 
 /// Reports arguments that exclude each other or need others, each once. Returns false then.
-pub fn check_relations(
-    relations: &[Relation],
+pub fn check_argument_relations(
+    relations: &[ArgumentRelation],
     given: &WrittenArguments,
     name: &Name,
     cx: &mut Diagnostics,
 ) -> bool {
-    let mut reported: Vec<&Relation> = Vec::new();
+    let mut reported: Vec<&ArgumentRelation> = Vec::new();
     for relation in relations {
         let Some(e) = given.get(relation.key) else { continue };
         let has_other = relation.others.iter().any(|key| given.get(*key).is_some());
         let is_reported_relation =
-            |known: &&Relation| known.key == relation.key || known.message == relation.message;
+            |known: &&ArgumentRelation| known.key == relation.key || known.message == relation.message;
         if has_other != relation.needs && !reported.iter().any(is_reported_relation) {
             cx.report_error(e.place.clone(), relation.message.replace("NAME", &name.text))
                 .add_help(relation.help);

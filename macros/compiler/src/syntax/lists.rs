@@ -2,7 +2,7 @@
 //! a list, `i` is the index of the element. Everywhere, `leg[1]` and `leg[i + 1]` denote one element. Later
 //! stages see plain fields only.
 
-use super::element::{ATTRIBUTES, is_one_of};
+use super::element::{ATTRIBUTES, is_attribute_among};
 use crate::diag::Diagnostics;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::ToTokens;
@@ -19,27 +19,27 @@ const MAX_EXPANDED_TOKENS: usize = 1_000_000;
 const MAX_INDEX_TOKENS: usize = 64;
 
 /// Lists of elements in a struct, with their lengths.
-pub struct Lists {
+pub struct ElementListLengths {
     lists: Vec<(String, usize)>,
     tokens: usize,
 }
 
-impl Lists {
+impl ElementListLengths {
     /// Expands the lists among the struct's fields, and returns their names and lengths.
-    pub fn expand_lists(fields: &mut Fields, cx: &mut Diagnostics) -> Lists {
-        let mut lists = Lists { lists: Vec::new(), tokens: 0 };
+    pub fn expand_lists(fields: &mut Fields, cx: &mut Diagnostics) -> ElementListLengths {
+        let mut lists = ElementListLengths { lists: Vec::new(), tokens: 0 };
         let Fields::Named(named_fields) = fields else { return lists };
         let counts: Vec<Option<usize>> =
             named_fields.named.iter().map(|field| lists.read_list_length(field, cx)).collect();
         if lists.lists.is_empty() {
             return lists;
         }
-        cx.set_list_names(lists.lists.iter().map(|(name, _)| name.clone()).collect());
+        cx.set_element_list_names(lists.lists.iter().map(|(name, _)| name.clone()).collect());
         lists.check_names(named_fields.named.iter(), cx);
         let fields_before = std::mem::take(&mut named_fields.named);
         for (mut field, count) in fields_before.into_iter().zip(counts) {
             let Some(count) = count else {
-                lists.rewrite_attributes(&mut field, None, cx);
+                lists.rewrite_list_indices_in_attributes(&mut field, None, cx);
                 named_fields.named.push(field);
                 continue;
             };
@@ -100,12 +100,18 @@ impl Lists {
         }
         field.ident =
             list.ident.as_ref().map(|ident| element_name(&ident.unraw().to_string(), k, ident.span()));
-        self.rewrite_attributes(&mut field, Some(k), cx);
+        self.rewrite_list_indices_in_attributes(&mut field, Some(k), cx);
         field
     }
 
-    fn rewrite_attributes(&mut self, field: &mut Field, index: Option<usize>, cx: &mut Diagnostics) {
-        for attribute in field.attrs.iter_mut().filter(|attribute| is_one_of(attribute, &ATTRIBUTES)) {
+    fn rewrite_list_indices_in_attributes(
+        &mut self,
+        field: &mut Field,
+        index: Option<usize>,
+        cx: &mut Diagnostics,
+    ) {
+        for attribute in field.attrs.iter_mut().filter(|attribute| is_attribute_among(attribute, &ATTRIBUTES))
+        {
             if let Meta::List(list) = &mut attribute.meta {
                 list.tokens = self.rewrite_list_index(std::mem::take(&mut list.tokens), index, cx);
             }
@@ -146,7 +152,8 @@ impl Lists {
                         _ => None,
                     };
                     let ends = tokens.peek().is_none_or(|next| !is_punctuation(next, '='));
-                    let (token, used) = self.replace_word(&word, index_of.as_ref(), ends, index, cx);
+                    let (token, used) =
+                        self.replacement_of_list_word(&word, index_of.as_ref(), ends, index, cx);
                     written.push(token);
                     if used {
                         tokens.next();
@@ -165,7 +172,7 @@ impl Lists {
     }
 
     /// Returns the replacement of a word, and whether the brackets after it were consumed.
-    fn replace_word(
+    fn replacement_of_list_word(
         &self,
         word: &Ident,
         brackets: Option<&Group>,
@@ -195,12 +202,12 @@ impl Lists {
             }
             return (word.clone().into(), false);
         };
-        let k = self.index_value(&text, *count, group, index, cx).unwrap_or(0);
+        let k = self.evaluate_list_index(&text, *count, group, index, cx).unwrap_or(0);
         (element_name(&text, k, word.span()).into(), true)
     }
 
     /// Returns the value of the index in brackets after the name of a list.
-    fn index_value(
+    fn evaluate_list_index(
         &self,
         list: &str,
         count: usize,

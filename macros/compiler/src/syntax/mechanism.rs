@@ -2,9 +2,9 @@
 
 use super::declaration::doc_lines;
 use super::file_parameters::{FileField, FileParameters};
-use super::readable::Reading;
-use super::request::Requests;
-use super::{Base, Description, Inertias, Name};
+use super::readable::FieldReadability;
+use super::request::RequestedFunctions;
+use super::{Base, Description, InertiaOption, Name};
 use syn::{Attribute, Field, Ident, Visibility};
 
 /// Parsed struct with the attribute `#[mechanism]`.
@@ -16,9 +16,9 @@ pub struct Mechanism {
     /// Options of the robot file to import, if there is one.
     pub file: Option<FileOptions>,
     /// Optional functions that are generated on request.
-    pub requests: Requests,
+    pub requests: RequestedFunctions,
     /// Record of which fields could be read in spite of errors.
-    pub reading: Reading,
+    pub reading: FieldReadability,
 }
 
 /// Generated struct: the declared one without the fields that are elements.
@@ -60,9 +60,9 @@ impl Shell {
     }
 
     /// Returns the member access of every parameter relative to a mechanism.
-    pub fn parameter_accesses(&self) -> Vec<String> {
+    pub fn parameter_access_paths(&self) -> Vec<String> {
         let own = self.parameters.iter().filter_map(|field| field.ident.as_ref().map(ToString::to_string));
-        own.chain(self.file_fields.iter().flat_map(FileField::member_accesses)).collect()
+        own.chain(self.file_fields.iter().flat_map(FileField::value_access_paths)).collect()
     }
 }
 
@@ -110,7 +110,7 @@ impl FileFormat {
     pub const ALL: [FileFormat; 3] = [FileFormat::Urdf, FileFormat::Mjcf, FileFormat::Sdf];
 
     /// Returns the option of `#[mechanism]` that imports a file of the format.
-    pub fn format_option(self) -> &'static str {
+    pub fn import_option_name(self) -> &'static str {
         match self {
             FileFormat::Urdf => "urdf",
             FileFormat::Mjcf => "mjcf",
@@ -119,7 +119,7 @@ impl FileFormat {
     }
 
     /// Returns the term of the format for a body, such as `link`.
-    pub fn body_term(self) -> &'static str {
+    pub fn word_for_body(self) -> &'static str {
         match self {
             FileFormat::Urdf | FileFormat::Sdf => "link",
             FileFormat::Mjcf => "body",
@@ -136,7 +136,7 @@ impl FileFormat {
     }
 
     /// Returns the phrase for a file of this format, with its article.
-    pub fn phrase_with_article(self) -> &'static str {
+    pub fn file_format_phrase(self) -> &'static str {
         match self {
             FileFormat::Urdf => "a URDF file",
             FileFormat::Mjcf => "an MJCF file",
@@ -145,7 +145,7 @@ impl FileFormat {
     }
 
     /// Returns the file extensions of the format.
-    pub fn file_extensions(self) -> &'static [&'static str] {
+    pub fn extensions_of_file_format(self) -> &'static [&'static str] {
         match self {
             FileFormat::Urdf => &["urdf", "xml"],
             FileFormat::Mjcf => &["xml", "mjcf"],
@@ -156,7 +156,7 @@ impl FileFormat {
 
 /// Option for the inputs of a mechanism from a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum InputOption {
+pub enum FileInputSource {
     /// One input per moving joint with one degree of freedom.
     Joints,
     /// One input for each motor that the file declares.
@@ -181,9 +181,9 @@ pub struct FileOptions {
     /// Option for the treatment of the limits of the file.
     pub limits: LimitOption,
     /// Option for the treatment of mass properties.
-    pub inertias: Inertias,
+    pub inertias: InertiaOption,
     /// Option for the inputs of the mechanism.
-    pub inputs: InputOption,
+    pub inputs: FileInputSource,
     /// Names of the joints that are locked at the coordinate zero.
     pub lock: Vec<Name>,
     /// Tolerance within which frames and axes of the file are rounded, rad and m.
@@ -211,8 +211,8 @@ impl FileOptions {
             honour_passive: true,
             follow_mimic: true,
             limits: LimitOption::Honour,
-            inertias: Inertias::Check,
-            inputs: InputOption::None,
+            inertias: InertiaOption::Check,
+            inputs: FileInputSource::None,
             lock: Vec::new(),
             snap: None,
             parameters: Vec::new(),

@@ -34,15 +34,16 @@ pub use crate::language::{ElementKind, ForceKind, JointKind, Key, OtherKind};
 pub use attribute::parse_mechanism;
 pub use description::{
     Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
-    Description, Drive, DriveLaw, DriveOn, DriveQuantity, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
-    Frame, FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, MeshVertices, Mimic, Name, Particle, Point,
-    Rank, ScalarType, Shape, Table, Target, Term, Visual, Wrench, WrittenArguments, restitution_coefficient,
+    Description, Drive, DriveLaw, DriveQuantity, DriveTarget, Endpoint, Equilibrium, Expr, ExprKind,
+    Formulation, Frame, FreeCoordinate, InertiaOption, Joint, Limit, Member, Mesh, MeshVertices,
+    MimicRelation, Name, Particle, Point, Rank, ScalarType, Shape, Table, Target, Term, Visual, Wrench,
+    WrittenArguments, restitution_coefficient,
 };
-pub use duplicate::second_definition;
+pub use duplicate::duplicate_struct_without_fields;
 pub use mechanism::{
-    FileFormat, FileOptions, GROUND, InputOption, LimitOption, LoopOption, Mechanism, ROOT_JOINT, Shell,
+    FileFormat, FileInputSource, FileOptions, GROUND, LimitOption, LoopOption, Mechanism, ROOT_JOINT, Shell,
 };
-pub use request::{Printed, Requests, Skipped, Word};
+pub use request::{EquationsOption, RequestOption, RequestedFunctions, SkippedPasses};
 pub use separate::insert_missing_commas;
 
 /// Suffix that, appended to the name of a state, gives the name of the function that returns the state's time

@@ -3,11 +3,13 @@
 
 use super::arguments::Arguments;
 use super::file_parameters::{self, FileParameters};
-use super::mechanism::{FileFormat, FileOptions, InputOption, LimitOption, LoopOption};
-use super::parameter::unify_scalar;
-use super::request::{Printed, REQUESTS, Requests};
-use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, skipped, words};
-use crate::diag::{Diagnostics, Place, nearest_candidate, one_of};
+use super::mechanism::{FileFormat, FileInputSource, FileOptions, LimitOption, LoopOption};
+use super::parameter::unify_scalar_types;
+use super::request::{EquationsOption, REQUESTS, RequestedFunctions};
+use super::{
+    Base, Description, Expr, ExprKind, Formulation, InertiaOption, Name, ScalarType, skipped, words,
+};
+use crate::diag::{Diagnostics, Place, join_with_or, nearest_candidate};
 use proc_macro2::{Span, TokenStream};
 
 /// Maximum tolerance of the option `snap`, rad and m.
@@ -45,26 +47,27 @@ pub fn read_options(
     arguments: TokenStream,
     description: &mut Description,
     scalar: &mut Option<(ScalarType, Place)>,
-    requests: &mut Requests,
+    requests: &mut RequestedFunctions,
     cx: &mut Diagnostics,
 ) -> Option<FileOptions> {
     let mut arguments = Arguments::parse(arguments, Span::call_site(), cx)?;
-    let rejected: Vec<&str> = REQUESTS.into_iter().filter(|word| arguments.check_option(word, cx)).collect();
+    let rejected: Vec<&str> =
+        REQUESTS.into_iter().filter(|word| arguments.report_option_value(word, cx)).collect();
     let requested = take_requests(&mut arguments);
     *requests = read_requests(&requested, &rejected, &mut arguments, description, cx);
-    description.gravity = arguments.take_expr("gravity", cx);
-    description.friction_speed = arguments.take_expr("friction_speed", cx);
+    description.gravity = arguments.take_expression_of_key("gravity", cx);
+    description.friction_speed = arguments.take_expression_of_key("friction_speed", cx);
     description.formulation = read_formulation(&mut arguments, cx);
     if let Some((word, place)) = arguments.take_choice("scalar", &["f64", "f32"], cx) {
         let found = if word == "f32" { ScalarType::F32 } else { ScalarType::F64 };
-        unify_scalar(scalar, found, place, cx);
+        unify_scalar_types(scalar, found, place, cx);
     }
     let file = read_path(&mut arguments, cx);
     let file_only =
         ["base", "passive", "mimic", "limits", "contacts", "loops", "inputs", "lock", "snap", "parameters"];
     if file.is_none() {
         for option in file_only {
-            if let Some(place) = arguments.place_of(option) {
+            if let Some(place) = arguments.span_of_key(option) {
                 let error = cx.report_error(place, format!("`{option}` is an option of imported files"));
                 if option == "base" {
                     error.add_help("a free body has a separate joint: `#[joint(ground -> body)] pose: Free`");
@@ -78,7 +81,7 @@ pub fn read_options(
         }
     }
     let contacts = read_contacts(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
-    let loops = read_loops(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
+    let loops = read_loop_option(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
     let limits = arguments.take_choice("limits", &["honour", "ignore", "stops"], cx);
     let limits = limits.map_or(LimitOption::Honour, |(word, _)| match word.as_str() {
         "ignore" => LimitOption::Ignore,
@@ -93,15 +96,15 @@ pub fn read_options(
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
     requests.reproducible = choice("arithmetic", ["fast", "reproducible"]).unwrap_or(false);
-    description.inertias = read_inertias(&mut arguments, &requested, description, cx);
-    requests.skipped = skipped::read_skipped(&mut arguments, cx);
-    let printed = arguments.take_choice("equations", &Printed::WORDS.map(|(word, _)| word), cx);
-    let printed =
-        printed.and_then(|(requested, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == requested));
-    requests.equations = printed.map_or(Printed::Readable, |(_, printed)| printed);
+    description.inertias = read_inertia_option(&mut arguments, &requested, description, cx);
+    requests.skipped = skipped::read_skipped_passes(&mut arguments, cx);
+    let printed = arguments.take_choice("equations", &EquationsOption::WORDS.map(|(word, _)| word), cx);
+    let printed = printed
+        .and_then(|(requested, _)| EquationsOption::WORDS.into_iter().find(|(word, _)| *word == requested));
+    requests.equations = printed.map_or(EquationsOption::Readable, |(_, printed)| printed);
     let inputs = read_inputs(&mut arguments, file.as_ref().map(|(format, _)| *format), cx);
-    let lock = arguments.take_texts("lock", cx);
-    let snap = arguments.take_expr("snap", cx).and_then(|e| read_tolerance(&e, cx));
+    let lock = arguments.take_string_list("lock", cx);
+    let snap = arguments.take_expression_of_key("snap", cx).and_then(|e| read_snap_tolerance(&e, cx));
     let parameters = read_file_parameters(&mut arguments, description.inertias, cx);
     requests.file_parameters = !parameters.is_empty();
     requests.file_inertials = parameters.iter().any(|figures| figures.word.text == file_parameters::INERTIAL);
@@ -125,12 +128,12 @@ pub fn read_options(
 
 /// Reads `contacts = file | ignore`: whether contacts of the file are included, for a format that has them.
 fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
-    let place = arguments.place_of("contacts");
+    let place = arguments.span_of_key("contacts");
     let from_file =
         arguments.take_choice("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
     let unsupported = format.filter(|format| from_file && *format != FileFormat::Mjcf);
     if let (Some(place), Some(unsupported)) = (place, unsupported) {
-        cx.report_error(place, format!("{} does not declare contacts", unsupported.phrase_with_article()))
+        cx.report_error(place, format!("{} does not declare contacts", unsupported.file_format_phrase()))
             .add_help(super::contact::CONTACT_HELP);
     }
     from_file && unsupported.is_none()
@@ -138,8 +141,12 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
 
 /// Reads `loops = refuse | close | ignore`, an option of URDF files. Other formats have joints or constraints
 /// that close loops.
-fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> LoopOption {
-    let place = arguments.place_of("loops");
+fn read_loop_option(
+    arguments: &mut Arguments,
+    format: Option<FileFormat>,
+    cx: &mut Diagnostics,
+) -> LoopOption {
+    let place = arguments.span_of_key("loops");
     let loops = arguments.take_choice("loops", &["refuse", "close", "ignore"], cx);
     let loops = loops.map_or(LoopOption::Refuse, |(word, _)| match word.as_str() {
         "close" => LoopOption::Close,
@@ -148,7 +155,7 @@ fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Di
     });
     if let (Some(place), Some(other)) = (place, format.filter(|format| *format != FileFormat::Urdf)) {
         cx.report_error(place, "`loops` is an option of URDF files")
-            .add_help(format!("remove it: the loops of {} are always closed", other.phrase_with_article()));
+            .add_help(format!("remove it: the loops of {} are always closed", other.file_format_phrase()));
     }
     loops
 }
@@ -157,11 +164,11 @@ fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Di
 fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFormat, Name)> {
     let mut found: Option<(FileFormat, Name)> = None;
     for format in FileFormat::ALL {
-        let Some(path) = arguments.take_text(format.format_option(), cx) else { continue };
+        let Some(path) = arguments.take_text(format.import_option_name(), cx) else { continue };
         if let Some((first, _)) = &found {
             cx.report_error(path.place.clone(), "a second file").add_help(format!(
                 "a mechanism is read from one file: remove `{}` or this",
-                first.format_option()
+                first.import_option_name()
             ));
         } else {
             found = Some((format, path));
@@ -171,7 +178,11 @@ fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFor
 }
 
 /// Reads `inputs = joints | actuators | none`. The default for a format without motors is `joints`.
-fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> InputOption {
+fn read_inputs(
+    arguments: &mut Arguments,
+    format: Option<FileFormat>,
+    cx: &mut Diagnostics,
+) -> FileInputSource {
     let words: &[&str] = match format {
         Some(FileFormat::Mjcf) => &["actuators", "joints", "none"],
         _ => &["joints", "none"],
@@ -180,22 +191,22 @@ fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut D
         .take_choice("inputs", words, cx)
         .map_or(words.first().copied(), |(word, _)| words.iter().copied().find(|known| *known == word));
     match found {
-        Some("actuators") => InputOption::Actuators,
-        Some("none") => InputOption::None,
-        _ => InputOption::Joints,
+        Some("actuators") => FileInputSource::Actuators,
+        Some("none") => FileInputSource::None,
+        _ => FileInputSource::Joints,
     }
 }
 
 /// Reads `inertia = check | trust | none`. Without inertia there are no dynamics; options that need them are
 /// reported.
-fn read_inertias(
+fn read_inertia_option(
     arguments: &mut Arguments,
     requested: &[(&str, Place)],
     description: &Description,
     cx: &mut Diagnostics,
-) -> Inertias {
+) -> InertiaOption {
     match arguments.take_choice("inertia", &["check", "trust", "none"], cx) {
-        Some((word, _)) if word == "trust" => Inertias::Trust,
+        Some((word, _)) if word == "trust" => InertiaOption::Trust,
         Some((word, _)) if word == "none" => {
             for (word, place) in requested.iter().filter(|(word, _)| *word != "drawing") {
                 cx.report_error(place.clone(), format!("`{word}` needs inertia")).add_help(format!(
@@ -206,14 +217,14 @@ fn read_inertias(
                 cx.report_error(place.clone(), "a formulation of the dynamics needs inertia")
                     .add_help("remove it, or `inertia = none`: without inertia there are no dynamics");
             }
-            Inertias::None
+            InertiaOption::None
         }
-        _ => Inertias::Check,
+        _ => InertiaOption::Check,
     }
 }
 
 /// Reads the tolerance of `snap`: a positive number, small compared with intended angles.
-fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
+fn read_snap_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
     match e.kind {
         ExprKind::Number(tolerance) if tolerance > 0.0 && tolerance <= LARGEST_SNAP => Some(tolerance),
         _ => {
@@ -227,12 +238,13 @@ fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
 /// Reads `parameters = inertial("trunk")`. Without inertia there are no mass properties.
 fn read_file_parameters(
     arguments: &mut Arguments,
-    inertias: Inertias,
+    inertias: InertiaOption,
     cx: &mut Diagnostics,
 ) -> Vec<FileParameters> {
-    let mut found = file_parameters::check_file_parameters(arguments.take_file_parameters("parameters"), cx);
+    let mut found =
+        file_parameters::validated_file_parameters(arguments.take_file_parameters("parameters"), cx);
     found.retain(|figures| {
-        let good = inertias != Inertias::None || figures.word.text == file_parameters::PLACEMENT;
+        let good = inertias != InertiaOption::None || figures.word.text == file_parameters::PLACEMENT;
         if !good {
             let word = &figures.word;
             cx.report_error(word.place.clone(), format!("`{}` needs inertia", word.text))
@@ -245,7 +257,7 @@ fn read_file_parameters(
 
 /// Reads `formulation = multipliers | speeds`; a list of independent velocities implies the latter.
 fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulation {
-    let place = arguments.place_of("independent");
+    let place = arguments.span_of_key("independent");
     let independent = arguments.take_list("independent", cx);
     let chosen = arguments.take_choice("formulation", &["multipliers", "speeds"], cx);
     match (chosen, place) {
@@ -260,9 +272,9 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
     }
 }
 
-/// Takes the options that request functions ([`Requests`]) from the arguments.
+/// Takes the options that request functions ([`RequestedFunctions`]) from the arguments.
 fn take_requests(arguments: &mut Arguments) -> Vec<(&'static str, Place)> {
-    REQUESTS.iter().filter_map(|word| Some((*word, arguments.take_option(word)?))).collect()
+    REQUESTS.iter().filter_map(|word| Some((*word, arguments.take_flag_option(word)?))).collect()
 }
 
 /// Returns the requested functions, and reports unknown or meaningless options.
@@ -272,12 +284,12 @@ fn read_requests(
     arguments: &mut Arguments,
     description: &Description,
     cx: &mut Diagnostics,
-) -> Requests {
+) -> RequestedFunctions {
     let is_requested_option = |word: &str| requested.iter().any(|(known, _)| *known == word);
-    let requests = Requests::from_options(is_requested_option);
+    let requests = RequestedFunctions::from_options(is_requested_option);
     for (word, place) in requested {
         let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
-        if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
+        if description.parameters.is_empty() && arguments.span_of_key("parameters").is_none() && without {
             cx.report_error(
                 place.clone(),
                 format!("`{word}` has no effect here: this mechanism has no parameters"),
@@ -316,13 +328,13 @@ fn read_requests(
             Some(word) => {
                 let list: Vec<String> = REQUESTS.iter().map(|known| format!("`{known}`")).collect();
                 let error = cx.report_error(e.place.clone(), format!("unknown option `{word}`"));
-                if words::explain_word(error, words::REQUESTS, word, &[]) {
+                if words::add_word_meaning_as_help(error, words::REQUESTS, word, &[]) {
                     continue;
                 }
                 if nearest_candidate(word, &REQUESTS).is_some() {
                     error.suggest_name(word, REQUESTS);
                 }
-                error.add_help(format!("options that request functions: {}", one_of(&list)))
+                error.add_help(format!("options that request functions: {}", join_with_or(&list)))
             }
         };
     }

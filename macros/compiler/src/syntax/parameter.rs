@@ -7,7 +7,7 @@ use quote::ToTokens;
 use syn::spanned::Spanned;
 use syn::{Attribute, Type};
 
-pub fn unify_scalar(
+pub fn unify_scalar_types(
     scalar: &mut Option<(ScalarType, Place)>,
     found: ScalarType,
     place: Place,
@@ -39,11 +39,11 @@ fn scalar_type_name(scalar: &ScalarType) -> &str {
 }
 
 /// Returns the source range from the first to the last token of a type.
-pub fn span_of(ty: &Type) -> Place {
+pub fn span_of_type(ty: &Type) -> Place {
     let mut tokens = ty.to_token_stream().into_iter();
     let Some(first) = tokens.next() else { return ty.span().into() };
     let last = tokens.last().map_or(first.span(), |last| last.span());
-    Place::from(first.span()).extend_to(&last.into())
+    Place::from(first.span()).extend_to_end_of(&last.into())
 }
 
 /// Returns the last segment of a plain path without arguments.
@@ -62,7 +62,7 @@ pub fn type_name(ty: &Type) -> Option<Ident> {
 
 /// Reads the attribute `#[unit(…)]`, which applies to the parameter declared next.
 pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &mut Diagnostics) {
-    let mut units = attributes.iter().filter(|a| element::is_one_of(a, &["unit"]));
+    let mut units = attributes.iter().filter(|a| element::is_attribute_among(a, &["unit"]));
     if let Some(first) = units.next() {
         let unit = element::read_unit(first, cx);
         description.units.extend(unit.map(|unit| (description.parameters.len(), unit)));

@@ -12,7 +12,7 @@ use syn::Field;
 const GLOBAL_OPTIONS: [&str; 2] = ["urdf", "inertia"];
 
 /// Identifiers that occur in the attributes of one field of a mechanism.
-struct FieldWords {
+struct FieldIdentifiers {
     name: Name,
     words: BTreeSet<String>,
     /// Whether the field is a body placed by joints. The name of such a body is known even if its attribute
@@ -23,14 +23,14 @@ struct FieldWords {
 
 /// Words of the attribute and of every field, and which of them could be read.
 #[derive(Default)]
-pub struct Reading {
-    fields: Vec<FieldWords>,
+pub struct FieldReadability {
+    fields: Vec<FieldIdentifiers>,
     unreadable: bool,
 }
 
-impl Reading {
+impl FieldReadability {
     /// Records a field of the mechanism with the identifiers in its attributes.
-    pub fn record_field(&mut self, field: &Field) {
+    pub fn record_field_identifiers(&mut self, field: &Field) {
         let mut words = BTreeSet::new();
         for attribute in &field.attrs {
             collect_identifiers(attribute.to_token_stream(), &mut words);
@@ -38,23 +38,23 @@ impl Reading {
         let placed = ["at", "frame", "massive"].iter().any(|word| words.contains(*word));
         let body = field.ty.to_token_stream().to_string() == "Body" && !placed;
         let name = field.ident.as_ref().map(super::expression::name_from_identifier);
-        self.fields.extend(name.map(|name| FieldWords { name, words, body, has_errors: false }));
+        self.fields.extend(name.map(|name| FieldIdentifiers { name, words, body, has_errors: false }));
     }
 
     /// Marks the whole mechanism as unreadable after a syntax error.
-    pub fn mark_unreadable(&mut self) {
+    pub fn mark_mechanism_unreadable(&mut self) {
         self.unreadable = true;
     }
 
     /// Marks the most recently recorded field as unreadable.
-    pub fn mark_last_field(&mut self) {
+    pub fn mark_last_field_unreadable(&mut self) {
         if let Some(field) = self.fields.last_mut() {
             field.has_errors = true;
         }
     }
 
     /// Marks the fields with this name as unreadable, since the name is ambiguous.
-    pub fn mark_fields_named(&mut self, name: &str) {
+    pub fn mark_ambiguous_fields(&mut self, name: &str) {
         for field in self.fields.iter_mut().filter(|field| field.name.text == name) {
             (field.has_errors, field.body) = (true, false);
         }
@@ -62,7 +62,7 @@ impl Reading {
 
     /// Marks the mechanism as unreadable if the arguments of the attribute, which could not be read, contain
     /// an option with which fields are checked.
-    pub fn mark_arguments(&mut self, arguments: TokenStream) {
+    pub fn mark_unreadable_arguments(&mut self, arguments: TokenStream) {
         let mut words = BTreeSet::new();
         collect_identifiers(arguments, &mut words);
         self.unreadable |= words.iter().any(|word| {
@@ -72,14 +72,14 @@ impl Reading {
 
     /// Returns the description without unreadable fields and without fields that depend on them; `None` if
     /// nothing remains.
-    pub fn readable_part(&self, whole: &Description) -> Option<Description> {
+    pub fn readable_description(&self, whole: &Description) -> Option<Description> {
         if self.unreadable {
             return None;
         }
-        let (unreadable, bodies) = self.unreadable_names();
+        let (unreadable, bodies) = self.unreadable_field_names();
         let is_readable = |name: &Name| !unreadable.contains(name.text.as_str());
         let is_resolvable = |e: &super::Expr| {
-            e.subexpressions().iter().all(|e| e.as_name().is_none_or(|n| !unreadable.contains(n)))
+            e.all_subexpressions().iter().all(|e| e.as_name().is_none_or(|n| !unreadable.contains(n)))
         };
         let mut d = whole.clone();
         d.partial = true;
@@ -116,7 +116,7 @@ impl Reading {
 
     /// Returns the names of unreadable fields and of all fields that depend on them; and bodies of which only
     /// the name is known.
-    fn unreadable_names(&self) -> (BTreeSet<&str>, Vec<&Name>) {
+    fn unreadable_field_names(&self) -> (BTreeSet<&str>, Vec<&Name>) {
         let mut unreadable = BTreeSet::new();
         let mut bodies: Vec<&Name> = Vec::new();
         let mut more = true;

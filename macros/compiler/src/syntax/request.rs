@@ -2,7 +2,7 @@
 
 /// Equations of motion printed in the documentation, by the option `equations = word`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Printed {
+pub enum EquationsOption {
     /// Prints Lagrange's equations if they are short enough to be readable.
     #[default]
     Readable,
@@ -18,21 +18,21 @@ pub enum Printed {
     Structure,
 }
 
-impl Printed {
+impl EquationsOption {
     /// Values of the option `equations`, with the equations that they select.
-    pub const WORDS: [(&str, Printed); 5] = [
-        ("lagrange", Printed::Lagrange),
-        ("hamilton", Printed::Hamilton),
-        ("kane", Printed::Kane),
-        ("routh", Printed::Routh),
-        ("structure", Printed::Structure),
+    pub const WORDS: [(&str, EquationsOption); 5] = [
+        ("lagrange", EquationsOption::Lagrange),
+        ("hamilton", EquationsOption::Hamilton),
+        ("kane", EquationsOption::Kane),
+        ("routh", EquationsOption::Routh),
+        ("structure", EquationsOption::Structure),
     ];
 }
 
 /// Compiler passes skipped by `skip_passes = [word, …]`. Skipping affects the cost of the generated
 /// functions, but not their results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Skipped {
+pub struct SkippedPasses {
     /// Whether the pass that moves link frames is skipped, so that the frames remain as described.
     pub frames: bool,
     /// Whether the pass that regroups mass properties is skipped, so that they remain with their links.
@@ -48,28 +48,28 @@ macro_rules! words {
     ($($(#[$doc:meta])* $word:ident: $variant:ident,)+) => {
         /// Option of `#[mechanism(…)]` that requests additional functions.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Word {
+        pub enum RequestOption {
             $($(#[$doc])* $variant,)+
         }
 
-        impl Word {
+        impl RequestOption {
             /// All options of `#[mechanism]` that request functions.
-            pub const ALL: [Word; [$(stringify!($word)),+].len()] = [$(Word::$variant),+];
+            pub const ALL: [RequestOption; [$(stringify!($word)),+].len()] = [$(RequestOption::$variant),+];
 
             /// Returns the trait of the runtime that reports a missing option.
             pub const fn trait_for_missing_option(self) -> &'static str {
                 match self {
-                    $(Word::$variant => concat!("AsksFor", stringify!($variant)),)+
+                    $(RequestOption::$variant => concat!("AsksFor", stringify!($variant)),)+
                 }
             }
         }
 
         /// Names of the options that request functions, as written in `#[mechanism(…)]`.
-        pub(super) const REQUESTS: [&str; Word::ALL.len()] = [$(stringify!($word)),+];
+        pub(super) const REQUESTS: [&str; RequestOption::ALL.len()] = [$(stringify!($word)),+];
 
         /// Functions to generate in addition to the functions of every mechanism.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-        pub struct Requests {
+        pub struct RequestedFunctions {
             $($(#[$doc])* pub $word: bool,)+
             /// Whether values of an imported robot file become parameters of the mechanism.
             pub file_parameters: bool,
@@ -80,24 +80,27 @@ macro_rules! words {
             /// Whether results have the same bits on every machine, and in C.
             pub reproducible: bool,
             /// Compiler passes over the model that are skipped.
-            pub skipped: Skipped,
+            pub skipped: SkippedPasses,
             /// Equations of motion that are printed in the documentation.
-            pub equations: Printed,
+            pub equations: EquationsOption,
         }
 
-        impl Requests {
+        impl RequestedFunctions {
             /// Returns whether the option that requests certain functions is set.
-            pub fn has_option(&self, word: Word) -> bool {
+            pub fn has_option(&self, word: RequestOption) -> bool {
                 match word {
-                    $(Word::$variant => self.$word,)+
+                    $(RequestOption::$variant => self.$word,)+
                 }
             }
 
             /// Returns the requests of the given options; second derivatives imply first derivatives.
-            pub(super) fn from_options(given: impl Fn(&str) -> bool) -> Requests {
-                let asked = Requests { $($word: given(stringify!($word)),)+ ..Requests::default() };
+            pub(super) fn from_options(given: impl Fn(&str) -> bool) -> RequestedFunctions {
+                let asked = RequestedFunctions {
+                    $($word: given(stringify!($word)),)+
+                    ..RequestedFunctions::default()
+                };
                 let further = asked.second_derivatives || asked.momentum_derivatives;
-                Requests { derivatives: asked.derivatives || further, ..asked }
+                RequestedFunctions { derivatives: asked.derivatives || further, ..asked }
             }
         }
     };

@@ -3,7 +3,7 @@
 //! for the same cause.
 
 use super::{element, guard};
-use crate::diag::{Diagnostics, syn_error};
+use crate::diag::{Diagnostics, syn_error_with_help};
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 use syn::ext::IdentExt;
@@ -16,7 +16,7 @@ pub fn insert_missing_commas(item: &TokenStream) -> Option<(TokenStream, syn::Er
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };
     if body.delimiter() != Delimiter::Brace
-        || !guard::check_item_size(item, &mut Diagnostics::discarded_diagnostics())
+        || !guard::report_oversized_item(item, &mut Diagnostics::discarded_diagnostics())
     {
         return None;
     }
@@ -42,7 +42,7 @@ fn parse_fields(input: ParseStream<'_>) -> syn::Result<(Vec<TokenStream>, Option
         let written = format!("{name}: {}", kind.to_token_stream()).replace(" :: ", "::");
         if let Some(place) = place {
             let help = format!("a field is a name and its type: write `{written},`");
-            first.get_or_insert_with(|| syn_error(place, "expected `:`", &help));
+            first.get_or_insert_with(|| syn_error_with_help(place, "expected `:`", &help));
         }
         fields.push(quote!(#(#attributes)* #visibility #name #colon #kind));
         let (span, help) = if input.is_empty() {
@@ -62,7 +62,7 @@ fn parse_fields(input: ParseStream<'_>) -> syn::Result<(Vec<TokenStream>, Option
         } else {
             return Err(input.error("expected `,`"));
         };
-        first.get_or_insert_with(|| syn_error(span, "expected `,`", &help));
+        first.get_or_insert_with(|| syn_error_with_help(span, "expected `,`", &help));
     }
     Ok((fields, first))
 }
@@ -84,7 +84,7 @@ fn parse_colon(input: ParseStream<'_>) -> syn::Result<(Token![:], Option<Span>)>
 /// element.
 fn swapped_type_and_name(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
     let other: Ident = syn::parse2(kind.to_token_stream()).ok()?;
-    let is_element_type = |word: &Ident| element::is_element(&word.to_string());
-    (is_element_type(name) && !is_element_type(&other))
+    let is_language_element_type = |word: &Ident| element::is_element(&word.to_string());
+    (is_language_element_type(name) && !is_language_element_type(&other))
         .then(|| (Type::Verbatim(name.to_token_stream()), other))
 }

@@ -2,7 +2,7 @@
 
 use super::ExprKind;
 use super::arguments::Arguments;
-use super::request::Skipped;
+use super::request::SkippedPasses;
 use crate::diag::Diagnostics;
 
 /// Name of the option that lists passes to skip.
@@ -12,9 +12,9 @@ const KEY: &str = "skip_passes";
 const PASSES: [&str; 4] = ["frames", "regroup", "parallel", "limbs"];
 
 /// Takes the option `skip_passes` from the arguments of the attribute.
-pub fn read_skipped(arguments: &mut Arguments, cx: &mut Diagnostics) -> Skipped {
-    let mut skipped = Skipped::default();
-    let Some(e) = arguments.take_expr(KEY, cx) else { return skipped };
+pub fn read_skipped_passes(arguments: &mut Arguments, cx: &mut Diagnostics) -> SkippedPasses {
+    let mut skipped = SkippedPasses::default();
+    let Some(e) = arguments.take_expression_of_key(KEY, cx) else { return skipped };
     let ExprKind::Array(items) = e.kind else {
         cx.report_error(e.place, format!("expected a list of passes for `{KEY}`"))
             .add_help(format!("write `{KEY} = [{}]`, or some of these", PASSES.join(", ")));

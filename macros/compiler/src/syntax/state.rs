@@ -1,7 +1,7 @@
 //! Fields that are states of first order: parameters that change.
 
 use super::mechanism::Shell;
-use super::parameter::span_of;
+use super::parameter::span_of_type;
 use super::{Definition, Description, Name, RATE_OF_STATE, Rank, ScalarType, element};
 use crate::diag::Diagnostics;
 use proc_macro2::Span;
@@ -18,18 +18,22 @@ pub fn read_state(
     cx: &mut Diagnostics,
 ) {
     if let Some(conditional) = field.attrs.iter().find(|a| element::is_conditional(a)) {
-        cx.report_error(span_of_path(conditional), "a state cannot be conditional")
+        cx.report_error(span_of_attribute_path(conditional), "a state cannot be conditional")
             .add_help(element::CONDITION_HELP);
         return;
     }
-    let rate = element::read_rate(name, &kind, &field.attrs, cx);
+    let rate = element::read_state_rate(name, &kind, &field.attrs, cx);
     let ident = field.ident.clone();
     if let Some(ident) =
         ident.filter(|ident| !shell.parameters.iter().any(|p| p.ident.as_ref() == Some(ident)))
     {
         shell.elements.push((ident, kind));
-        let attrs =
-            field.attrs.iter().filter(|a| !element::is_one_of(a, &element::ATTRIBUTES)).cloned().collect();
+        let attrs = field
+            .attrs
+            .iter()
+            .filter(|a| !element::is_attribute_among(a, &element::ATTRIBUTES))
+            .cloned()
+            .collect();
         shell.parameters.push(Field { attrs, ..field });
     }
     description.states.push((name.clone(), description.parameters.len()));
@@ -41,7 +45,7 @@ pub fn read_state(
     }
 }
 
-fn span_of_path(attribute: &syn::Attribute) -> Span {
+fn span_of_attribute_path(attribute: &syn::Attribute) -> Span {
     attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span())
 }
 
@@ -52,7 +56,7 @@ pub fn set_state_types(description: &Description, shell: &mut Shell) {
         let text = ident.to_string();
         let is_state = description.states.iter().any(|(name, _)| name.text == text.trim_start_matches("r#"));
         if is_state {
-            let place = span_of(&field.ty).span;
+            let place = span_of_type(&field.ty).span;
             let scalar = match &description.scalar {
                 ScalarType::F64 => "f64",
                 ScalarType::F32 => "f32",

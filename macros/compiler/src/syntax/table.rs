@@ -1,7 +1,7 @@
 //! Parsing of fields that are interpolation tables.
 
 use super::mechanism::Shell;
-use super::parameter::{check_parameter_attributes, span_of};
+use super::parameter::{check_parameter_attributes, span_of_type};
 use super::{Description, Name, Table, element};
 use crate::diag::Diagnostics;
 use syn::spanned::Spanned;
@@ -12,12 +12,12 @@ const MAX_TABLES: usize = 256;
 
 /// Returns the number of variables of a table, the only argument of its type; `Some(None)` if it is missing.
 /// `None` for a type that is not a table.
-pub fn table_variables(ty: &Type) -> Option<Option<usize>> {
+pub fn table_variable_count(ty: &Type) -> Option<Option<usize>> {
     let path = match ty {
         Type::Path(path) => path,
         // A fragment substituted by a macro.
-        Type::Group(group) => return table_variables(&group.elem),
-        Type::Paren(group) => return table_variables(&group.elem),
+        Type::Group(group) => return table_variable_count(&group.elem),
+        Type::Paren(group) => return table_variable_count(&group.elem),
         _ => return None,
     };
     let last = path.path.segments.last().filter(|last| last.ident == "Table")?;
@@ -42,26 +42,29 @@ pub fn read_table(
     cx: &mut Diagnostics,
 ) {
     check_parameter_attributes(name, &field.attrs, cx);
-    for unit in field.attrs.iter().filter(|a| element::is_one_of(a, &["unit"])) {
+    for unit in field.attrs.iter().filter(|a| element::is_attribute_among(a, &["unit"])) {
         cx.report_error(unit.path().span(), "a table has no `#[unit]`")
             .add_help("the units of its values and axes are inferred from its calls");
     }
-    field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
+    field.attrs.retain(|a| !element::is_attribute_among(a, &element::ATTRIBUTES));
     match variables {
         Some(variables @ 1..=3) if description.tables.len() < MAX_TABLES => {
             description.tables.push(Table { name: name.clone(), variables });
         }
         Some(1..=3) => {
             let maximum = MAX_TABLES;
-            cx.report_error(span_of(&field.ty), format!("a mechanism has at most {maximum} tables"))
+            cx.report_error(span_of_type(&field.ty), format!("a mechanism has at most {maximum} tables"))
                 .add_help("remove some");
         }
         Some(other) => {
-            cx.report_error(span_of(&field.ty), format!("a table has one to three variables, found {other}"))
-                .add_help("write `Table<1>`, `Table<2>` or `Table<3>`");
+            cx.report_error(
+                span_of_type(&field.ty),
+                format!("a table has one to three variables, found {other}"),
+            )
+            .add_help("write `Table<1>`, `Table<2>` or `Table<3>`");
         }
         None => {
-            cx.report_error(span_of(&field.ty), "a table needs its number of variables")
+            cx.report_error(span_of_type(&field.ty), "a table needs its number of variables")
                 .add_help("write `Table<1>`, `Table<2>` or `Table<3>`");
         }
     }

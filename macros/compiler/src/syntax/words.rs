@@ -12,7 +12,7 @@ pub use tables::*;
 /// Returns the synonyms of an element's arguments with their meanings; `kind` is the type name of the
 /// element.
 fn argument_synonyms(kind: &str) -> Words {
-    match ElementKind::of_name(kind) {
+    match ElementKind::find_by_name(kind) {
         Some(element) => element.argument_synonyms(),
         None if kind == ATTRIBUTE => OPTIONS,
         None => &[],
@@ -29,12 +29,12 @@ fn kind_in_phrase(whose: &str) -> &str {
 
 /// Returns an example of an element's declaration; `whose` is its type, with or without an article.
 pub fn example_declaration(whose: &str) -> &'static str {
-    ElementKind::of_name(kind_in_phrase(whose))
+    ElementKind::find_by_name(kind_in_phrase(whose))
         .map_or("#[mechanism(gravity = -9.81 * y)]", ElementKind::declaration_example)
 }
 
 /// List of words that users may write by mistake, with their meanings in the language.
-type WordEntries<'a> = &'a [(&'static str, &'static str)];
+type MistakenWords<'a> = &'a [(&'static str, &'static str)];
 
 /// Returns the names that other tools use for functions, with their meanings in the language.
 pub fn function_synonyms() -> Vec<(&'static str, &'static str)> {
@@ -58,7 +58,7 @@ fn normalise_word(word: &str) -> String {
 
 /// Returns the meaning of a word. A single-word meaning must be among the `known` words, unless these are
 /// empty.
-pub fn meaning_of_word(words: WordEntries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
+pub fn meaning_of_word(words: MistakenWords<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
     let key = normalise_word(word);
     let is_applicable_meaning =
         |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
@@ -69,12 +69,17 @@ pub fn meaning_of_word(words: WordEntries<'_>, word: &str, known: &[&str]) -> Op
 }
 
 /// Whether a word is an option of `#[mechanism]` without a value.
-pub fn is_request_option(word: &str) -> bool {
+pub fn is_valueless_option(word: &str) -> bool {
     super::request::REQUESTS.contains(&word)
 }
 
 /// Adds the meaning of an unknown word as help to an error message. Returns whether the meaning was found.
-pub fn explain_word(diagnostic: &mut Diagnostic, words: WordEntries<'_>, word: &str, known: &[&str]) -> bool {
+pub fn add_word_meaning_as_help(
+    diagnostic: &mut Diagnostic,
+    words: MistakenWords<'_>,
+    word: &str,
+    known: &[&str],
+) -> bool {
     match meaning_of_word(words, word, known) {
         Some(meaning) if meaning.contains(' ') => diagnostic.add_help(meaning),
         Some(meaning) => diagnostic.add_help(format!("did you mean `{meaning}`?")),
@@ -84,15 +89,20 @@ pub fn explain_word(diagnostic: &mut Diagnostic, words: WordEntries<'_>, word: &
 }
 
 /// Adds the meaning of a word to a message, or the nearest known word, or the list of known words.
-pub fn suggest_meaning(diagnostic: &mut Diagnostic, words: WordEntries<'_>, word: &str, known: &[&str]) {
-    if !explain_word(diagnostic, words, word, known) {
+pub fn suggest_meaning_or_known_word(
+    diagnostic: &mut Diagnostic,
+    words: MistakenWords<'_>,
+    word: &str,
+    known: &[&str],
+) {
+    if !add_word_meaning_as_help(diagnostic, words, word, known) {
         diagnostic.suggest_name(word, known.iter().copied());
     }
 }
 
 /// Adds the element meant by an unknown field type, one of the `known` types, as help to a message. Returns
 /// false if none is found.
-pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) -> bool {
+pub fn suggest_meant_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) -> bool {
     let key = normalise_word(word);
     let bare = key.strip_suffix("joint").or(key.strip_suffix("element")).unwrap_or(&key);
     if let Some(same) = known.iter().find(|name| name.eq_ignore_ascii_case(bare)) {
@@ -100,12 +110,12 @@ pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) 
         return true;
     }
     let words: Vec<_> = ElementKind::element_synonyms().chain(ELEMENTS.iter().copied()).collect();
-    explain_word(diagnostic, &words, if bare.is_empty() { "joint" } else { bare }, &[])
+    add_word_meaning_as_help(diagnostic, &words, if bare.is_empty() { "joint" } else { bare }, &[])
 }
 
 /// Returns the help for an argument that an element does not have; `whose` names the element with its
 /// article, such as `a Pin`.
-pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
+pub fn help_for_unknown_argument(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
     let meaning = meaning_of_word(argument_synonyms(kind_in_phrase(whose)), word, known)?;
     Some(match meaning.contains(' ') {
         true => meaning.replace("NAME", owner),
@@ -114,17 +124,17 @@ pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Op
 }
 
 /// Returns the known name that equals a word up to Greek letters and case.
-pub fn known_spelling<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn known_name_ignoring_case<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let mut letters = word.to_string();
     for (letter, name) in GREEK {
         letters = letters.replace(letter, name);
     }
-    let has_same_key = |a: &str, b: &str| normalise_word(a) == normalise_word(b);
-    known.iter().find(|name| has_same_key(&letters, name)).copied()
+    let has_same_normalised_spelling = |a: &str, b: &str| normalise_word(a) == normalise_word(b);
+    known.iter().find(|name| has_same_normalised_spelling(&letters, name)).copied()
 }
 
 /// Returns the coordinate of a name that looks like its rate: `hinge_dot`, `hinged`, `dhinge`.
-pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
+pub fn coordinate_of_rate_name<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["dot", "dt", "d", "rate", "vel", "velocity", "speed", "p"];
     let ends_with_rate_suffix = |stem: &str| {
         ends.iter().any(|end| word.strip_prefix(stem).map(normalise_word).as_deref() == Some(end))
@@ -140,7 +150,7 @@ pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
 }
 
 /// Returns the coordinate of a name that looks like its acceleration: `hinge_ddot`, `ddhinge`.
-pub fn second_rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
+pub fn coordinate_of_acceleration_name<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["ddot", "dotdot", "dd", "acc", "accel", "acceleration", "pp"];
     let ends_with_rate_suffix = |stem: &str| {
         ends.iter().any(|end| word.strip_prefix(stem).map(normalise_word).as_deref() == Some(end))
@@ -163,13 +173,13 @@ pub fn is_constant(word: &str) -> bool {
 /// Adds the likely meaning of an unknown name as help to an error message, such as the most similar of the
 /// `known` names.
 pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
-    if let Some(coordinate) = rate_of(name, coordinates) {
+    if let Some(coordinate) = coordinate_of_rate_name(name, coordinates) {
         diagnostic.add_help(format!("write `rate({coordinate})` for its rate"));
-    } else if let Some(coordinate) = second_rate_of(name, coordinates) {
+    } else if let Some(coordinate) = coordinate_of_acceleration_name(name, coordinates) {
         diagnostic.add_help(format!("write `rate(rate({coordinate}))` for its acceleration"));
-    } else if let Some(same) = known_spelling(name, known) {
+    } else if let Some(same) = known_name_ignoring_case(name, known) {
         diagnostic.add_help(format!("did you mean `{same}`?"));
-    } else if explain_word(diagnostic, NAMES, name, &[]) {
+    } else if add_word_meaning_as_help(diagnostic, NAMES, name, &[]) {
     } else if nearest_candidate(name, known).is_some() {
         diagnostic.suggest_name(name, known.iter().copied());
     } else if is_constant(name) {
@@ -180,7 +190,7 @@ pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coo
         ));
     } else {
         diagnostic.suggest_name(name, known.iter().copied());
-        let or = if diagnostic.is_bare() { "" } else { "or " };
+        let or = if diagnostic.has_no_help() { "" } else { "or " };
         diagnostic.add_help(format!(
             "{or}declare it: `{name}: f64` is a parameter, `{name}: Coordinate` a coordinate"
         ));
@@ -227,7 +237,7 @@ fn expression_text(e: &Expr) -> String {
             let is_sum_expression =
                 |e: &Expr| matches!(e.kind, ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..));
             let product = matches!(op, BinaryOp::Mul | BinaryOp::Div);
-            let spell_operand = |e: &Expr, together: bool| match &e.kind {
+            let parenthesised_operand_text = |e: &Expr, together: bool| match &e.kind {
                 ExprKind::Binary(..) if together || (product && is_sum_expression(e)) => {
                     format!("({})", expression_text(e))
                 }
@@ -240,7 +250,11 @@ fn expression_text(e: &Expr) -> String {
                 BinaryOp::Div => "/",
             };
             let together = matches!(op, BinaryOp::Sub | BinaryOp::Div);
-            format!("{} {sign} {}", spell_operand(left, false), spell_operand(right, together))
+            format!(
+                "{} {sign} {}",
+                parenthesised_operand_text(left, false),
+                parenthesised_operand_text(right, together)
+            )
         }
         ExprKind::Tuple(items) => format!("({})", spell_list(items)),
         ExprKind::Array(items) => format!("[{}]", spell_list(items)),
@@ -267,7 +281,7 @@ mod tests {
             RATES,
             NUMBER_METHODS,
         ];
-        let elements = ElementKind::element_names().filter_map(ElementKind::of_name);
+        let elements = ElementKind::element_names().filter_map(ElementKind::find_by_name);
         let of_arguments = elements.flat_map(|element| element.argument_synonyms().iter().copied());
         let rows = [function_synonyms(), solid_synonyms(), rotation_synonyms()].concat();
         for (said, meaning) in all
@@ -285,13 +299,13 @@ mod tests {
 
     #[test]
     fn velocity_names_are_found_by_coordinate() {
-        assert_eq!(rate_of("hinge_dot", &["hinge"]), Some("hinge"));
-        assert_eq!(rate_of("dhinge", &["hinge"]), Some("hinge"));
-        assert_eq!(rate_of("theta1dot", &["theta", "theta1"]), Some("theta1"));
-        assert_eq!(rate_of("hinge2", &["hinge"]), None);
-        assert_eq!(second_rate_of("hinge_ddot", &["hinge"]), Some("hinge"));
-        assert_eq!(second_rate_of("ddtheta1", &["theta", "theta1"]), Some("theta1"));
-        assert_eq!(second_rate_of("hinge_dot", &["hinge"]), None);
-        assert_eq!(known_spelling("θ1", &["theta_1"]), Some("theta_1"));
+        assert_eq!(coordinate_of_rate_name("hinge_dot", &["hinge"]), Some("hinge"));
+        assert_eq!(coordinate_of_rate_name("dhinge", &["hinge"]), Some("hinge"));
+        assert_eq!(coordinate_of_rate_name("theta1dot", &["theta", "theta1"]), Some("theta1"));
+        assert_eq!(coordinate_of_rate_name("hinge2", &["hinge"]), None);
+        assert_eq!(coordinate_of_acceleration_name("hinge_ddot", &["hinge"]), Some("hinge"));
+        assert_eq!(coordinate_of_acceleration_name("ddtheta1", &["theta", "theta1"]), Some("theta1"));
+        assert_eq!(coordinate_of_acceleration_name("hinge_dot", &["hinge"]), None);
+        assert_eq!(known_name_ignoring_case("θ1", &["theta_1"]), Some("theta_1"));
     }
 }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// Set of isomorphic limbs that are evaluated in SIMD lanes.
 #[derive(Clone, Debug)]
-pub struct Group {
+pub struct LimbGroup {
     /// Number of identical limbs in the group.
     pub limbs: usize,
     /// Corresponding links, one per lane, in the order of the first limb. The number of lanes is a power of
@@ -25,7 +25,7 @@ struct Shapes {
 }
 
 /// Finds the groups of isomorphic limbs. No link is in two groups.
-pub fn find_limb_groups(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<Group> {
+pub fn find_limb_groups(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<LimbGroup> {
     let shapes = Shapes::new(model, joints);
     let mut groups = Vec::new();
     let mut taken = vec![false; joints.len()];
@@ -52,7 +52,7 @@ impl Shapes {
         for k in (0..joints.len()).rev() {
             let mut below: Vec<usize> = children[k].iter().map(|c| shape[*c]).collect();
             below.sort_unstable();
-            let Some(kind) = model.links[k].motion.kind_in_limbs().filter(|_| !below.contains(&0)) else {
+            let Some(kind) = model.links[k].motion.limb_motion_kind().filter(|_| !below.contains(&0)) else {
                 continue;
             };
             let next = known.len() + 1;
@@ -66,7 +66,7 @@ impl Shapes {
         &self,
         joints: &[Joint<'_>],
         children: &[usize],
-        groups: &mut Vec<Group>,
+        groups: &mut Vec<LimbGroup>,
         taken: &mut [bool],
     ) {
         let mut left: Vec<usize> = children.iter().copied().filter(|k| self.shape[*k] != 0).collect();
@@ -87,7 +87,7 @@ impl Shapes {
             roots.resize(limbs.next_power_of_two(), roots[limbs - 1]);
             self.add_corresponding_links(roots, &mut rows);
             rows.iter().flatten().for_each(|k| taken[*k] = true);
-            groups.push(Group { limbs, rows });
+            groups.push(LimbGroup { limbs, rows });
         }
     }
 
@@ -118,10 +118,10 @@ fn is_uncoupled(joints: &[Joint<'_>], root: usize) -> bool {
     for k in root + 1..joints.len() {
         inside[k] = joints[k].parent.is_some_and(|p| inside[p.0]);
     }
-    let velocities_by_location = |is: bool| {
+    let velocities_inside_or_outside = |is: bool| {
         let some = joints.iter().zip(&inside).filter(move |(_, inside)| **inside == is);
         some.flat_map(|(joint, _)| joint.dofs.iter().map(|d| d.index))
     };
-    let own: Vec<usize> = velocities_by_location(true).collect();
-    !velocities_by_location(false).any(|index| own.contains(&index))
+    let own: Vec<usize> = velocities_inside_or_outside(true).collect();
+    !velocities_inside_or_outside(false).any(|index| own.contains(&index))
 }

@@ -2,24 +2,24 @@
 //! has one limb for each group; its lanes differ in constants and inputs. The algorithms process it like any
 //! other mechanism and sum over the lanes where a limb passes a force or an inertia to its parent link.
 
-use super::find::Group;
-use super::merge::Merge;
-use super::velocities::{Location, Velocity, pair_velocities};
+use super::find::LimbGroup;
+use super::merge::LaneMerger;
+use super::velocities::{LaneVelocity, VectorisedVelocityPosition, pair_velocities};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanism::{InV, Inertia, Link, LinkId, Model, Quantity};
 use std::collections::BTreeMap;
 
 /// Vectorised mechanism with one limb for each group of identical limbs.
-pub struct Limbs<'g> {
+pub struct VectorisedMechanism<'g> {
     /// Vectorised mechanism without passive forces. Its velocity vector `v` has one entry per velocity of the
     /// vectorised mechanism.
     pub model: Model<'g>,
     /// Joints of the vectorised mechanism, whose identical limbs are SIMD lanes.
     pub joints: Vec<Joint<'g>>,
-    velocities: Vec<Velocity>,
+    velocities: Vec<LaneVelocity>,
     /// Location of each velocity of the whole mechanism among those of the vectorised mechanism.
-    places: Vec<Location>,
+    places: Vec<VectorisedVelocityPosition>,
     /// Passive force for each velocity of the vectorised mechanism, in which identical limbs are SIMD lanes.
     passive_forces: Vec<Expr<'g>>,
 }
@@ -45,25 +45,25 @@ pub struct LimbRows {
     pub rows: Vec<Vec<usize>>,
 }
 
-impl<'g> Limbs<'g> {
+impl<'g> VectorisedMechanism<'g> {
     /// Returns the mechanism with its identical limbs as SIMD lanes. `passive_forces` returns one passive
     /// force per velocity of the whole mechanism. Returns `None` if there are no groups, or if limbs of one
     /// shape cannot be merged.
     pub fn new(
         model: &Model<'g>,
         joints: &[Joint<'g>],
-        groups: &[Group],
+        groups: &[LimbGroup],
         passive_forces: impl FnOnce() -> Vec<Expr<'g>>,
-    ) -> Option<Limbs<'g>> {
+    ) -> Option<VectorisedMechanism<'g>> {
         if groups.is_empty() || !model.inertances.is_empty() || !model.acceleration_forces.is_empty() {
             return None;
         }
         let rows = corresponding_links(joints.len(), groups);
-        let merge = &mut Merge::new(model.graph);
+        let merge = &mut LaneMerger::new(model.graph);
         pair_coordinates(model, &rows, merge);
         let (velocities, places) = pair_velocities(model, joints, &rows)?;
-        let mut limbs = Limbs {
-            model: without_passive_forces(model),
+        let mut limbs = VectorisedMechanism {
+            model: model_without_passive_forces(model),
             joints: Vec::new(),
             velocities,
             places,
@@ -84,12 +84,12 @@ impl<'g> Limbs<'g> {
             let link = limbs.merge_link_lanes(&links, parent, merge)?;
             limbs.model.links.push(link);
         }
-        limbs.passive_forces = limbs.lane_groups(&passive_forces(), merge)?;
+        limbs.passive_forces = limbs.merge_velocity_expressions(&passive_forces(), merge)?;
         limbs.model.velocities.truncate(limbs.velocities.len());
         Some(limbs)
     }
 
-    fn merge_joint_lanes(&self, lanes: &[&Joint<'g>], merge: &mut Merge<'g>) -> Option<Joint<'g>> {
+    fn merge_joint_lanes(&self, lanes: &[&Joint<'g>], merge: &mut LaneMerger<'g>) -> Option<Joint<'g>> {
         let first = *lanes.first()?;
         let mut dofs = Vec::new();
         for (d, dof) in first.dofs.iter().enumerate() {
@@ -114,7 +114,7 @@ impl<'g> Limbs<'g> {
         let translations: Vec<Vec3<'g>> = lanes.iter().map(|j| j.translation).collect();
         Some(Joint {
             parent: None,
-            rotation: Rotation::side_by_side(&rotations, &mut |e| merge.merge_lanes(e))?,
+            rotation: Rotation::merge_into_lanes(&rotations, &mut |e| merge.merge_lanes(e))?,
             translation: merged_vector(&translations, merge)?,
             dofs,
             drift: None,
@@ -126,7 +126,7 @@ impl<'g> Limbs<'g> {
         &self,
         lanes: &[&Link<'g>],
         parent: Option<LinkId>,
-        merge: &mut Merge<'g>,
+        merge: &mut LaneMerger<'g>,
     ) -> Option<Link<'g>> {
         let first = *lanes.first()?;
         let inertias: Vec<Inertia<'g>> = lanes.iter().map(|l| l.inertia).collect();
@@ -142,22 +142,26 @@ impl<'g> Limbs<'g> {
 
     /// Merges one expression per velocity of the whole mechanism into one expression per velocity of the
     /// vectorised mechanism.
-    fn lane_groups(&self, whole: &[Expr<'g>], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
+    fn merge_velocity_expressions(
+        &self,
+        whole: &[Expr<'g>],
+        merge: &mut LaneMerger<'g>,
+    ) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
-        let gather_lane_values = |velocity: &Velocity| {
+        let merge_signed_lane_values = |velocity: &LaneVelocity| {
             let lanes: Vec<Expr<'g>> = velocity.lanes.iter().map(|k| whole[*k]).collect();
             Some(g.lane_constants(&velocity.signs) * merge.merge_lanes(&lanes)?)
         };
-        self.velocities.iter().map(gather_lane_values).collect()
+        self.velocities.iter().map(merge_signed_lane_values).collect()
     }
 
     /// Returns the symbols of a quantity, such as the velocities, one entry per velocity of the vectorised
     /// mechanism.
     pub fn symbols_by_velocity(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let gather_lane_symbols = |velocity: &Velocity| {
+        let gather_lane_symbols = |velocity: &LaneVelocity| {
             let symbols: Vec<_> = velocity.lanes.iter().map(|k| of(*k).symbol()).collect();
-            g.lane_constants(&velocity.signs) * g.lane_symbols(&symbols)
+            g.lane_constants(&velocity.signs) * g.lane_input_of_symbols(&symbols)
         };
         self.velocities.iter().map(gather_lane_symbols).collect()
     }
@@ -228,29 +232,29 @@ impl<'g> Limbs<'g> {
     /// Merges corresponding matrix rows of the whole mechanism, one per SIMD lane, into one row of the
     /// vectorised mechanism. The signs of the lanes are not applied. Returns `None` if the rows have
     /// different structures.
-    pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
-        let merged_entry = |velocity: &Velocity| {
+    pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut LaneMerger<'g>) -> Option<Vec<Expr<'g>>> {
+        let merged_limb_entry = |velocity: &LaneVelocity| {
             let lane_entry =
                 |(lane, row): (usize, &&[Expr<'g>])| self.velocity_of_lane(velocity, lane).map(|k| row[k]);
             let lanes =
                 rows.iter().enumerate().map(|of_lane| lane_entry(of_lane).unwrap_or(self.model.graph.zero()));
             merge.merge_lanes(&lanes.collect::<Vec<_>>())
         };
-        self.velocities.iter().map(merged_entry).collect()
+        self.velocities.iter().map(merged_limb_entry).collect()
     }
 
     /// Merges square matrices of the whole mechanism, one per SIMD lane, into one of the vectorised
     /// mechanism, like [`merged_rows`](Self::merged_rows).
-    pub fn merged_squares(
+    pub fn merged_square_matrices(
         &self,
         lanes: &[Vec<Vec<Expr<'g>>>],
-        merge: &mut Merge<'g>,
+        merge: &mut LaneMerger<'g>,
     ) -> Option<Vec<Vec<Expr<'g>>>> {
-        let merged_row = |velocity: &Velocity| {
-            let lane_row = |(lane, matrix): (usize, &'_ Vec<Vec<Expr<'g>>>)| {
+        let merged_row = |velocity: &LaneVelocity| {
+            let matrix_row_of_lane = |(lane, matrix): (usize, &'_ Vec<Vec<Expr<'g>>>)| {
                 self.velocity_of_lane(velocity, lane).map(|k| matrix[k].clone())
             };
-            let rows: Option<Vec<Vec<Expr<'g>>>> = lanes.iter().enumerate().map(lane_row).collect();
+            let rows: Option<Vec<Vec<Expr<'g>>>> = lanes.iter().enumerate().map(matrix_row_of_lane).collect();
             match rows {
                 Some(rows) => self.merged_rows(&rows.iter().map(Vec::as_slice).collect::<Vec<_>>(), merge),
                 None => Some(vec![self.model.graph.zero(); self.velocities.len()]),
@@ -261,7 +265,7 @@ impl<'g> Limbs<'g> {
 
     /// Returns the velocity of the whole mechanism that a velocity is in a lane; the same in all lanes
     /// outside the limbs.
-    fn velocity_of_lane(&self, velocity: &Velocity, lane: usize) -> Option<usize> {
+    fn velocity_of_lane(&self, velocity: &LaneVelocity, lane: usize) -> Option<usize> {
         let is_alone = velocity.lanes.len() == 1;
         velocity.lanes.get(if is_alone { 0 } else { lane }).copied()
     }
@@ -274,10 +278,10 @@ impl<'g> Limbs<'g> {
 
     /// Combines matrix rows of the whole mechanism, one for each limb of a group, as SIMD lanes of one row of
     /// the vectorised mechanism.
-    pub fn side_by_side(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
+    pub fn merge_into_lanes(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let merge = &mut Merge::new(g);
-        let entry_in_lanes = |velocity: &Velocity| {
+        let merge = &mut LaneMerger::new(g);
+        let entry_in_lanes = |velocity: &LaneVelocity| {
             // Velocities outside the limbs are common to all rows; those of other groups are absent.
             let lane_entry = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_of_lane(velocity, lane)
             {
@@ -293,13 +297,13 @@ impl<'g> Limbs<'g> {
 
     /// Returns an expression for each velocity of the whole mechanism. `of` receives the index of that
     /// velocity in the vectorised mechanism, and its lane.
-    pub fn scatter_from_lanes(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
+    pub fn scatter_lanes_to_velocities(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let scatter_to_location = |place: &Location| match place.lane {
+        let value_at_location = |place: &VectorisedVelocityPosition| match place.lane {
             Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * of(place.index, k)).lane(k),
             None => of(place.index, 0),
         };
-        self.places.iter().map(scatter_to_location).collect()
+        self.places.iter().map(value_at_location).collect()
     }
 
     /// Returns the passive forces, one entry per velocity of the vectorised mechanism.
@@ -311,26 +315,26 @@ impl<'g> Limbs<'g> {
     /// whole mechanism.
     pub fn scatter_to_velocities(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let scatter_to_location = |place: &Location| match place.lane {
+        let value_at_location = |place: &VectorisedVelocityPosition| match place.lane {
             Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k),
             None => values[place.index],
         };
-        self.places.iter().map(scatter_to_location).collect()
+        self.places.iter().map(value_at_location).collect()
     }
 
     /// Returns, for each velocity of the whole mechanism, whether it is outside the limbs and `marked` is
     /// true for it in the vectorised mechanism.
-    pub fn marked_outside_limbs(&self, marked: &[bool]) -> Vec<bool> {
+    pub fn marked_velocities_outside_limbs(&self, marked: &[bool]) -> Vec<bool> {
         self.places.iter().map(|place| place.lane.is_none() && marked[place.index]).collect()
     }
 
     /// Splits a matrix of the vectorised mechanism into the matrix of the whole mechanism, row by row.
-    pub fn scattered_matrix(&self, matrix: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+    pub fn whole_mechanism_matrix(&self, matrix: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let lane_signs = |index: usize| g.lane_constants(&self.velocities[index].signs);
         let mut whole = Vec::with_capacity(self.places.len() * self.places.len());
-        for &Location { index: i, lane: row } in &self.places {
-            for &Location { index: j, lane: column } in &self.places {
+        for &VectorisedVelocityPosition { index: i, lane: row } in &self.places {
+            for &VectorisedVelocityPosition { index: j, lane: column } in &self.places {
                 let entry = matrix[i][j];
                 whole.push(match (row, column) {
                     (None, None) => entry,
@@ -349,13 +353,13 @@ impl<'g> Limbs<'g> {
 pub fn join_lanes<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
     match lanes.split_at(lanes.len() / 2) {
         ([], _) => lanes[0],
-        (a, b) => join_lanes(a).join_with(a.len(), join_lanes(b)),
+        (a, b) => join_lanes(a).append_lanes(a.len(), join_lanes(b)),
     }
 }
 
 /// Returns for each link the corresponding links of its group, itself first; an empty list for links of later
 /// limbs.
-fn corresponding_links(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
+fn corresponding_links(links: usize, groups: &[LimbGroup]) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = (0..links).map(|k| vec![k]).collect();
     for row in groups.iter().flat_map(|group| &group.rows) {
         row.iter().for_each(|k| rows[*k].clear());
@@ -365,7 +369,7 @@ fn corresponding_links(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
 }
 
 /// Declares to the merger which entries of `q` correspond.
-fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_>) {
+fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut LaneMerger<'_>) {
     for row in rows.iter().filter(|row| row.len() > 1) {
         let configuration_indices = |k: &usize| model.links[*k].motion.configuration_range();
         for i in 0..configuration_indices(&row[0]).len() {
@@ -377,7 +381,7 @@ fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_
 }
 
 /// Returns a copy of the mechanism without passive forces.
-fn without_passive_forces<'g>(model: &Model<'g>) -> Model<'g> {
+fn model_without_passive_forces<'g>(model: &Model<'g>) -> Model<'g> {
     let mut model = model.clone();
     model.springs.clear();
     model.dashpots.clear();
@@ -389,7 +393,7 @@ fn without_passive_forces<'g>(model: &Model<'g>) -> Model<'g> {
     model
 }
 
-fn merged_vector<'g>(lanes: &[Vec3<'g>], merge: &mut Merge<'g>) -> Option<Vec3<'g>> {
+fn merged_vector<'g>(lanes: &[Vec3<'g>], merge: &mut LaneMerger<'g>) -> Option<Vec3<'g>> {
     let mut vector = *lanes.first()?;
     for k in 0..3 {
         vector.0[k] = merge.merge_lanes(&lanes.iter().map(|v| v[k]).collect::<Vec<_>>())?;
@@ -397,13 +401,13 @@ fn merged_vector<'g>(lanes: &[Vec3<'g>], merge: &mut Merge<'g>) -> Option<Vec3<'
     Some(vector)
 }
 
-fn merged_spatial<'g>(lanes: &[Spatial<'g>], merge: &mut Merge<'g>) -> Option<Spatial<'g>> {
+fn merged_spatial<'g>(lanes: &[Spatial<'g>], merge: &mut LaneMerger<'g>) -> Option<Spatial<'g>> {
     let linear: Vec<Vec3<'g>> = lanes.iter().map(|s| s.linear).collect();
     let angular: Vec<Vec3<'g>> = lanes.iter().map(|s| s.angular).collect();
     Some(Spatial { linear: merged_vector(&linear, merge)?, angular: merged_vector(&angular, merge)? })
 }
 
-fn merged_inertia<'g>(lanes: &[Inertia<'g>], merge: &mut Merge<'g>) -> Option<Inertia<'g>> {
+fn merged_inertia<'g>(lanes: &[Inertia<'g>], merge: &mut LaneMerger<'g>) -> Option<Inertia<'g>> {
     let mut inertia = *lanes.first()?;
     let mut each =
         |of: &dyn Fn(&Inertia<'g>) -> Expr<'g>| merge.merge_lanes(&lanes.iter().map(of).collect::<Vec<_>>());

@@ -18,7 +18,7 @@ const MAX_DEPTH: usize = 64;
 const STEPS: usize = 2_000_000;
 
 /// Merges corresponding expressions of identical limbs into SIMD lanes, and remembers the results.
-pub struct Merge<'g> {
+pub struct LaneMerger<'g> {
     graph: &'g Graph,
     known: BTreeMap<Vec<Id>, Option<Id>>,
     /// Results of merging expressions with signs; the flag is true for minus.
@@ -32,10 +32,10 @@ pub struct Merge<'g> {
     steps: usize,
 }
 
-impl<'g> Merge<'g> {
+impl<'g> LaneMerger<'g> {
     /// Creates a merger for the expressions of a graph.
-    pub fn new(graph: &'g Graph) -> Merge<'g> {
-        Merge {
+    pub fn new(graph: &'g Graph) -> LaneMerger<'g> {
+        LaneMerger {
             graph,
             known: BTreeMap::new(),
             signed: BTreeMap::new(),
@@ -55,12 +55,13 @@ impl<'g> Merge<'g> {
     /// filler if it has symbols of other lanes too, or may be infinite, since zero times infinity is not
     /// zero.
     fn lane_filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
-        let partners_of_symbol = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
-        let is_own_symbol = |s: &Symbol| partners_of_symbol(*s).is_none_or(|list| list.get(from) == Some(s));
-        if !symbols_in(&[e]).iter().all(is_own_symbol) || !is_always_finite(e) {
+        let lane_partners_of_symbol = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
+        let is_symbol_of_lane =
+            |s: &Symbol| lane_partners_of_symbol(*s).is_none_or(|list| list.get(from) == Some(s));
+        if !symbols_in(&[e]).iter().all(is_symbol_of_lane) || !is_always_finite(e) {
             return e;
         }
-        substitute_symbols(e, &|s| partners_of_symbol(s)?.get(to).map(|s| self.graph.symbol(*s)))
+        substitute_symbols(e, &|s| lane_partners_of_symbol(s)?.get(to).map(|s| self.graph.symbol(*s)))
     }
 
     /// Subtracts steps from the remaining work of merging; returns `None` when too few remain.
@@ -70,7 +71,7 @@ impl<'g> Merge<'g> {
     }
 
     /// Builds an expression at the next nesting depth; returns `None` if the maximum depth is exceeded.
-    fn build_nested_expression(
+    fn build_within_depth_limit(
         &mut self,
         make: impl FnOnce(&mut Self) -> Option<Expr<'g>>,
     ) -> Option<Expr<'g>> {
@@ -98,7 +99,7 @@ impl<'g> Merge<'g> {
             return known.map(|id| self.graph.expr(id));
         }
         self.spend_steps(ids.len())?;
-        let found = self.build_nested_expression(|merge| merge.merge_uncached_lanes(lanes));
+        let found = self.build_within_depth_limit(|merge| merge.merge_uncached_lanes(lanes));
         self.known.insert(ids, found.map(Expr::id));
         found
     }
@@ -124,7 +125,7 @@ impl<'g> Merge<'g> {
                     _ => None,
                 };
                 let symbols: Option<Vec<_>> = lanes.iter().map(symbol_of_expression).collect();
-                Some(self.graph.lane_symbols(&symbols?))
+                Some(self.graph.lane_input_of_symbols(&symbols?))
             }
             Node::Call(f, _) => {
                 let argument_of_call = |e: &Expr<'g>| match e.node() {
@@ -187,12 +188,12 @@ impl<'g> Merge<'g> {
             return known.map(|id| self.graph.expr(id));
         }
         self.spend_steps(key.len())?;
-        let found = self.build_nested_expression(|merge| merge.build_signed(lanes, signs));
+        let found = self.build_within_depth_limit(|merge| merge.merge_lanes_with_signs(lanes, signs));
         self.signed.insert(key, found.map(Expr::id));
         found
     }
 
-    fn build_signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
+    fn merge_lanes_with_signs(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
         let first = *lanes.first()?;
         let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| split_affine(*e)).collect();
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {

@@ -7,7 +7,7 @@ mod merge;
 mod paths;
 mod velocities;
 
-pub use find::{Group, find_limb_groups};
-pub use limbs::{LimbRows, Limbs, join_lanes};
-pub use merge::Merge;
-pub use paths::{LaneGroup, Paths, Propagated, Visitor};
+pub use find::{LimbGroup, find_limb_groups};
+pub use limbs::{LimbRows, VectorisedMechanism, join_lanes};
+pub use merge::LaneMerger;
+pub use paths::{LaneGroup, PathsToRoot, PropagatedQuantity, PropagationVisitor};

@@ -5,7 +5,7 @@ use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial};
 
 /// A quantity that a degree of freedom propagates to the root.
-pub trait Propagated<'g>: Sized {
+pub trait PropagatedQuantity<'g>: Sized {
     /// Combines the expressions of two propagated quantities entry by entry.
     fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self;
     /// Transforms the propagated quantity to the parent's origin and axes.
@@ -13,9 +13,9 @@ pub trait Propagated<'g>: Sized {
 }
 
 /// Algorithm that processes quantities while they are propagated from degrees of freedom to the root.
-pub trait Visitor<'g> {
+pub trait PropagationVisitor<'g> {
     /// Type of the quantity that is propagated from the links to the root.
-    type Item: Propagated<'g>;
+    type Item: PropagatedQuantity<'g>;
     /// Returns the quantity that a degree of freedom propagates, in the frame of its own link.
     fn start(&mut self, dof: usize) -> Self::Item;
     /// Processes a group of degrees of freedom that has been transformed to another link.
@@ -37,7 +37,7 @@ pub struct LaneGroup<T> {
 }
 
 /// Paths from the links of the degrees of freedom to the root, with the groups that are propagated together.
-pub struct Paths<'a, 'g> {
+pub struct PathsToRoot<'a, 'g> {
     joints: &'a [Joint<'g>],
     /// Number of identical limbs in the expressions of each link.
     widths: Vec<usize>,
@@ -47,17 +47,17 @@ pub struct Paths<'a, 'g> {
     groups: Vec<Vec<usize>>,
 }
 
-impl<'a, 'g> Paths<'a, 'g> {
+impl<'a, 'g> PathsToRoot<'a, 'g> {
     /// Returns the propagation paths of all degrees of freedom, in groups of at most `max_lanes` SIMD lanes;
     /// one lane disables grouping.
-    pub fn new(joints: &'a [Joint<'g>], max_lanes: usize) -> Paths<'a, 'g> {
+    pub fn new(joints: &'a [Joint<'g>], max_lanes: usize) -> PathsToRoot<'a, 'g> {
         let mut widths: Vec<usize> = Vec::with_capacity(joints.len());
         for joint in joints {
             let above = joint.parent.map_or(1, |p| widths[p.0]);
             widths.push(above.max(joint.limbs));
         }
         let links = joints.iter().enumerate().flat_map(|(k, joint)| joint.dofs.iter().map(move |_| k));
-        let mut paths = Paths { joints, widths, links: links.collect(), groups: Vec::new() };
+        let mut paths = PathsToRoot { joints, widths, links: links.collect(), groups: Vec::new() };
         paths.groups = match max_lanes {
             1 => (0..paths.links.len()).map(|dof| vec![dof]).collect(),
             _ => paths.lane_groups(max_lanes),
@@ -74,7 +74,7 @@ impl<'a, 'g> Paths<'a, 'g> {
     /// at most `max_lanes` SIMD lanes.
     fn lane_groups(&self, max_lanes: usize) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
-        for run in self.runs_between_branches().iter().filter(|run| !run.is_empty()) {
+        for run in self.dof_runs_between_branches().iter().filter(|run| !run.is_empty()) {
             let width = self.widths[self.links[run[0]]];
             let size = if width.is_power_of_two() { (max_lanes / width).max(1) } else { 1 };
             groups.extend(run.chunks(size).map(<[usize]>::to_vec));
@@ -83,7 +83,7 @@ impl<'a, 'g> Paths<'a, 'g> {
     }
 
     /// Returns runs of degrees of freedom from a leaf or a branch to the next branch, towards the root.
-    fn runs_between_branches(&self) -> Vec<Vec<usize>> {
+    fn dof_runs_between_branches(&self) -> Vec<Vec<usize>> {
         let mut children = vec![0; self.joints.len()];
         self.joints.iter().filter_map(|joint| joint.parent).for_each(|p| children[p.0] += 1);
         let mut runs: Vec<Vec<usize>> = Vec::new();
@@ -107,15 +107,19 @@ impl<'a, 'g> Paths<'a, 'g> {
     }
 
     /// Propagates the quantities of all degrees of freedom to the root.
-    pub fn propagate_to_root<V: Visitor<'g>>(&self, visitor: &mut V) {
+    pub fn propagate_to_root<V: PropagationVisitor<'g>>(&self, visitor: &mut V) {
         for group in &self.groups {
-            let lanes = self.gather_group(group, visitor);
-            self.transform_group(lanes, None, visitor);
+            let lanes = self.gather_group_quantities(group, visitor);
+            self.transform_group_to_ancestor(lanes, None, visitor);
         }
     }
 
     /// Returns the quantities of a group in the frame of the link of its last degree of freedom.
-    fn gather_group<V: Visitor<'g>>(&self, group: &[usize], visitor: &mut V) -> LaneGroup<V::Item> {
+    fn gather_group_quantities<V: PropagationVisitor<'g>>(
+        &self,
+        group: &[usize],
+        visitor: &mut V,
+    ) -> LaneGroup<V::Item> {
         if let [dof] = *group {
             let link = self.links[dof];
             let (width, item) = (self.widths[link], visitor.start(dof));
@@ -123,18 +127,22 @@ impl<'a, 'g> Paths<'a, 'g> {
         }
         let half = group.len().next_power_of_two() / 2;
         let (far, near) = group.split_at(group.len() - half);
-        let far = self.gather_group(far, visitor);
-        let near = self.gather_group(near, visitor);
-        let mut far = self.transform_group(far, Some(near.link), visitor);
+        let far = self.gather_group_quantities(far, visitor);
+        let near = self.gather_group_quantities(near, visitor);
+        let mut far = self.transform_group_to_ancestor(far, Some(near.link), visitor);
         while far.members.len() < half {
-            far.item = far.join_group_lanes(&far);
+            far.item = far.concatenate_group_lanes(&far);
             far.members.resize(2 * far.members.len(), None);
         }
-        LaneGroup { item: near.join_group_lanes(&far), members: [near.members, far.members].concat(), ..near }
+        LaneGroup {
+            item: near.concatenate_group_lanes(&far),
+            members: [near.members, far.members].concat(),
+            ..near
+        }
     }
 
     /// Transforms a group link by link to a link nearer to the root, or to the root.
-    fn transform_group<V: Visitor<'g>>(
+    fn transform_group_to_ancestor<V: PropagationVisitor<'g>>(
         &self,
         mut group: LaneGroup<V::Item>,
         to: Option<usize>,
@@ -143,7 +151,7 @@ impl<'a, 'g> Paths<'a, 'g> {
         while Some(group.link) != to
             && let Some(parent) = self.joints[group.link].parent
         {
-            group.item = group.item.to_parent(&group.spread_joint(&self.joints[group.link]));
+            group.item = group.item.to_parent(&group.repeat_joint_for_members(&self.joints[group.link]));
             (group.link, group.link_width) = (parent.0, self.widths[parent.0]);
             visitor.visit(&group);
         }
@@ -153,35 +161,35 @@ impl<'a, 'g> Paths<'a, 'g> {
 
 impl<T> LaneGroup<T> {
     /// Repeats an expression of the link for every member of the group.
-    pub fn repeat_for_members<'g>(&self, e: Expr<'g>) -> Expr<'g> {
+    pub fn repeat_for_group_members<'g>(&self, e: Expr<'g>) -> Expr<'g> {
         let mut e = e;
         // An expression without lanes holds for all members.
         if self.link_width > 1 {
             for k in 0..self.members.len().trailing_zeros() {
-                e = e.join_with(self.link_width << k, e);
+                e = e.append_lanes(self.link_width << k, e);
             }
         }
         e
     }
 
-    fn spread_joint<'g>(&self, joint: &Joint<'g>) -> Joint<'g> {
+    fn repeat_joint_for_members<'g>(&self, joint: &Joint<'g>) -> Joint<'g> {
         if self.members.len() == 1 || self.link_width == 1 {
             return joint.clone();
         }
         Joint {
-            rotation: joint.rotation.map(&|e| self.repeat_for_members(e)),
-            translation: joint.translation.map(|c| self.repeat_for_members(c)),
+            rotation: joint.rotation.map(&|e| self.repeat_for_group_members(e)),
+            translation: joint.translation.map(|c| self.repeat_for_group_members(c)),
             ..joint.clone()
         }
     }
 
     /// Concatenates the SIMD lanes of two groups.
-    fn join_group_lanes<'g>(&self, other: &LaneGroup<T>) -> T
+    fn concatenate_group_lanes<'g>(&self, other: &LaneGroup<T>) -> T
     where
-        T: Propagated<'g>,
+        T: PropagatedQuantity<'g>,
     {
         let lanes = self.members.len() * self.width;
-        self.item.zip_with(&other.item, &|a, b| a.join_with(lanes, b))
+        self.item.zip_with(&other.item, &|a, b| a.append_lanes(lanes, b))
     }
 
     /// Returns the degree of freedom of each member with its lanes of an expression.
@@ -196,13 +204,12 @@ impl<T> LaneGroup<T> {
 fn lane_range(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
     match count {
         1 => e.lane(first),
-        _ => {
-            lane_range(e, first, count / 2).join_with(count / 2, lane_range(e, first + count / 2, count / 2))
-        }
+        _ => lane_range(e, first, count / 2)
+            .append_lanes(count / 2, lane_range(e, first + count / 2, count / 2)),
     }
 }
 
-impl<'g> Propagated<'g> for Spatial<'g> {
+impl<'g> PropagatedQuantity<'g> for Spatial<'g> {
     fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Spatial {
             linear: self.linear.zip_with(&other.linear, f),
@@ -215,7 +222,7 @@ impl<'g> Propagated<'g> for Spatial<'g> {
     }
 }
 
-impl<'g> Propagated<'g> for Vec3<'g> {
+impl<'g> PropagatedQuantity<'g> for Vec3<'g> {
     fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Vec3(std::array::from_fn(|k| f(self[k], other[k])))
     }

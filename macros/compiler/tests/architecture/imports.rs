@@ -22,14 +22,14 @@ struct File {
 }
 
 /// Source files of the crate, with the dependencies between them.
-pub struct Imports {
+pub struct SourceDependencies {
     files: Vec<File>,
     by_module: BTreeMap<Module, usize>,
 }
 
-impl Imports {
+impl SourceDependencies {
     /// Reads all source files of the compiler below a folder, except tests.
-    pub fn read_imports(source: &Path) -> Imports {
+    pub fn read_imports(source: &Path) -> SourceDependencies {
         let mut files = Vec::new();
         let mut todo = vec![source.to_path_buf()];
         while let Some(folder) = todo.pop() {
@@ -44,7 +44,7 @@ impl Imports {
         }
         files.sort_by(|a, b| a.path.cmp(&b.path));
         let by_module = files.iter().enumerate().map(|(k, file)| (file.module.clone(), k)).collect();
-        Imports { files, by_module }
+        SourceDependencies { files, by_module }
     }
 
     /// Returns the path of a source file relative to the folder of the crate's sources.
@@ -91,14 +91,14 @@ impl Imports {
             }
             rest = others;
         }
-        self.look_up(&module, rest, depth)
+        self.resolve_import_path(&module, rest, depth)
     }
 
-    fn look_up(&self, module: &[String], path: &[String], depth: usize) -> Option<usize> {
+    fn resolve_import_path(&self, module: &[String], path: &[String], depth: usize) -> Option<usize> {
         let [first, rest @ ..] = path else { return None };
         let child: Module = module.iter().chain([first]).cloned().collect();
         if self.by_module.contains_key(&child) {
-            return self.look_up(&child, rest, depth);
+            return self.resolve_import_path(&child, rest, depth);
         }
         let own = *self.by_module.get(module)?;
         let file = &self.files[own];

@@ -2,7 +2,7 @@
 
 mod imports;
 
-use imports::{Imports, dependency_cycles};
+use imports::{SourceDependencies, dependency_cycles};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ const INVARIANT: &str = "- Architecture invariant: ";
 
 /// Returns the permitted modules of each module, from the README's lines "`a` uses `b` and `c`; `d` uses
 /// `e`."
-fn permitted_modules() -> BTreeMap<String, Vec<String>> {
+fn permitted_module_dependencies() -> BTreeMap<String, Vec<String>> {
     let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
     let clauses =
         readme.lines().filter_map(|line| line.strip_prefix(INVARIANT)).flat_map(|line| line.split(';'));
@@ -88,7 +88,7 @@ fn modules_named_in_code(code: &str) -> Vec<String> {
 
 #[test]
 fn stages_import_only_earlier_stages() {
-    let invariants = permitted_modules();
+    let invariants = permitted_module_dependencies();
     let mut violations = Vec::new();
     for (module, path) in source_files_with_modules() {
         if ["lib", "source", "declarations"].contains(&module.as_str()) {
@@ -117,7 +117,7 @@ fn stages_of_readme() -> Vec<String> {
 
 #[test]
 fn stages_use_only_stages_listed_above() {
-    let (stages, invariants) = (stages_of_readme(), permitted_modules());
+    let (stages, invariants) = (stages_of_readme(), permitted_module_dependencies());
     assert!(invariants.keys().all(|stage| stages.contains(stage)), "missing in the table: {invariants:?}");
     for (at, stage) in stages.iter().enumerate() {
         for used in invariants.get(stage).into_iter().flatten() {
@@ -131,7 +131,7 @@ const MOST_IN_A_CIRCLE: usize = 3;
 
 #[test]
 fn import_cycles_have_a_maximum_length() {
-    let imports = Imports::read_imports(&Path::new(ROOT).join("src"));
+    let imports = SourceDependencies::read_imports(&Path::new(ROOT).join("src"));
     let format_import_cycle = |circle: &Vec<usize>| {
         let names: Vec<String> = circle.iter().map(|file| imports.relative_file_path(*file)).collect();
         format!("{}: {}", circle.len(), names.join(" "))
@@ -174,5 +174,5 @@ fn use_items_are_parsed_like_rustc() {
     let code = "use crate::diag::{A, b}; use crate::{expr, mechanism::{Model, x}, lower::y}; let z = \
                 crate::emit::f();";
     assert_eq!(modules_named_in_code(code), ["diag", "expr", "mechanism", "lower", "emit"]);
-    assert_eq!(permitted_modules()["import"], ["diag", "hull", "syntax"]);
+    assert_eq!(permitted_module_dependencies()["import"], ["diag", "hull", "syntax"]);
 }

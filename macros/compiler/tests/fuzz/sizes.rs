@@ -29,7 +29,7 @@ fn concatenate_items(n: usize, item: impl Fn(usize) -> String) -> String {
 }
 
 /// Returns the fields of a planar chain of `pins` pins with `ties` further pins to the ground.
-fn tied_chain(pins: usize, ties: usize) -> String {
+fn chain_fields_with_ground_pins(pins: usize, ties: usize) -> String {
     let bodies = concatenate_items(pins, |k| {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(x)", k - 1) };
         format!(
@@ -146,10 +146,10 @@ fn oversized_input_of_every_kind_terminates() {
                 chain_fields(900, "Weld").replace("b0: Body", "c0: Body").replace("ground ->", "b0 ->")
             ),
         ),
-        ("a chain tied to the ground", tied_chain(85, 41)),
-        ("a chain tied to the ground a few times", tied_chain(40, 4)),
-        ("a chain tied to the ground everywhere", tied_chain(100, 50)),
-        ("a chain tied to the ground too often", tied_chain(20, 100)),
+        ("a chain tied to the ground", chain_fields_with_ground_pins(85, 41)),
+        ("a chain tied to the ground a few times", chain_fields_with_ground_pins(40, 4)),
+        ("a chain tied to the ground everywhere", chain_fields_with_ground_pins(100, 50)),
+        ("a chain tied to the ground too often", chain_fields_with_ground_pins(20, 100)),
         ("a chain of sleeves", format!("struct S {{ {} }}", chain_fields(40, "Sleeve"))),
         ("long generics", format!("struct S<{}> {{}}", concatenate_items(10_000, |k| format!("T{k},")))),
         ("deep types", format!("struct S {{ a: {}f64{} }}", "Vec<".repeat(10_000), ">".repeat(10_000))),
@@ -157,7 +157,7 @@ fn oversized_input_of_every_kind_terminates() {
         ("long names", mechanism_with_mass(&"m".repeat(100_000))),
         ("a long number", mechanism_with_mass(&"9".repeat(100_000))),
     ];
-    run_cases(cases);
+    expand_cases_with_little_stack(cases);
 }
 
 #[test]
@@ -166,8 +166,11 @@ fn too_many_loops_are_rejected_with_a_reason() {
         (20, 100, "500 scalar constraints, more than 256"),
         (85, 41, "too many constraints of this mechanism are coupled"),
     ] {
-        let output =
-            expand(TokenStream::new(), tied_chain(pins, ties).parse().unwrap(), Path::new("../../tests/ui"));
+        let output = expand(
+            TokenStream::new(),
+            chain_fields_with_ground_pins(pins, ties).parse().unwrap(),
+            Path::new("../../tests/ui"),
+        );
         let output = format!("{} {}", output.tokens, output.text);
         assert!(output.contains(reason), "{pins} pins with {ties} ties: {:.2000}", output);
     }
@@ -283,7 +286,7 @@ fn shared_subexpressions_do_not_explode() {
             mechanism_with_mass("m")
                 .replace("j: Sleeve", "j: Sleeve, #[joint(b -> c, along = 1e-300 * x)] k: Pin"),
         ),
-        ("a sum of many parameters", sum_of_parameters(40, 250)),
+        ("a sum of many parameters", mechanism_with_mass_sums(40, 250)),
         ("definitions that name another twice", nested_definitions_source("m", 60)),
         ("definitions of a mistake", nested_definitions_source("nothing", 60)),
         ("definitions one in another", nested_definitions_source("m", 200)),
@@ -291,11 +294,11 @@ fn shared_subexpressions_do_not_explode() {
         ("laws of alike carts", coupled_carts_source(20)),
         ("long laws of alike carts", coupled_carts_source(1500)),
     ];
-    run_cases(cases);
+    expand_cases_with_little_stack(cases);
 }
 
 /// Returns a mechanism whose mass is a sum of sums of parameters.
-fn sum_of_parameters(sums: usize, terms: usize) -> String {
+fn mechanism_with_mass_sums(sums: usize, terms: usize) -> String {
     let name_of_parameter = |k: usize, i: usize| format!("m{k}_{i}");
     let sum_source = |k: usize| (0..terms).map(|i| name_of_parameter(k, i)).collect::<Vec<_>>().join(" + ");
     let parameter_declarations =
@@ -387,7 +390,7 @@ fn nested_input_does_not_overflow_the_stack() {
     }
 }
 
-fn run_cases(cases: Vec<(&'static str, String)>) {
+fn expand_cases_with_little_stack(cases: Vec<(&'static str, String)>) {
     for (name, item) in cases {
         let expand_and_print_time = move || {
             let start = Instant::now();

@@ -4,7 +4,7 @@ use syn::{Expr, Item, Stmt};
 
 /// Returns the items of generated code. A block `const _: () = { … };` is replaced by the items in it.
 pub fn items_of_generated_code(file: syn::File) -> Vec<Item> {
-    let inner_items = |item: Item| match item {
+    let items_of_anonymous_const = |item: Item| match item {
         Item::Const(block) if block.ident == "_" => match *block.expr {
             Expr::Block(block) => {
                 let items = block.block.stmts.into_iter().filter_map(|statement| match statement {
@@ -17,5 +17,5 @@ pub fn items_of_generated_code(file: syn::File) -> Vec<Item> {
         },
         item => vec![item],
     };
-    file.items.into_iter().flat_map(inner_items).collect()
+    file.items.into_iter().flat_map(items_of_anonymous_const).collect()
 }

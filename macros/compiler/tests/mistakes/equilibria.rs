@@ -3,7 +3,7 @@
 use super::{ErrorRow, check_error_rows, compiler_messages};
 
 /// Returns the source of a pendulum with a motor and one declared equilibrium, for tests of error messages.
-fn pendulum_setting(said: &str) -> (String, String) {
+fn pendulum_mechanism_source(said: &str) -> (String, String) {
     let fields = "m: f64, l: f64,
         #[body(mass = m, com = -l * y, inertia = sphere(m, l))] arm: Body,
         #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -40,11 +40,11 @@ const ROWS: &[ErrorRow] = &[
 
 #[test]
 fn invalid_equilibria_are_reported() {
-    check_error_rows(pendulum_setting, ROWS);
+    check_error_rows(pendulum_mechanism_source, ROWS);
 }
 
 /// Returns the source of a cart on a rail with further fields, for tests of error messages.
-fn carriage_setting(said: &str) -> (String, String) {
+fn carriage_mechanism_source(said: &str) -> (String, String) {
     let fields = "m: f64, k: f64,
         #[body(mass = m, inertia = sphere(m, 1))] cart: Body,
         #[joint(ground -> cart, along = x)] rail: Sleeve,";
@@ -92,7 +92,7 @@ const REFUSED: &[ErrorRow] = &[
 
 #[test]
 fn mechanisms_without_linear_equations_are_reported() {
-    check_error_rows(carriage_setting, REFUSED);
+    check_error_rows(carriage_mechanism_source, REFUSED);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Returns the messages of a robot whose joints have these origins and axes.
-fn robot_messages(name: &str, xyz: &str, axis: &str) -> Vec<String> {
+fn messages_for_joint_origin_and_axis(name: &str, xyz: &str, axis: &str) -> Vec<String> {
     let inertial_element = |com: &str| {
         format!(
             "<inertial><origin xyz=\"{com}\"/><mass value=\"1\"/>
@@ -35,12 +35,12 @@ fn robot_messages(name: &str, xyz: &str, axis: &str) -> Vec<String> {
 #[test]
 fn comma_separated_file_values_are_one_error() {
     for (name, xyz, axis) in [("commas.urdf", "0, 0, 1", "0, 0, 1"), ("decimal.urdf", "0,5 0 1", "0 0 1")] {
-        let found = robot_messages(name, xyz, axis);
+        let found = messages_for_joint_origin_and_axis(name, xyz, axis);
         let good = matches!(found.as_slice(), [one] if one.contains("expected 3 numbers in `xyz`, found")
             && one.contains("spaces between the numbers instead of commas"));
         assert!(good, "{found:#?}");
     }
-    assert_eq!(robot_messages("spaces.urdf", "0 0 1", "0 0 1"), Vec::<String>::new());
+    assert_eq!(messages_for_joint_origin_and_axis("spaces.urdf", "0 0 1", "0 0 1"), Vec::<String>::new());
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn invalid_parameters_of_robot_files_are_reported() {
 
 #[test]
 fn collision_geometry_is_read_when_referenced() {
-    let robot_with = |inside: &str| {
+    let robot_with_collision_geometry = |inside: &str| {
         let foot = format!("<link name=\"foot\"><collision><geometry>{inside}</geometry></collision></link>");
         let sole = r#"<joint name="sole" type="fixed"><origin xyz="0 0.5 0"/><parent link="hand"/><child link="foot"/></joint>"#;
         ROBOT.replacen("</robot>", &format!("{foot}\n{sole}\n</robot>"), 1)
@@ -159,7 +159,8 @@ fn collision_geometry_is_read_when_referenced() {
     fs::write(folder.join("foot.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n").unwrap();
     for (k, (inside, link, message)) in cases.into_iter().enumerate() {
         let name = format!("shapes{k}.urdf");
-        fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name), robot_with(inside)).unwrap();
+        fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name), robot_with_collision_geometry(inside))
+            .unwrap();
         let contact = match link {
             "" => "#[contact(ground.plane(z), collision())] floor: Contact".to_string(),
             link => format!("#[contact({link}.collision(), ground.plane(z))] floor: Contact"),

@@ -3,7 +3,7 @@
 use super::{ErrorRow, check_error_rows};
 
 /// Inserts the text before `|` into the attribute and the text after it into the fields.
-fn mechanism_setting(said: &str) -> (String, String) {
+fn insert_into_mechanism_source(said: &str) -> (String, String) {
     let (words, fields) = said.split_once('|').unwrap_or((said, ""));
     let own =
         "m: f64, #[body(mass = m)] cart: Body, #[body(mass = m, com = y, inertia = sphere(m, 1))] arm: Body,
@@ -62,13 +62,13 @@ fn unavailable_forms_name_the_available_ones() {
             "without inertia there are no dynamics",
         ),
     ];
-    check_error_rows(mechanism_setting, ROWS);
+    check_error_rows(insert_into_mechanism_source, ROWS);
 }
 
 /// Checks that Routh's equations of four coupled cyclic coordinates are rejected as too long to print.
 #[test]
 fn overlong_routh_equations_are_rejected() {
-    fn cyclic_coordinates_setting(words: &str) -> (String, String) {
+    fn cyclic_coordinates_mechanism_source(words: &str) -> (String, String) {
         let mut fields = "#[body(mass = 1, inertia = sphere(1, 1))] cart0: Body, \
                           #[joint(ground -> cart0, along = x)] rail0: Sleeve,"
             .to_string();
@@ -87,13 +87,13 @@ fn overlong_routh_equations_are_rejected() {
          inertia, or thousands of terms",
         "the option `routh` generates them",
     )];
-    check_error_rows(cyclic_coordinates_setting, ROWS);
+    check_error_rows(cyclic_coordinates_mechanism_source, ROWS);
 }
 
 /// A sliding contact has a normal force, which independent speeds do not eliminate.
 #[test]
 fn kane_equations_are_rejected_for_sliding_contacts() {
-    fn sliding_contact_setting(words: &str) -> (String, String) {
+    fn sliding_contact_mechanism_source(words: &str) -> (String, String) {
         let fields = "#[body(mass = 1, inertia = disk(1, 0.2, z))] disk: Body, #[joint(ground -> disk, about = z)] pose: Planar,
             #[constraint(slips(disk.circle(0.2, z), ground.plane(y)), friction = 0.3, speed = 0.01)] contact: Slipping,
             #[constraint(pose.x = 0.1 * pose.angle)] wire: Holonomic,";
@@ -104,13 +104,13 @@ fn kane_equations_are_rejected_for_sliding_contacts() {
         "the equations of a slipping contact contain its normal force, which is a multiplier",
         "write `equations = lagrange`",
     )];
-    check_error_rows(sliding_contact_setting, ROWS);
+    check_error_rows(sliding_contact_mechanism_source, ROWS);
 }
 
 /// Pins about skew axes, with a nonholonomic constraint on the last link.
 #[test]
 fn overlong_kane_equations_are_rejected() {
-    fn pin_chain_setting(words: &str) -> (String, String) {
+    fn pin_chain_mechanism_source(words: &str) -> (String, String) {
         let link_declarations = |k: usize| {
             let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(0.4 * x)", k - 1) };
             format!(
@@ -128,14 +128,14 @@ fn overlong_kane_equations_are_rejected() {
         "Kane's equations of this mechanism have thousands of terms",
         "or declare generalized speeds in which the equations are shorter",
     )];
-    check_error_rows(pin_chain_setting, ROWS);
+    check_error_rows(pin_chain_mechanism_source, ROWS);
 }
 
 /// A plate on three cranks that remain parallel. One constraint is redundant in every parallel configuration,
 /// but none may be dropped where the cranks are not parallel.
 #[test]
 fn kane_equations_are_rejected_for_dependent_constraints() {
-    fn crank_linkage_setting(words: &str) -> (String, String) {
+    fn crank_linkage_mechanism_source(words: &str) -> (String, String) {
         let cranks = (0..3).map(|k| {
             format!(
                 "#[body(mass = 1, com = y / 2, inertia = rod(1, 1, y))] crank{k}: Body,
@@ -156,14 +156,14 @@ fn kane_equations_are_rejected_for_dependent_constraints() {
          configuration",
         "write `equations = lagrange`, which keeps all constraints with multipliers",
     )];
-    check_error_rows(crank_linkage_setting, ROWS);
+    check_error_rows(crank_linkage_mechanism_source, ROWS);
 }
 
 /// The canonical equations are not defined for forces that depend on accelerations.
 #[test]
 fn acceleration_forces_exclude_hamiltons_equations() {
-    fn arguments_and_force(words: &str) -> (String, String) {
-        mechanism_setting(&format!(
+    fn source_with_added_force(words: &str) -> (String, String) {
+        insert_into_mechanism_source(&format!(
             "{words}|#[acts(on = rail, value = -m * dot(a(arm / ground / ground), x))] added: Force,"
         ))
     }
@@ -180,7 +180,7 @@ fn acceleration_forces_exclude_hamiltons_equations() {
         ("second_derivatives", SECOND, HELP),
         ("momentum_derivatives", MOMENTA, HELP),
     ];
-    check_error_rows(arguments_and_force, ROWS);
+    check_error_rows(source_with_added_force, ROWS);
 }
 
 /// Returns `count` carts on separate rails, with forces on the first `forces` of them.

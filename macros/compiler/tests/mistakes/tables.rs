@@ -91,7 +91,7 @@ fn table_row_with_messages(before: &str, row: &str, after: &str) -> String {
 }
 
 /// Returns a table with the current messages of all rows.
-fn table_with_messages(text: &str) -> String {
+fn table_with_current_messages(text: &str) -> String {
     let (mut before, mut after) = (String::new(), "");
     let mut blocks = Vec::new();
     for block in text.trim_end().split("\n\n") {
@@ -117,7 +117,7 @@ fn table_errors_have_expected_messages_and_tokens() {
     for file in fs::read_dir(tables_folder().join("tables")).unwrap() {
         let path = file.unwrap().path();
         let expected = fs::read_to_string(&path).unwrap();
-        let found = table_with_messages(&expected);
+        let found = table_with_current_messages(&expected);
         if std::env::var_os("LINKWORK_WRITE").is_some() {
             fs::write(&path, &found).unwrap();
         }

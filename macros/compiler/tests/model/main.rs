@@ -14,15 +14,18 @@ use std::path::Path;
 
 /// Compares the model of a mechanism with these fields; indentation is ignored.
 fn check_model(fields: &str, expected: &str) {
-    compare_texts(&facts_text(fields, None), expected);
+    assert_same_trimmed_lines(&facts_text(fields, None), expected);
 }
 
 /// Compares the model of a URDF file with these contents of `<robot>`; indentation is ignored.
 fn check_urdf(inside: &str, expected: &str) {
-    compare_texts(&facts_text("", Some(&format!("<robot name=\"r\">{inside}</robot>"))), expected);
+    assert_same_trimmed_lines(
+        &facts_text("", Some(&format!("<robot name=\"r\">{inside}</robot>"))),
+        expected,
+    );
 }
 
-fn compare_texts(actual: &str, expected: &str) {
+fn assert_same_trimmed_lines(actual: &str, expected: &str) {
     let trimmed_lines = |text: &str| -> Vec<String> {
         text.lines().map(|line| line.trim().to_string()).filter(|line| !line.is_empty()).collect()
     };
@@ -64,7 +67,7 @@ fn model_text(model: &Model<'_>) -> String {
         text += &format!("u: {}\n", inputs.join(" "));
     }
     for (k, link) in model.links.iter().enumerate() {
-        text += &format!("link {k} on {}{}\n", link_text(link.parent), motion_text(link, model));
+        text += &format!("link {k} on {}{}\n", link_text(link.parent), link_motion_text(link, model));
     }
     for frame in &model.frames {
         text += &format!("frame {} on {}{}\n", frame.name, link_text(frame.link), pose_text(&frame.pose));
@@ -76,7 +79,7 @@ fn link_text(link: Option<LinkId>) -> String {
     link.map_or("ground".to_string(), |link| link.0.to_string())
 }
 
-fn motion_text(link: &Link<'_>, model: &Model<'_>) -> String {
+fn link_motion_text(link: &Link<'_>, model: &Model<'_>) -> String {
     let coordinate_text = |c: &Coordinate| {
         let name = &model.configuration[c.q.0];
         match (c.ratio, c.offset) {

@@ -57,7 +57,7 @@ fn moments_of_revolution(
 #[test]
 fn solids_of_revolution_agree_with_quadrature() {
     let zero_radius = |_: f64| 0.0;
-    let radius_of_ball = |r: f64| move |z: f64| (r * r - z * z).max(0.0).sqrt();
+    let ball_profile_radius = |r: f64| move |z: f64| (r * r - z * z).max(0.0).sqrt();
     let thin = 1e-5;
     let table = [
         ("rod(3, 2, z)", moments_of_revolution(0.0, 2.0, |_| thin, zero_radius), 1e-8),
@@ -68,13 +68,18 @@ fn solids_of_revolution_agree_with_quadrature() {
         ("cone(3, 0.5, 2, z)", moments_of_revolution(0.0, 2.0, |z| z / 4.0, zero_radius), 1e-8),
         (
             "capsule(3, 0.5, 2, z)",
-            moments_of_revolution(-1.5, 1.5, |z| radius_of_ball(0.5)((z.abs() - 1.0).max(0.0)), zero_radius),
+            moments_of_revolution(
+                -1.5,
+                1.5,
+                |z| ball_profile_radius(0.5)((z.abs() - 1.0).max(0.0)),
+                zero_radius,
+            ),
             1e-8,
         ),
-        ("sphere(3, 0.5)", moments_of_revolution(-0.5, 0.5, radius_of_ball(0.5), zero_radius), 1e-8),
+        ("sphere(3, 0.5)", moments_of_revolution(-0.5, 0.5, ball_profile_radius(0.5), zero_radius), 1e-8),
         (
             "shell(3, 0.5)",
-            moments_of_revolution(-0.5, 0.5, radius_of_ball(0.5), radius_of_ball(0.5 - thin)),
+            moments_of_revolution(-0.5, 0.5, ball_profile_radius(0.5), ball_profile_radius(0.5 - thin)),
             1e-4,
         ),
     ];

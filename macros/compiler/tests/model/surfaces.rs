@@ -8,7 +8,7 @@ use linkwork_compiler::resolve::build_model;
 use std::path::Path;
 
 /// Returns a surface of a body with plausible arguments, or the body itself, which is a point.
-fn surface_text(body: &str, surface: Option<SurfaceId>) -> String {
+fn surface_expression_text(body: &str, surface: Option<SurfaceId>) -> String {
     let Some(id) = surface else { return body.to_string() };
     let arguments = id.row().arguments.iter().map(|argument| match (argument.kind, id) {
         (ArgumentKind::Direction, _) => "z".to_string(),
@@ -17,7 +17,7 @@ fn surface_text(body: &str, surface: Option<SurfaceId>) -> String {
         (ArgumentKind::Height, _) => "0.1 * sin(3 * u)".to_string(),
         (ArgumentKind::Coordinate, _) => argument.name.to_string(),
         (ArgumentKind::Points, _) => "[x, y, z, 0 * x]".to_string(),
-        (_, SurfaceId::Sheet) => "[u, w, u * w]".to_string(),
+        (_, SurfaceId::ParametricSurface) => "[u, w, u * w]".to_string(),
         _ => "0.1".to_string(),
     });
     format!("{body}.{}({})", id.name(), arguments.collect::<Vec<_>>().join(", "))
@@ -46,12 +46,12 @@ fn every_listed_pair_of_surfaces_is_supported() {
         }
     };
     for below in SurfaceId::ALL.iter().copied() {
-        let base = surface_text("ground", Some(below));
+        let base = surface_expression_text("ground", Some(below));
         for above in SurfaceId::ALL.iter().copied() {
             let pairs = [(above, below), (below, above)];
             let touches = pairs.iter().any(|(a, b)| b.row().contacts.contains(&Some(*a)));
             let rolls = pairs.iter().any(|(a, b)| b.row().rollers.contains(a));
-            let moving = surface_text("b", Some(above));
+            let moving = surface_expression_text("b", Some(above));
             check(&format!("#[contact({moving}, {base})] c: Contact"), touches);
             check(&format!("#[constraint(rolls({moving}, {base}))] c: Rolling"), rolls);
         }

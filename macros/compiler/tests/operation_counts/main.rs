@@ -9,7 +9,7 @@ use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 
 /// Compiles a mechanism and returns the programs of the named functions.
-fn compiled_programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
+fn compile_named_programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
     programs_and_nodes(arguments, item, functions).0
 }
 
@@ -23,11 +23,11 @@ fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<P
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    let find_program = |name: &&str| {
+    let program_of_function_name = |name: &&str| {
         let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
         f.program.clone()
     };
-    (functions.iter().map(find_program).collect(), graph.len())
+    (functions.iter().map(program_of_function_name).collect(), graph.len())
 }
 
 fn chain_source(n: usize, symbolic: bool) -> String {
@@ -57,7 +57,7 @@ fn chain_source(n: usize, symbolic: bool) -> String {
 const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
 
 fn main_operation_counts(arguments: &str, item: &str) -> [usize; 4] {
-    let all = compiled_programs(arguments, item, &MAIN);
+    let all = compile_named_programs(arguments, item, &MAIN);
     std::array::from_fn(|k| all[k].counts.total_operations())
 }
 
@@ -76,7 +76,7 @@ fn count_fused_instructions(program: &Program) -> usize {
 /// instructions after fusion. With `lanes`, the programs with lanes for identical limbs are counted.
 fn robot_operation_counts(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
     let arguments = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
-    let all = compiled_programs(&arguments, "pub struct Robot;", &MAIN);
+    let all = compile_named_programs(&arguments, "pub struct Robot;", &MAIN);
     let all: Vec<&Program> =
         all.iter().map(|p| if lanes { p.simd.as_deref().expect("its limbs are alike") } else { p }).collect();
     [
@@ -144,7 +144,7 @@ fn operation_counts_of_legged_contacts_are_exact() {
         ["contact_rates", "contact_jacobian", "contact_bias", "__contact_responses", "__contact_derivatives"];
     let arguments = "urdf = \"../../models/urdf/solo12.urdf\", base = free, gravity = -9.81 * z, limits = \
                      ignore, derivatives";
-    let all = compiled_programs(arguments, item, &functions);
+    let all = compile_named_programs(arguments, item, &functions);
     let in_lanes: Vec<usize> = all
         .iter()
         .map(|p| count_fused_instructions(p.simd.as_deref().expect("its limbs are alike")))
@@ -221,7 +221,7 @@ fn operation_counts_grow_with_the_expected_power() {
 }
 
 /// Returns a planar chain of particles on rods; the angles of all preceding rods determine each position.
-fn placed_chain(n: usize) -> String {
+fn particle_chain_source(n: usize) -> String {
     let mut item = String::from("pub struct Placed {");
     let (mut x, mut z) = (Vec::new(), Vec::new());
     for k in 1..=n {
@@ -243,7 +243,7 @@ fn placed_chain(n: usize) -> String {
 /// Common terms of the particles are summed once. The mass matrix takes `3/2 n²` operations, the
 /// factorisation takes the `n³/3` of a full matrix, and all other functions grow linearly.
 #[test]
-fn operation_counts_of_chains_in_absolute_coordinates() {
+fn absolute_coordinate_chains_have_expected_operation_counts() {
     let lines = [
         ("bias_forces", 16, -10),
         ("inverse_dynamics", 22, -24),
@@ -254,7 +254,7 @@ fn operation_counts_of_chains_in_absolute_coordinates() {
     for n in [16, 24, 32, 48_i64] {
         let names: Vec<&str> =
             lines.iter().map(|line| line.0).chain(["mass_matrix", "forward_dynamics"]).collect();
-        let all = compiled_programs("gravity = -9.81 * z", &placed_chain(n as usize), &names);
+        let all = compile_named_programs("gravity = -9.81 * z", &particle_chain_source(n as usize), &names);
         let found: Vec<i64> = all.iter().map(|program| program.counts.total_operations() as i64).collect();
         for ((name, slope, start), found) in lines.iter().zip(&found) {
             assert_eq!(*found, slope * n + start, "{name} of {n} particles");

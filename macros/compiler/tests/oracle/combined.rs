@@ -53,7 +53,7 @@ fn random_force_laws_obey_dalemberts_principle() {
         let constrained = row.item.contains("#[constraint") || row.item.contains("closing");
         let speeds = constrained.then_some(", formulation = speeds");
         for more in ["", ", derivatives", SKIPPED].into_iter().chain(speeds) {
-            check_row(row, more);
+            check_combined_mechanism(row, more);
         }
     }
 }
@@ -73,7 +73,7 @@ struct Case<'a> {
     name: String,
 }
 
-fn check_row(row: &Row, more: &str) {
+fn check_combined_mechanism(row: &Row, more: &str) {
     let mut item = row.item.trim_end().trim_end_matches('}').to_string();
     for (name, ..) in row.masses {
         let _ = writeln!(item, "#[output(r({name} / ground))] o_{name}: Vector,");
@@ -119,8 +119,8 @@ fn check_row(row: &Row, more: &str) {
         }
         assert_eq!(first, nq, "{}: {:?}", row.name, model.configuration);
         let state = State { t: 0.4, q, v: list(nv, 0.8), a: list(nv, 1.5), tau: list(nv, 2.0) };
-        case.check_forces(&state);
-        case.check_constraints(&state);
+        case.check_inverse_dynamics_forces(&state);
+        case.check_constraint_rates_and_biases(&state);
         case.check_equations_of_motion(&state);
         case.check_derivatives(&state);
     }
@@ -154,7 +154,7 @@ fn rotate_quaternion(q: &mut [f64], phi: [f64; 3]) {
 }
 
 /// Returns the first derivative `(45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + f₃ − f₋₃) / 60 h`.
-fn first_derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
+fn sixth_order_difference(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0].map(|k| f(k * H));
     let finite_difference =
         |i: usize| (g[i] - a[i] - 9.0 * (e[i] - b[i]) + 45.0 * (d[i] - c[i])) / (60.0 * H);
@@ -163,8 +163,9 @@ fn first_derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 
 fn second_derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g, m] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 0.0].map(|k| f(k * H));
-    let weighted_outer_sum = |i: usize| 2.0 * (a[i] + g[i]) - 27.0 * (b[i] + e[i]) + 270.0 * (c[i] + d[i]);
-    (0..a.len()).map(|i| (weighted_outer_sum(i) - 490.0 * m[i]) / (180.0 * H * H)).collect()
+    let weighted_sum_of_outer_samples =
+        |i: usize| 2.0 * (a[i] + g[i]) - 27.0 * (b[i] + e[i]) + 270.0 * (c[i] + d[i]);
+    (0..a.len()).map(|i| (weighted_sum_of_outer_samples(i) - 490.0 * m[i]) / (180.0 * H * H)).collect()
 }
 
 impl Case<'_> {
@@ -172,32 +173,33 @@ impl Case<'_> {
     fn displaced_state(&self, s: &State, h: f64) -> State {
         let mut out = s.clone();
         let (mut q0, mut v0) = (0, 0);
-        let displacement_of_coordinate = |k: usize| s.v[k] * h + s.a[k] * h * h / 2.0;
+        let taylor_displacement_of_coordinate = |k: usize| s.v[k] * h + s.a[k] * h * h / 2.0;
         for chart in self.row.charts.chars() {
             match chart {
-                's' => out.q[q0] += displacement_of_coordinate(v0),
+                's' => out.q[q0] += taylor_displacement_of_coordinate(v0),
                 'b' => rotate_quaternion(
                     &mut out.q[q0..q0 + 4],
                     [
-                        displacement_of_coordinate(v0),
-                        displacement_of_coordinate(v0 + 1),
-                        displacement_of_coordinate(v0 + 2),
+                        taylor_displacement_of_coordinate(v0),
+                        taylor_displacement_of_coordinate(v0 + 1),
+                        taylor_displacement_of_coordinate(v0 + 2),
                     ],
                 ),
                 _ => {
                     let (v, w) = (&s.v[v0..v0 + 3], &s.v[v0 + 3..v0 + 6]);
                     let spin =
                         [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]];
-                    let body =
-                        std::array::from_fn(|i| displacement_of_coordinate(v0 + i) + spin[i] * h * h / 2.0);
+                    let body = std::array::from_fn(|i| {
+                        taylor_displacement_of_coordinate(v0 + i) + spin[i] * h * h / 2.0
+                    });
                     let d = rotate_by_quaternion(&s.q[q0 + 3..q0 + 7], body);
                     (0..3).for_each(|i| out.q[q0 + i] += d[i]);
                     rotate_quaternion(
                         &mut out.q[q0 + 3..q0 + 7],
                         [
-                            displacement_of_coordinate(v0 + 3),
-                            displacement_of_coordinate(v0 + 4),
-                            displacement_of_coordinate(v0 + 5),
+                            taylor_displacement_of_coordinate(v0 + 3),
+                            taylor_displacement_of_coordinate(v0 + 4),
+                            taylor_displacement_of_coordinate(v0 + 5),
                         ],
                     );
                 }
@@ -294,7 +296,7 @@ impl Case<'_> {
 
     /// Returns the masses of the particles that replace the bodies. Masses at a distance of 1 m from the
     /// centre may be negative; only their sum over a body is its mass.
-    fn particle_masses(&self) -> Vec<f64> {
+    fn masses_of_replacing_particles(&self) -> Vec<f64> {
         let mut all = Vec::new();
         for (_, mass, _, moments) in self.row.masses {
             if *moments == [0.0; 3] {
@@ -317,17 +319,18 @@ impl Case<'_> {
         let accelerations = second_derivative(|h| self.particle_positions(&self.displaced_state(s, h)));
         let (now, rate, bend) = (
             lengths_of_elements(s),
-            first_derivative(|h| lengths_of_elements(&self.displaced_state(s, h))),
+            sixth_order_difference(|h| lengths_of_elements(&self.displaced_state(s, h))),
             second_derivative(|h| lengths_of_elements(&self.displaced_state(s, h))),
         );
-        let weights = self.particle_masses();
+        let weights = self.masses_of_replacing_particles();
         let generalized_force = |k: usize| {
-            let partial = first_derivative(|h| self.particle_positions(&self.state_after_step(s, k, h)));
+            let partial =
+                sixth_order_difference(|h| self.particle_positions(&self.state_after_step(s, k, h)));
             let mut sum = 0.0;
             for (i, (a, p)) in accelerations.iter().zip(&partial).enumerate() {
                 sum += weights[i / 3] * (a - self.row.gravity[i % 3]) * p;
             }
-            let partial = first_derivative(|h| lengths_of_elements(&self.state_after_step(s, k, h)));
+            let partial = sixth_order_difference(|h| lengths_of_elements(&self.state_after_step(s, k, h)));
             for (e, (law, _)) in self.row.elements.iter().enumerate() {
                 sum += partial[e]
                     * match *law {
@@ -344,7 +347,7 @@ impl Case<'_> {
         (0..s.v.len()).map(generalized_force).collect()
     }
 
-    fn check_forces(&self, s: &State) {
+    fn check_inverse_dynamics_forces(&self, s: &State) {
         self.assert_close_entries(
             "inverse dynamics",
             &self.run_function("inverse_dynamics", s),
@@ -353,7 +356,7 @@ impl Case<'_> {
         );
     }
 
-    fn check_constraints(&self, s: &State) {
+    fn check_constraint_rates_and_biases(&self, s: &State) {
         if !self.has_function("constraint_jacobian") {
             return;
         }
@@ -362,7 +365,7 @@ impl Case<'_> {
         let nc = jacobian.len() / nv;
         // Constraint rates are linear in the velocities.
         for k in 0..nv {
-            let displaced_rates = |h: f64| {
+            let constraint_rates_at_displacement = |h: f64| {
                 let mut s = s.clone();
                 s.v[k] += h;
                 self.run_function("constraint_rates", &s)
@@ -370,21 +373,23 @@ impl Case<'_> {
             self.assert_close_entries(
                 "Jacobian",
                 &jacobian[k * nc..(k + 1) * nc],
-                &first_derivative(displaced_rates),
+                &sixth_order_difference(constraint_rates_at_displacement),
                 1.0,
             );
         }
         let rates = self.run_function("constraint_rates", s);
-        let residuals =
-            first_derivative(|h| self.run_function("constraint_residuals", &self.displaced_state(s, h)));
+        let residuals = sixth_order_difference(|h| {
+            self.run_function("constraint_residuals", &self.displaced_state(s, h))
+        });
         self.assert_close_entries("rates", &rates[..residuals.len()], &residuals, 1.0);
         let free = State { a: vec![0.0; nv], ..s.clone() };
         let bend =
             second_derivative(|h| self.run_function("constraint_residuals", &self.displaced_state(&free, h)));
         self.assert_close_entries("bias", &self.run_function("constraint_bias", s)[..bend.len()], &bend, 1.0);
         if !self.row.charts.contains('b') && !self.row.charts.contains('f') {
-            let change =
-                first_derivative(|h| self.run_function("constraint_rates", &self.displaced_state(&free, h)));
+            let change = sixth_order_difference(|h| {
+                self.run_function("constraint_rates", &self.displaced_state(&free, h))
+            });
             self.assert_close_entries("bias of all", &self.run_function("constraint_bias", s), &change, 1.0);
         }
     }
@@ -423,12 +428,12 @@ impl Case<'_> {
         let nv = s.v.len();
         let mut expected = Vec::new();
         for k in 0..nv {
-            expected.extend(first_derivative(|h| {
+            expected.extend(sixth_order_difference(|h| {
                 self.run_function("inverse_dynamics", &self.state_after_step(s, k, h))
             }));
         }
         for k in 0..nv {
-            expected.extend(first_derivative(|h| {
+            expected.extend(sixth_order_difference(|h| {
                 let mut s = s.clone();
                 s.v[k] += h;
                 self.run_function("inverse_dynamics", &s)

@@ -4,7 +4,7 @@
 
 use crate::kane::{self, Measure, State};
 use crate::random::Random;
-use crate::spec::{End, Spec, Style, random_spec};
+use crate::spec::{End, Spec, Style, random_mechanism_spec};
 use crate::words;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -30,19 +30,19 @@ struct Drive {
 /// Checks the mechanism of a seed. Returns false if its prescribed motions are nearly dependent.
 pub fn check_driven_mechanism(seed: u64) -> bool {
     let style = Style { bodies: 4, limbs: 0, decades: 0.3, noise: None };
-    let mut spec = random_spec(9_000_000 + seed, style);
+    let mut spec = random_mechanism_spec(9_000_000 + seed, style);
     for body in &mut spec.bodies {
         // No prescribed motion constrains the coordinate of a slider.
         body.slider = None;
     }
     let (nq, nv) = kane::coordinate_and_velocity_counts(&spec);
     let mut random = Random::new(seed ^ 0xd41e);
-    let drives: Vec<Drive> = prescribed_motions(&spec, nv, &mut random);
+    let drives: Vec<Drive> = random_prescribed_motions(&spec, nv, &mut random);
     let mut list =
         |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform_number(bound)).collect() };
     let (mut q, v, tau) = (list(nq, 1.2), list(nv, 1.0), list(nv, 3.0));
     normalise_quaternions(&spec, &mut q);
-    if !kane::cables_are_outside(&spec, &q) || drives.len() != nv {
+    if !kane::are_cables_outside_surfaces(&spec, &q) || drives.len() != nv {
         return false;
     }
     let zero = vec![0.0; nv];
@@ -87,7 +87,7 @@ fn normalise_quaternions(spec: &Spec, q: &mut [f64]) {
 
 /// Returns a prescribed motion for every velocity: of coordinates of a joint, some in combination with
 /// others, or of points of its body if the joint has no coordinates.
-fn prescribed_motions(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
+fn random_prescribed_motions(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
     let mut drives = Vec::new();
     let mut before: Vec<(usize, usize)> = Vec::new();
     for (k, body) in spec.bodies.iter().enumerate() {

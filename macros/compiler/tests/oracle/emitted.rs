@@ -99,7 +99,7 @@ pub struct Machine {
 
 impl Machine {
     /// Executes a body and returns its value. Its variables remain defined.
-    pub fn run_body(&mut self, body: &Block) -> Result<Value> {
+    pub fn execute_function_body(&mut self, body: &Block) -> Result<Value> {
         let mut last = Value::List(Vec::new());
         for statement in &body.stmts {
             last = Value::List(Vec::new());
@@ -202,7 +202,7 @@ impl Machine {
             Expr::Struct(fields) => self.evaluate_list(fields.fields.iter().map(|field| &field.expr)),
             Expr::Block(block) => {
                 self.scopes.push(BTreeMap::new());
-                let value = self.run_body(&block.block);
+                let value = self.execute_function_body(&block.block);
                 self.scopes.pop();
                 value
             }
@@ -222,8 +222,11 @@ impl Machine {
             Expr::Call(call) => self.evaluate_call(call),
             Expr::MethodCall(call) => {
                 let value = self.evaluate_expression(&call.receiver)?;
-                let first_turbofish_constant =
-                    || call.turbofish.as_ref().and_then(|types| generic_constants(types).first().copied());
+                let first_turbofish_constant = || {
+                    call.turbofish
+                        .as_ref()
+                        .and_then(|types| integer_generic_arguments(types).first().copied())
+                };
                 match (call.method.to_string().as_str(), value, first_turbofish_constant()) {
                     ("lanes", value, None) => Ok(value),
                     ("sum", Value::Lanes(lanes), None) => Ok(Value::Number(lanes.iter().sum())),
@@ -246,7 +249,7 @@ impl Machine {
     /// Returns the parameter for `self.parameter`. Storage of vectors, matrices and lanes is the value
     /// itself.
     fn parameter_field(&mut self, field: &ExprField) -> Result<Value> {
-        let is_storage = |base: &Expr| match base {
+        let is_matrix_data_access = |base: &Expr| match base {
             Expr::Field(inner) => matches!(&inner.member, Member::Named(name) if name == "data"),
             Expr::MethodCall(call) => call.method == "lanes",
             _ => false,
@@ -259,7 +262,7 @@ impl Machine {
                 }
             }
             (base, Member::Named(name)) if name == "data" => self.evaluate_expression(base),
-            (base, Member::Unnamed(at)) if at.index == 0 && is_storage(base) => {
+            (base, Member::Unnamed(at)) if at.index == 0 && is_matrix_data_access(base) => {
                 // The numbers of lanes form an array.
                 match self.evaluate_expression(base)? {
                     Value::Lanes(lanes) => Ok(Value::list_of_numbers(&lanes)),
@@ -337,7 +340,7 @@ impl Machine {
             return self.evaluate_expression(&call.args[0]);
         }
         if name.starts_with("store_") {
-            return self.store_lanes(&name, last, call);
+            return self.interpret_lane_store(&name, last, call);
         }
         let operation = match function.path.get_ident() {
             Some(_) if self.variable_value(&name).is_err() => return foreign_code_error(),
@@ -351,9 +354,14 @@ impl Machine {
     }
 
     /// Interprets a generated call that stores SIMD lanes to rows of a matrix.
-    fn store_lanes(&mut self, name: &str, last: &syn::PathSegment, call: &ExprCall) -> Result<Value> {
+    fn interpret_lane_store(
+        &mut self,
+        name: &str,
+        last: &syn::PathSegment,
+        call: &ExprCall,
+    ) -> Result<Value> {
         let syn::PathArguments::AngleBracketed(types) = &last.arguments else { return foreign_code_error() };
-        let constants = generic_constants(types);
+        let constants = integer_generic_arguments(types);
         let vectors: Vec<Value> =
             call.args.iter().skip(1).map(|e| self.evaluate_expression(e)).collect::<Result<_>>()?;
         let lane_of_vector = |vector: usize, k: usize| match &vectors[vector] {
@@ -424,14 +432,14 @@ fn apply_operation(name: &str, lanes: Option<usize>, values: &[Value]) -> Option
         ("sin_cos_all", [Value::List(angles)]) => {
             let all: Result<Vec<Value>> = angles.iter().map(sine_and_cosine).collect();
             all.and_then(|all| {
-                let part_of_pairs = |k: usize| -> Result<Value> {
+                let list_of_pair_elements = |k: usize| -> Result<Value> {
                     Ok(Value::List(
                         all.iter()
                             .map(|pair| Ok(pair.elements_of_list()?[k].clone()))
                             .collect::<Result<_>>()?,
                     ))
                 };
-                Ok(Value::List(vec![part_of_pairs(0)?, part_of_pairs(1)?]))
+                Ok(Value::List(vec![list_of_pair_elements(0)?, list_of_pair_elements(1)?]))
             })
         }
         ("atan2", [_, _]) => apply_lane_by_lane(values, &|x| x[0].atan2(x[1])),
@@ -463,10 +471,10 @@ fn index(expr: &Expr) -> Result<usize> {
 }
 
 /// Returns the integers among the generic arguments of a call.
-fn generic_constants(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
-    let constant_argument = |argument: &syn::GenericArgument| match argument {
+fn integer_generic_arguments(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
+    let integer_of_generic_argument = |argument: &syn::GenericArgument| match argument {
         syn::GenericArgument::Const(expr) => index(expr).ok(),
         _ => None,
     };
-    types.args.iter().filter_map(constant_argument).collect()
+    types.args.iter().filter_map(integer_of_generic_argument).collect()
 }

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Returns the values `t0`, `t1`, … in a function's text.
-fn numbered_values(text: &str) -> BTreeSet<&str> {
+fn numbered_value_names(text: &str) -> BTreeSet<&str> {
     let is_word_character = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.split(|c| !is_word_character(c))
         .filter(|word| {
@@ -36,11 +36,11 @@ fn unbound_values(text: &str) -> Vec<String> {
             let statement = line.strip_prefix("let ").unwrap_or(line);
             let is_binding = line.starts_with("let ") || line.starts_with('t') || line.starts_with('(');
             if let Some(left) = statement.split([';', '=']).next().filter(|_| is_binding) {
-                bound.extend(numbered_values(left));
+                bound.extend(numbered_value_names(left));
             }
         }
         missing.extend(
-            numbered_values(function)
+            numbered_value_names(function)
                 .difference(&bound)
                 .map(|name| format!("{name} in {}", function.lines().next().unwrap_or(""))),
         );
@@ -49,7 +49,7 @@ fn unbound_values(text: &str) -> Vec<String> {
 }
 
 /// Returns the generated code of a mechanism as text, or the error messages.
-fn expanded_text(arguments: &str, item: &str) -> String {
+fn generated_code_or_errors(arguments: &str, item: &str) -> String {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
     format!("{}{}", emitted.tokens, emitted.text)
@@ -78,7 +78,7 @@ fn random_mechanisms_compile_or_get_an_error() {
     let all = test_seeds(120);
     for seed in all.clone() {
         let (arguments, item) = source::random_source(seed);
-        let text = expanded_text(&arguments, &item);
+        let text = generated_code_or_errors(&arguments, &item);
         assert!(!text.contains("Linkwork made a mistake"), "seed {seed}\n#[mechanism({arguments})]\n{item}");
         let missing = unbound_values(&text);
         assert!(missing.is_empty(), "seed {seed}: {missing:?}\n#[mechanism({arguments})]\n{item}");
@@ -115,7 +115,7 @@ fn overlong_mechanisms_are_rejected_at_any_capacity() {
             continue;
         };
         for room in [40, 300 + 40 * (seed as usize % 100)] {
-            let (graph, mut cx) = (Graph::with_room_for(room), Diagnostics::new());
+            let (graph, mut cx) = (Graph::graph_with_node_limit(room), Diagnostics::new());
             let compiled = compile(&source, &graph, &mut cx);
             assert!(graph.len() <= room);
             if graph.is_full() {
@@ -143,7 +143,7 @@ fn generated_functions_of_chosen_mechanisms_agree() {
         let compared = agreement::check_all(arguments, &item, functions, 0);
         assert!(compared > 20, "{compared} comparisons of #[mechanism({arguments})]\n{item}");
     }
-    let item = format!("pub struct Any {{ {} }}", chosen::limbs_source(2, 3));
+    let item = format!("pub struct Any {{ {} }}", chosen::body_with_limbs_source(2, 3));
     let functions = ["inverse_dynamics_derivatives_into", "mass_matrix_into"];
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives, packed", &item, &functions, 0) > 20);
 }
@@ -152,11 +152,11 @@ fn generated_functions_of_chosen_mechanisms_agree() {
 /// functions call.
 #[test]
 fn separately_computed_passive_forces_agree() {
-    let fields = chosen::springs_source(SPRINGS);
+    let fields = chosen::body_with_springs_source(SPRINGS);
     let item = format!("pub struct Any {{ {fields} }}");
     let functions = ["__passive_forces", "__passive_derivatives", "inverse_dynamics_derivatives"];
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives", &item, &functions, 0) > 20);
-    let text = expanded_text("gravity = -9.81 * y, derivatives", &item);
+    let text = generated_code_or_errors("gravity = -9.81 * y, derivatives", &item);
     for row in
         ["| passive forces, called by other functions |", "| their derivatives, called by other functions |"]
     {
@@ -189,14 +189,22 @@ fn emitted_bodies_compute_their_programs() {
     let mut run = BTreeSet::new();
     for seed in test_seeds(8) {
         let (arguments, item) = source::random_source(seed);
-        run.extend(bodies::check_function_bodies(&format!("{arguments}, batch"), &item, seed));
+        run.extend(bodies::compare_interpreted_function_bodies(&format!("{arguments}, batch"), &item, seed));
     }
     for (arguments, fields, _) in chosen::MECHANISMS {
-        run.extend(bodies::check_function_bodies(arguments, &format!("pub struct Any {{ {fields} }}"), 0));
+        run.extend(bodies::compare_interpreted_function_bodies(
+            arguments,
+            &format!("pub struct Any {{ {fields} }}"),
+            0,
+        ));
     }
-    for fields in [chosen::chain_source(6), chosen::limbs_source(4, 2)] {
+    for fields in [chosen::chain_source(6), chosen::body_with_limbs_source(4, 2)] {
         let item = format!("pub struct Any {{ {fields} }}");
-        run.extend(bodies::check_function_bodies("gravity = -9.81 * y, derivatives, packed", &item, 0));
+        run.extend(bodies::compare_interpreted_function_bodies(
+            "gravity = -9.81 * y, derivatives, packed",
+            &item,
+            0,
+        ));
     }
     let never: Vec<&str> = BODIES.into_iter().filter(|body| !run.contains(*body)).collect();
     assert_eq!(never, Vec::<&str>::new(), "these are not run");
@@ -205,8 +213,8 @@ fn emitted_bodies_compute_their_programs() {
 /// Long bodies are divided into blocks, and sines and cosines are computed before the first block. Some of
 /// them are results themselves.
 #[test]
-fn sines_may_be_results_of_long_bodies() {
-    let text = expanded_text(
+fn divided_functions_may_return_sines() {
+    let text = generated_code_or_errors(
         "gravity = -9.81 * y, derivatives",
         "pub struct Any {
             mass: f64,
@@ -219,6 +227,6 @@ fn sines_may_be_results_of_long_bodies() {
         }",
     );
     assert!(!text.contains("compile_error"), "{text}");
-    assert!(numbered_values(&text).len() > 200, "bodies are not long");
+    assert!(numbered_value_names(&text).len() > 200, "bodies are not long");
     assert_eq!(unbound_values(&text), Vec::<String>::new());
 }

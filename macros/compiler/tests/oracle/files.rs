@@ -11,7 +11,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::syntax::{self, Base, FileFormat, FileOptions, InputOption, Name};
+use linkwork_compiler::syntax::{self, Base, FileFormat, FileInputSource, FileOptions, Name};
 use linkwork_compiler::{derive, import, read_source};
 use std::path::Path;
 
@@ -26,7 +26,7 @@ fn functions_of_file(robot: &Robot, format: FileFormat, text: &str) -> (Vec<Stri
     let name_at_place = |text: &str| Name { text: text.to_string(), place: place.clone() };
     let options = FileOptions {
         base: if robot.free { Base::Free } else { Base::Fixed },
-        inputs: InputOption::Joints,
+        inputs: FileInputSource::Joints,
         lock: robot.locked_joints().map(name_at_place).collect(),
         ..FileOptions::with_defaults(format, name_at_place("file"))
     };
@@ -65,7 +65,7 @@ fn assert_near(what: &str, seed: u64, found: &[f64], expected: &[f64], text: &st
 }
 
 /// Reference values of a motion: generalized forces, energies, centre of mass.
-struct ReferenceMotion {
+struct ReferenceMotionValues {
     forces: Vec<f64>,
     kinetic: f64,
     potential: f64,
@@ -73,7 +73,7 @@ struct ReferenceMotion {
 }
 
 /// Computes the reference values with Kane's equations, from the partial velocities of every link.
-fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> ReferenceMotion {
+fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> ReferenceMotionValues {
     let pieces = robot.moving_bodies(&State::new(q, v, a));
     let partial_velocities = |k: usize| {
         let unit: Vec<f64> = (0..v.len()).map(|j| f64::from(u8::from(j == k))).collect();
@@ -84,7 +84,7 @@ fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> ReferenceMotion
     };
     let mass: f64 = pieces.iter().map(|p| p.mass).sum();
     let moment = std::array::from_fn(|i| pieces.iter().map(|p| p.mass * p.p[i].0[0].re).sum::<f64>());
-    ReferenceMotion {
+    ReferenceMotionValues {
         forces: (0..v.len()).map(inertial_force).collect(),
         kinetic: pieces.iter().map(|p| p.kinetic_energy().re).sum(),
         potential: -(0..3).map(|i| GRAVITY[i] * moment[i]).sum::<f64>(),
@@ -100,7 +100,7 @@ fn random_urdf_files_have_the_dynamics_of_the_format() {
         let mut random = Random::new(4_000_000 + seed);
         let robot = Robot::random_robot(&[0, 1, 2, 3, 4, 5, 6], &mut random);
         robot.count_joint_types(&mut kinds);
-        check_file(&robot, FileFormat::Urdf, &robot.urdf_text(), seed, &mut random);
+        check_file_against_kane(&robot, FileFormat::Urdf, &robot.urdf_text(), seed, &mut random);
     }
     assert!(test_seeds(20).end < 20 || kinds.iter().all(|count| *count >= 3), "{kinds:?}");
 }
@@ -112,12 +112,12 @@ fn random_sdf_files_of_all_versions_have_equal_dynamics() {
         let mut random = Random::new(4_500_000 + seed);
         let robot = Robot::random_robot(&sdf::OF_SDF, &mut random);
         let text = sdf::sdf_text(&robot, &mut random);
-        check_file(&robot, FileFormat::Sdf, &text, seed, &mut random);
+        check_file_against_kane(&robot, FileFormat::Sdf, &text, seed, &mut random);
     }
 }
 
 /// Compares the functions of a robot's file with Kane's equations at two states.
-fn check_file(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: &mut Random) {
+fn check_file_against_kane(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: &mut Random) {
     let (names, output) = functions_of_file(robot, format, text);
     assert_eq!(names, robot.coordinate_names(), "{text}");
     let find_function = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");

@@ -9,7 +9,7 @@ use crate::jet::{
     rotated_vector, rotation_about_axis, scaled_vector, sum_of_vectors,
 };
 use crate::motion::{
-    Piece, Pose, angular_motion, complex_dot, compose_poses, drifting_position, inverse,
+    Piece, Pose, angular_motion, complex_dot, compose_poses, inverse, position_moving_with_velocity,
     rotating_orientation, rotation_of_quaternion, velocity_of_position,
 };
 use crate::spec::{Body, Element, End, Kind, Law, Path, Place, Spec};
@@ -67,7 +67,10 @@ fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
         let (w, rate) = (three_components(v, 3), three_components(a, 3));
         let r = rotating_orientation(&q[3..], w, rate);
         return (
-            Pose { r, p: drifting_position(q, &r, three_components(v, 0), w, three_components(a, 0)) },
+            Pose {
+                r,
+                p: position_moving_with_velocity(q, &r, three_components(v, 0), w, three_components(a, 0)),
+            },
             Vec::new(),
         );
     }
@@ -171,7 +174,7 @@ fn length(world: &World, path: &Path) -> Jet {
 
 /// Returns the ends of a cable relative to the centre of its obstacle, projected on the plane normal to the
 /// axis, and the distance between the ends along the axis.
-fn ends_across_obstacle(
+fn cable_ends_in_obstacle_plane(
     world: &World,
     ends: &[End; 2],
     around: &End,
@@ -184,14 +187,14 @@ fn ends_across_obstacle(
         .body
         .map_or(constant_vector(axis), |k| rotated_vector(&world.poses[k].r, constant_vector(axis)));
     let heights = from.map(|p| dot(p, n));
-    let normal_component_of_end = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
-    ([normal_component_of_end(0), normal_component_of_end(1)], heights[1] - heights[0], Some(n))
+    let in_plane_component_of_end = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
+    ([in_plane_component_of_end(0), in_plane_component_of_end(1)], heights[1] - heights[0], Some(n))
 }
 
 /// Returns the length of a taut cable. In the plane normal to the axis, or in the plane of the ends and the
 /// centre of a ball, the cable is straight on the unrolled surface.
 fn cable_length(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option<[f64; 3]>) -> Jet {
-    let ([a, b], rise, n) = ends_across_obstacle(world, ends, around, axis);
+    let ([a, b], rise, n) = cable_ends_in_obstacle_plane(world, ends, around, axis);
     let normal = cross(a, b);
     let angle = match n {
         None => Jet::atan2(dot(normal, normal).sqrt(), dot(a, b)),
@@ -233,12 +236,12 @@ pub fn value_of_measure(spec: &Spec, state: &State, measure: &Measure) -> Jet {
 }
 
 /// Returns whether the ends of all cables are outside the balls and cylinders that the cables wrap around.
-pub fn cables_are_outside(spec: &Spec, q: &[f64]) -> bool {
+pub fn are_cables_outside_surfaces(spec: &Spec, q: &[f64]) -> bool {
     let (_, nv) = coordinate_and_velocity_counts(spec);
     let world = world_of_state(spec, &State::new(q, &vec![0.0; nv], &vec![0.0; nv]));
     spec.elements.iter().all(|element| match element {
         Element::Along(_, Path::Cable { ends, around, radius, axis }) => {
-            let (ends, ..) = ends_across_obstacle(&world, ends, around, *axis);
+            let (ends, ..) = cable_ends_in_obstacle_plane(&world, ends, around, *axis);
             ends.iter().all(|p| dot(*p, *p).0[0].re > 1.1 * radius * radius)
         }
         _ => true,

@@ -24,7 +24,7 @@ mod sites;
 mod spec;
 mod words;
 
-use spec::{Style, random_spec};
+use spec::{Style, random_mechanism_spec};
 
 /// Returns the seeds of a test. The variable `LINKWORK_ORACLE` replaces their number by `20000`, or their
 /// range by `400..405`.
@@ -39,7 +39,7 @@ const PLAIN: Style = Style { bodies: 6, limbs: 0, decades: 0.3, noise: None };
 #[test]
 fn random_trees_satisfy_kanes_equations() {
     for seed in test_seeds(40) {
-        programs::check_mechanism(&random_spec(seed, PLAIN), seed);
+        programs::check_mechanism(&random_mechanism_spec(seed, PLAIN), seed);
     }
 }
 
@@ -47,14 +47,17 @@ fn random_trees_satisfy_kanes_equations() {
 fn random_limbs_satisfy_kanes_equations() {
     for seed in test_seeds(20) {
         let limbs = 2 + seed as usize % 4;
-        programs::check_mechanism(&random_spec(1_000_000 + seed, Style { limbs, ..PLAIN }), seed);
+        programs::check_mechanism(&random_mechanism_spec(1_000_000 + seed, Style { limbs, ..PLAIN }), seed);
     }
 }
 
 #[test]
 fn mass_ratios_of_twelve_decades_satisfy_kanes_equations() {
     for seed in test_seeds(30) {
-        programs::check_mechanism(&random_spec(2_000_000 + seed, Style { decades: 6.0, ..PLAIN }), seed);
+        programs::check_mechanism(
+            &random_mechanism_spec(2_000_000 + seed, Style { decades: 6.0, ..PLAIN }),
+            seed,
+        );
     }
 }
 
@@ -68,7 +71,7 @@ fn nearly_identical_limbs_satisfy_kanes_equations() {
         // in their masses. Masses that are smaller than the others by thirteen powers of ten are treated as
         // zero.
         let style = Style { limbs, decades: 5.5, noise, ..PLAIN };
-        programs::check_mechanism(&random_spec(4_000_000 + seed, style), seed);
+        programs::check_mechanism(&random_mechanism_spec(4_000_000 + seed, style), seed);
     }
 }
 
@@ -84,6 +87,6 @@ fn noisy_right_angles_satisfy_kanes_equations() {
     for seed in test_seeds(30) {
         let noise = 10.0_f64.powi(-16 + (seed % 14) as i32);
         let style = Style { bodies: 8, noise: Some(noise), ..PLAIN };
-        programs::check_mechanism(&random_spec(3_000_000 + seed, style), seed);
+        programs::check_mechanism(&random_mechanism_spec(3_000_000 + seed, style), seed);
     }
 }

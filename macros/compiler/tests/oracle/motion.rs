@@ -104,7 +104,7 @@ pub fn rotating_orientation(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
 }
 
 /// Returns a position that moves with a velocity in body axes.
-pub fn drifting_position(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vector {
+pub fn position_moving_with_velocity(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vector {
     let spin = cross(w, v);
     from_fn(|i| {
         let first: C = (0..3).map(|j| r[i][j].0[0] * v[j]).sum();

@@ -9,7 +9,7 @@ use linkwork_compiler::catalogue::Called;
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::{Quantity, Supplied};
+use linkwork_compiler::mechanism::{Quantity, SuppliedQuantity};
 use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 
@@ -61,18 +61,18 @@ fn normalise_quaternion(q: &mut [f64]) {
 pub fn check_mechanism(spec: &Spec, seed: u64) {
     let point = Point::new(spec, seed);
     // The length of a cable that starts inside its obstacle is undefined.
-    if !kane::cables_are_outside(spec, &point.q) {
+    if !kane::are_cables_outside_surfaces(spec, &point.q) {
         return;
     }
     // With inerters on cables around cylinders, second derivatives may be too long.
-    let checked = check_with_derivatives(spec, ", second_derivatives", &point, seed)
-        || check_with_derivatives(spec, ", derivatives", &point, seed);
+    let checked = check_functions_with_derivatives(spec, ", second_derivatives", &point, seed)
+        || check_functions_with_derivatives(spec, ", derivatives", &point, seed);
     assert!(checked || kane::coordinate_and_velocity_counts(spec).1 > 40, "seed {seed}");
 }
 
 /// Compares the functions of a mechanism, with the derivatives of the option `word`, with the oracle. Returns
 /// false if the derivatives are too long.
-fn check_with_derivatives(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
+fn check_functions_with_derivatives(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
     let (arguments, item) = words::mechanism_source(spec, "Random", word);
     let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
@@ -116,7 +116,7 @@ impl Case<'_> {
             Quantity::Velocity(k) => self.point.v[k],
             Quantity::Acceleration(k) => self.point.a[k],
             Quantity::Force(k) => self.point.tau[k],
-            Quantity::Given(Supplied::Factor, k) => self.point.lambda[k],
+            Quantity::Given(SuppliedQuantity::Factor, k) => self.point.lambda[k],
             _ => f64::NAN,
         };
         // The results of called functions are inputs of their callers.
@@ -270,7 +270,7 @@ impl Case<'_> {
             kane::power_of_forces(self.spec, &stepped, lambda).im / STEP
         };
         let difference_quotient = |outer: &[Vec<f64>; 3], inner: &[Vec<f64>; 3]| {
-            let derivative_at_displacement = |h: f64| {
+            let power_derivative_at_displacement = |h: f64| {
                 let add_real_step = |list: &[C], rates: &[f64]| -> Vec<C> {
                     list.iter().zip(rates).map(|(x, rate)| x + real_number(h * rate)).collect()
                 };
@@ -284,7 +284,8 @@ impl Case<'_> {
                     inner,
                 )
             };
-            let central_difference = |h: f64| derivative_at_displacement(h) - derivative_at_displacement(-h);
+            let central_difference =
+                |h: f64| power_derivative_at_displacement(h) - power_derivative_at_displacement(-h);
             (central_difference(size) * 45.0 - central_difference(2.0 * size) * 9.0
                 + central_difference(3.0 * size))
                 / (60.0 * size)

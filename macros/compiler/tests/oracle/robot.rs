@@ -5,7 +5,7 @@ use crate::jet::{
     sum_of_vectors,
 };
 use crate::kane::State;
-use crate::motion::{Piece, Pose, compose_poses, drifting_position, rotating_orientation};
+use crate::motion::{Piece, Pose, compose_poses, position_moving_with_velocity, rotating_orientation};
 use crate::random::Random;
 use std::array::from_fn;
 use std::fmt::Write;
@@ -76,8 +76,8 @@ impl Link {
         let inertial = format!(
             "<inertial><mass value=\"{mass:?}\"/><origin xyz=\"{}\" rpy=\"{}\"/><inertia ixx=\"{xx:?}\" \
              ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial>",
-            space_separated(com),
-            space_separated(rpy)
+            space_separated_text(com),
+            space_separated_text(rpy)
         );
         let inertia =
             from_fn(|i| from_fn(|j| (0..9).map(|k| r[i][k / 3] * own[k / 3][k % 3] * r[j][k % 3]).sum()));
@@ -86,7 +86,7 @@ impl Link {
 }
 
 /// Formats three numbers as text, separated by spaces.
-pub fn space_separated(numbers: [f64; 3]) -> String {
+pub fn space_separated_text(numbers: [f64; 3]) -> String {
     numbers.map(|x| format!("{x:?}")).join(" ")
 }
 
@@ -211,12 +211,22 @@ impl Robot {
                 let own = match KINDS[joint.kind] {
                     "fixed" => String::new(),
                     "prismatic" => {
-                        format!("<joint name=\"{name}\" type=\"slide\" axis=\"{}\"/>", space_separated(*axis))
+                        format!(
+                            "<joint name=\"{name}\" type=\"slide\" axis=\"{}\"/>",
+                            space_separated_text(*axis)
+                        )
                     }
                     "spherical" => format!("<joint name=\"{name}\" type=\"ball\"/>"),
-                    _ => format!("<joint name=\"{name}\" axis=\"{}\"/>", space_separated(*axis)),
+                    _ => format!("<joint name=\"{name}\" axis=\"{}\"/>", space_separated_text(*axis)),
                 };
-                (format!(" pos=\"{}\" euler=\"{}\"", space_separated(*xyz), space_separated(*rpy)), own)
+                (
+                    format!(
+                        " pos=\"{}\" euler=\"{}\"",
+                        space_separated_text(*xyz),
+                        space_separated_text(*rpy)
+                    ),
+                    own,
+                )
             }
         };
         let joint = |k: usize| self.links[k].joint.as_ref();
@@ -229,7 +239,7 @@ impl Robot {
         format!(
             "<body name=\"{name}\"{place}>{own}<inertial mass=\"{mass:?}\" pos=\"{}\" fullinertia=\"{xx:?} \
              {yy:?} {zz:?} {xy:?} {xz:?} {yz:?}\"/>{}{children}</body>\n",
-            space_separated(*com),
+            space_separated_text(*com),
             inside(k)
         )
     }
@@ -264,9 +274,9 @@ impl Robot {
             joint.name,
             KINDS[joint.kind],
             self.links[child].name,
-            space_separated(joint.axis),
-            space_separated(joint.rpy),
-            space_separated(joint.xyz),
+            space_separated_text(joint.axis),
+            space_separated_text(joint.rpy),
+            space_separated_text(joint.xyz),
             mimic.unwrap_or_default(),
             self.links[joint.parent].name
         );
@@ -315,7 +325,7 @@ impl Robot {
     }
 
     /// Returns for each link the indices of the first entries of its joint in `q` and `v`.
-    fn first_joint_entries(&self) -> Vec<[usize; 2]> {
+    fn joint_start_indices(&self) -> Vec<[usize; 2]> {
         let (mut entries, mut next) = (vec![[0; 2]; self.links.len()], [0; 2]);
         for link in self.links_depth_first() {
             entries[link] = next;
@@ -327,7 +337,7 @@ impl Robot {
 
     /// Returns random `q`, `v` and `v̇`; quaternions in `q` are normalised.
     pub fn random_state(&self, random: &mut Random) -> [Vec<f64>; 3] {
-        let entries = self.first_joint_entries();
+        let entries = self.joint_start_indices();
         let total_size =
             |k: usize| self.links.iter().map(|link| link.joint_entry_counts(self.free)[k]).sum::<usize>();
         let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.four_digit_number()).collect() };
@@ -353,7 +363,7 @@ impl Robot {
 
     /// Returns axes and origin of every link relative to the ground.
     fn poses_of_links(&self, state: &State) -> Vec<Pose> {
-        let entries = self.first_joint_entries();
+        let entries = self.joint_start_indices();
         let mut places: Vec<Pose> = Vec::new();
         for (k, link) in self.links.iter().enumerate() {
             let Some(joint) = &link.joint else {
@@ -444,7 +454,7 @@ fn floating_pose(state: &State, [q, v]: [usize; 2]) -> Pose {
     let r = rotating_orientation(&state.q[q + 3..q + 7], w, rate);
     Pose {
         r,
-        p: drifting_position(
+        p: position_moving_with_velocity(
             &state.q[q..q + 3],
             &r,
             three_entries_from(&state.v, v),

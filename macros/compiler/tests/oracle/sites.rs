@@ -4,7 +4,7 @@ use crate::jet::{C, constant_vector, cross, real_number};
 use crate::kane::State;
 use crate::motion::{Pose, angular_motion, complex_dot, velocity_of_position};
 use crate::random::Random;
-use crate::robot::{Robot, rotation_of_rpy, space_separated};
+use crate::robot::{Robot, rotation_of_rpy, space_separated_text};
 use crate::test_seeds;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
@@ -80,8 +80,8 @@ impl Site {
     fn site_text(&self, name: &str) -> String {
         format!(
             "<site name=\"{name}\" pos=\"{}\" euler=\"{}\"/>",
-            space_separated(self.xyz),
-            space_separated(self.rpy)
+            space_separated_text(self.xyz),
+            space_separated_text(self.rpy)
         )
     }
 
@@ -101,7 +101,7 @@ struct Motor {
 impl Motor {
     /// Returns the power of the motor for a unit input: the power of its force and torque in the motion
     /// relative to the reference site.
-    fn motor_power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
+    fn motor_power_for_unit_input(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
         let [on, against] = self.sites.map(|k| sites[k].pose_of_site(robot, state));
         let axes = if self.against { &against } else { &on };
         let vector_in_ground =
@@ -146,13 +146,13 @@ fn random_site_motors_do_the_work_of_their_forces() {
             })
             .collect();
         let text_of_site_in_link = |link: usize| sites[link + 1].site_text(&format!("s{}", link + 1));
-        let text_of_motor = |(k, motor): (usize, &Motor)| {
+        let mjcf_motor_element = |(k, motor): (usize, &Motor)| {
             let [on, other] = motor.sites;
             let against = if motor.against { format!(" refsite=\"s{other}\"") } else { String::new() };
             let gear = motor.gear.map(|x| format!("{x:?}")).join(" ");
             format!("<motor name=\"m{k}\" site=\"s{on}\"{against} gear=\"{gear}\"/>")
         };
-        let motors_text: String = motors.iter().enumerate().map(text_of_motor).collect();
+        let motors_text: String = motors.iter().enumerate().map(mjcf_motor_element).collect();
         let text = robot
             .mjcf_text(&text_of_site_in_link, &format!("<actuator>{motors_text}</actuator>"))
             .replace("<worldbody>", &format!("<worldbody>{}", sites[0].site_text("s0")));
@@ -172,7 +172,7 @@ fn random_site_motors_do_the_work_of_their_forces() {
             let expected: C = motors
                 .iter()
                 .zip(&u)
-                .map(|(motor, u)| motor.motor_power(&sites, &robot, &state) * real_number(*u))
+                .map(|(motor, u)| motor.motor_power_for_unit_input(&sites, &robot, &state) * real_number(*u))
                 .sum();
             let expected = expected.re;
             assert!(

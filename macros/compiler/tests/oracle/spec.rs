@@ -185,7 +185,7 @@ impl Source {
         self.0.index_below(n)
     }
 
-    fn has_chance(&mut self, one_in: usize) -> bool {
+    fn happens_one_time_in(&mut self, one_in: usize) -> bool {
         self.index_below(one_in) == 0
     }
 
@@ -196,8 +196,8 @@ impl Source {
     /// Returns a coordinate axis or a random unit vector.
     fn random_axis(&mut self, style: &Style) -> [f64; 3] {
         let mut axis = [0.0; 3];
-        if style.noise.is_some() || !self.has_chance(3) {
-            axis[self.index_below(3)] = if self.has_chance(2) { 1.0 } else { -1.0 };
+        if style.noise.is_some() || !self.happens_one_time_in(3) {
+            axis[self.index_below(3)] = if self.happens_one_time_in(2) { 1.0 } else { -1.0 };
         } else {
             axis = self.random_vector(1.0);
             axis[self.index_below(3)] += 1.5;
@@ -208,7 +208,7 @@ impl Source {
         unit_vector(axis)
     }
 
-    fn random_turns(&mut self, style: &Style) -> Vec<(usize, f64)> {
+    fn random_rotations(&mut self, style: &Style) -> Vec<(usize, f64)> {
         (0..self.index_below(3))
             .map(|_| {
                 let angle = match style.noise {
@@ -223,11 +223,11 @@ impl Source {
             .collect()
     }
 
-    fn random_place(&mut self, style: &Style) -> Place {
+    fn random_joint_placement(&mut self, style: &Style) -> Place {
         match self.index_below(4) {
             0 => Place::default(),
             1 => Place { at: self.random_vector(0.5), turns: Vec::new() },
-            _ => Place { at: self.random_vector(0.5), turns: self.random_turns(style) },
+            _ => Place { at: self.random_vector(0.5), turns: self.random_rotations(style) },
         }
     }
 
@@ -243,26 +243,30 @@ impl Source {
         Body {
             kind,
             parent,
-            on_parent: self.random_place(style),
-            on_child: if self.has_chance(2) { Place::default() } else { self.random_place(style) },
+            on_parent: self.random_joint_placement(style),
+            on_child: if self.happens_one_time_in(2) {
+                Place::default()
+            } else {
+                self.random_joint_placement(style)
+            },
             axes: [self.random_axis(style), self.random_axis(style)],
             pitch: 0.2 + self.0.uniform_number(0.1),
             mass,
-            com: if self.has_chance(3) { [0.0; 3] } else { self.random_vector(0.4) },
+            com: if self.happens_one_time_in(3) { [0.0; 3] } else { self.random_vector(0.4) },
             moments: sides.map(|s| mass * (all - s) / 3.0),
-            inertia_turns: self.random_turns(style),
-            particle: self.has_chance(6).then(|| (self.random_mass(style), self.random_vector(0.5))),
+            inertia_turns: self.random_rotations(style),
+            particle: self.happens_one_time_in(6).then(|| (self.random_mass(style), self.random_vector(0.5))),
             slider: self
-                .has_chance(12)
+                .happens_one_time_in(12)
                 .then(|| Slider { mass: self.random_mass(style), offset: self.random_vector(0.5) }),
         }
     }
 
-    fn random_end(&mut self, body: Option<usize>) -> End {
+    fn random_attachment_point(&mut self, body: Option<usize>) -> End {
         End { body, at: self.random_vector(0.8) }
     }
 
-    fn random_law(&mut self) -> Law {
+    fn random_force_law(&mut self) -> Law {
         let size = 1.5 + self.0.uniform_number(1.0);
         match self.index_below(3) {
             0 => Law::Spring(4.0 * size, self.0.uniform_number(0.3).abs()),
@@ -271,8 +275,12 @@ impl Source {
         }
     }
 
-    fn law_between(&mut self) -> Law {
-        if self.has_chance(4) { Law::Attraction(self.0.uniform_number(2.0)) } else { self.random_law() }
+    fn random_law_between_points(&mut self) -> Law {
+        if self.happens_one_time_in(4) {
+            Law::Attraction(self.0.uniform_number(2.0))
+        } else {
+            self.random_force_law()
+        }
     }
 
     fn random_friction_law(&mut self) -> Law {
@@ -290,11 +298,11 @@ impl Source {
     /// Returns a rope over a peg, or a cable around a round obstacle on any body.
     fn random_cable_path(&mut self, bodies: &[Body], one: usize) -> Option<Path> {
         let other = self.random_body_or_ground(bodies);
-        if self.has_chance(2) {
+        if self.happens_one_time_in(2) {
             return Some(Path::Rope([
-                self.random_end(None),
-                self.random_end(Some(one)),
-                self.random_end(other),
+                self.random_attachment_point(None),
+                self.random_attachment_point(Some(one)),
+                self.random_attachment_point(other),
             ]));
         }
         // Bodies that are welded together have a constant distance.
@@ -305,10 +313,10 @@ impl Source {
         }
         let around = self.random_body_or_ground(bodies);
         Some(Path::Cable {
-            ends: [self.random_end(other), self.random_end(Some(one))],
-            around: self.random_end(around),
+            ends: [self.random_attachment_point(other), self.random_attachment_point(Some(one))],
+            around: self.random_attachment_point(around),
             radius: 0.2 + self.0.uniform_number(0.15),
-            axis: self.has_chance(2).then(|| {
+            axis: self.happens_one_time_in(2).then(|| {
                 let mut axis = self.random_vector(1.0);
                 axis[self.index_below(3)] += 1.5;
                 unit_vector(axis)
@@ -328,18 +336,26 @@ impl Source {
             return None;
         }
         Some(match self.index_below(9) {
-            0 => Element::Push(self.random_end(Some(one)), self.random_vector(3.0)),
-            1 => Element::Follow(self.random_end(Some(one)), self.random_vector(3.0)),
+            0 => Element::Push(self.random_attachment_point(Some(one)), self.random_vector(3.0)),
+            1 => Element::Follow(self.random_attachment_point(Some(one)), self.random_vector(3.0)),
             2 => {
                 let coordinates = bodies[one].kind.coordinate_names();
                 if coordinates.is_empty() {
                     return None;
                 }
-                let law = if self.has_chance(3) { self.random_friction_law() } else { self.random_law() };
+                let law = if self.happens_one_time_in(3) {
+                    self.random_friction_law()
+                } else {
+                    self.random_force_law()
+                };
                 Element::On(law, one, self.index_below(coordinates.len()))
             }
-            3 => Element::Between(self.law_between(), self.random_end(None), self.random_end(Some(one))),
-            4 => Element::Along(self.random_law(), self.random_cable_path(bodies, one)?),
+            3 => Element::Between(
+                self.random_law_between_points(),
+                self.random_attachment_point(None),
+                self.random_attachment_point(Some(one)),
+            ),
+            4 => Element::Along(self.random_force_law(), self.random_cable_path(bodies, one)?),
             5 if has_rotating_joint(bodies, one) => Element::Twist(one, self.random_vector(3.0)),
             _ => {
                 let other = self.index_below(bodies.len());
@@ -347,7 +363,11 @@ impl Source {
                 if rigidly_connected_root(bodies, other) == rigidly_connected_root(bodies, one) {
                     return None;
                 }
-                Element::Between(self.law_between(), self.random_end(Some(other)), self.random_end(Some(one)))
+                Element::Between(
+                    self.random_law_between_points(),
+                    self.random_attachment_point(Some(other)),
+                    self.random_attachment_point(Some(one)),
+                )
             }
         })
     }
@@ -395,17 +415,17 @@ const LIMB_KINDS: [Kind; 12] = [
 ];
 
 /// Returns the random mechanism that a seed determines.
-pub fn random_spec(seed: u64, style: Style) -> Spec {
+pub fn random_mechanism_spec(seed: u64, style: Style) -> Spec {
     let mut source = Source(Random::new(seed));
     let mut bodies: Vec<Body> = Vec::new();
     let rigged = if style.limbs > 0 { add_identical_limbs(&mut source, &style, &mut bodies) } else { 0 };
     if style.limbs == 0 {
         let count = 1 + source.index_below(style.bodies);
         for k in 0..count {
-            let parent = (k > 0 && !source.has_chance(8)).then(|| source.index_below(k));
+            let parent = (k > 0 && !source.happens_one_time_in(8)).then(|| source.index_below(k));
             // Floating bases are most frequent in applications.
             let kind = match parent {
-                None if source.has_chance(3) => Kind::Free,
+                None if source.happens_one_time_in(3) => Kind::Free,
                 _ => KINDS[source.index_below(KINDS.len())],
             };
             let body = source.random_body(kind, parent, &style);
@@ -417,7 +437,7 @@ pub fn random_spec(seed: u64, style: Style) -> Spec {
     }
     let tries = source.index_below(4) + rigged;
     let elements = (0..tries).filter_map(|_| source.random_element(&bodies)).collect();
-    Spec { gravity: source.random_vector(10.0), bodies, elements, symbolic: source.has_chance(2) }
+    Spec { gravity: source.random_vector(10.0), bodies, elements, symbolic: source.happens_one_time_in(2) }
 }
 
 /// Adds identical limbs to a trunk. Returns the number of further elements to generate.
@@ -435,7 +455,7 @@ fn add_identical_limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body
     let joints: Vec<Kind> =
         (0..1 + source.index_below(2)).map(|_| LIMB_KINDS[source.index_below(LIMB_KINDS.len())]).collect();
     let plain: Vec<Body> = joints.iter().map(|kind| source.random_body(*kind, None, style)).collect();
-    let same = source.has_chance(2);
+    let same = source.happens_one_time_in(2);
     for _ in 0..style.limbs {
         for (k, pattern) in plain.iter().enumerate() {
             let parent = if k == 0 { root } else { Some(bodies.len() - 1) };

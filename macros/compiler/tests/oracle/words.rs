@@ -39,7 +39,7 @@ fn write_body(k: usize, body: &Body, symbolic: bool, out: &mut String) {
         "#[joint({} -> {}{})] joint{k}: {:?},",
         placement_text(&parent, &body.on_parent),
         placement_text(&format!("body{k}"), &body.on_child),
-        axes_text(body),
+        joint_axes_source_text(body),
         body.kind
     );
     if let Some((mass, at)) = body.particle {
@@ -77,7 +77,7 @@ fn rotation_text(turns: &[(usize, f64)]) -> String {
     format!(".rotated({})", list.join(", "))
 }
 
-fn axes_text(body: &Body) -> String {
+fn joint_axes_source_text(body: &Body) -> String {
     let [a, b] = body.axes.map(|axis| format!("unit({axis:?})"));
     match body.kind {
         Kind::Pin | Kind::Collar => format!(", about = {a}"),
@@ -98,7 +98,7 @@ pub fn end_text(end: &End) -> String {
 fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String) {
     let _ = match element {
         Element::Between(law, a, b) => {
-            let (words, kind) = law_in_words(*law, "free_length");
+            let (words, kind) = force_law_source_text(*law, "free_length");
             writeln!(
                 out,
                 "#[acts(between = ({}, {}), {words})] element{k}: {kind},",
@@ -107,7 +107,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
             )
         }
         Element::Along(law, path) => {
-            let (words, kind) = law_in_words(*law, "free_length");
+            let (words, kind) = force_law_source_text(*law, "free_length");
             writeln!(out, "#[acts(on = {}, {words})] element{k}: {kind},", length(path))
         }
         Element::On(law, body, coordinate) => {
@@ -116,7 +116,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
             let is_angle = matches!(which, ".turn" | ".first" | ".second" | ".angle")
                 || matches!(kind, Kind::Pin | Kind::Screw);
             let free = if is_angle { "free_angle" } else { "free_length" };
-            let (words, kind) = law_in_words(*law, free);
+            let (words, kind) = force_law_source_text(*law, free);
             writeln!(out, "#[acts(on = joint{body}{which}, {words})] element{k}: {kind},")
         }
         Element::Push(end, [x, y, z]) => writeln!(
@@ -157,7 +157,7 @@ fn length(path: &Path) -> String {
     }
 }
 
-fn law_in_words(law: Law, free: &str) -> (String, &'static str) {
+fn force_law_source_text(law: Law, free: &str) -> (String, &'static str) {
     match law {
         Law::Spring(k, free_value) => (format!("stiffness = {k:?}, {free} = {free_value:?}"), "Spring"),
         Law::Dashpot(c) => (format!("damping = {c:?}"), "Dashpot"),

@@ -1,8 +1,8 @@
 //! Dimensional and dimensionless derivatives of the forces on an aircraft.
 
-use super::states::check_free;
+use super::states::check_begins_with_free_joint;
 use crate::Error;
-use crate::mechanism::effective_mass;
+use crate::mechanism::effective_mass_at_state;
 use linkwork::{Derivatives as Generated, Mechanism, Scleronomic};
 use nalgebra::{DMatrix, DVector, SVector};
 
@@ -33,7 +33,7 @@ pub struct Derivatives {
     pub by_velocity: DMatrix<f64>,
     /// Derivatives of forces and moments with respect to the time derivatives of the velocities, such as
     /// `∂Z/∂ẇ`: kg, kg·m, kg·m².
-    pub by_acceleration: DMatrix<f64>,
+    pub acceleration_derivative_matrix: DMatrix<f64>,
     /// Derivatives of forces and moments with respect to the inputs.
     pub by_input: DMatrix<f64>,
     /// Forces and moments on the aircraft at the reference state, N and N·m.
@@ -45,7 +45,7 @@ pub struct Derivatives {
 
 /// Returns the wrench `w × (M v)` for twists `w` and `v` and the mass matrix `M` of a body, with the linear
 /// part first.
-fn bias_wrench(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
+fn twist_cross_momentum(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
     let momentum = mass * v;
     let three_entries_from = |x: &DVector<f64>, from: usize| x.fixed_rows::<3>(from).into_owned();
     let (force, moment) = (three_entries_from(&momentum, 0), three_entries_from(&momentum, 3));
@@ -76,10 +76,10 @@ impl Derivatives {
     where
         M: Generated<NQ, NV, NU, Scalar = f64> + Scleronomic,
     {
-        check_free(&M::VELOCITIES)?;
+        check_begins_with_free_joint(&M::VELOCITIES)?;
         let motion = m.linear_motion(q, v, u);
         let (_, by_v) = m.inverse_dynamics_derivatives(0.0, q, v, &motion.acceleration);
-        let all = effective_mass(m, 0.0, q, v);
+        let all = effective_mass_at_state(m, 0.0, q, v);
         let own = Mechanism::mass_matrix(m, 0.0, q);
         let mass = DMatrix::from_fn(6, 6, |i, j| own[(i, j)]);
         let velocity = DVector::from_fn(6, |i, _| v[i]);
@@ -87,20 +87,32 @@ impl Derivatives {
         let mut by_velocity = DMatrix::from_fn(6, 6, |i, j| -by_v[(i, j)]);
         for k in 0..6 {
             let unit = DVector::from_fn(6, |i, _| if i == k { 1.0 } else { 0.0 });
-            let change = bias_wrench(&mass, &unit, &velocity) + bias_wrench(&mass, &velocity, &unit);
+            let change =
+                twist_cross_momentum(&mass, &unit, &velocity) + twist_cross_momentum(&mass, &velocity, &unit);
             by_velocity.column_mut(k).zip_apply(&change, |x, y| *x += y);
         }
-        let by_acceleration = DMatrix::from_fn(6, 6, |i, j| mass[(i, j)] - all[(i, j)]);
+        let acceleration_derivative_matrix = DMatrix::from_fn(6, 6, |i, j| mass[(i, j)] - all[(i, j)]);
         let by_u = DMatrix::from_fn(NV, NU, |i, j| motion.by_u[(i, j)]);
         let by_input = (all * by_u).rows(0, 6).into_owned();
-        let forces =
-            &mass * acceleration + bias_wrench(&mass, &velocity, &velocity) - weight_on_free_joint(m, q);
-        let parts =
-            [by_velocity.as_slice(), by_acceleration.as_slice(), by_input.as_slice(), forces.as_slice()];
+        let forces = &mass * acceleration + twist_cross_momentum(&mass, &velocity, &velocity)
+            - weight_on_free_joint(m, q);
+        let parts = [
+            by_velocity.as_slice(),
+            acceleration_derivative_matrix.as_slice(),
+            by_input.as_slice(),
+            forces.as_slice(),
+        ];
         if parts.iter().any(|part| part.iter().any(|x| !x.is_finite())) {
             return Err(Error::NotFinite { what: "a derivative" });
         }
-        Ok(Self { by_velocity, by_acceleration, by_input, forces, velocity, inputs: M::INPUTS.to_vec() })
+        Ok(Self {
+            by_velocity,
+            acceleration_derivative_matrix,
+            by_input,
+            forces,
+            velocity,
+            inputs: M::INPUTS.to_vec(),
+        })
     }
 
     /// Transforms the derivatives to stability axes: rotated about the right axis so that the forward axis is
@@ -111,10 +123,12 @@ impl Derivatives {
         for k in [0, 3] {
             (turn[(k, k)], turn[(k, k + 2)], turn[(k + 2, k)], turn[(k + 2, k + 2)]) = (c, s, -s, c);
         }
-        let rotate_to_stability_axes = |m: &DMatrix<f64>| &turn * m * turn.transpose();
+        let rotate_matrix_to_stability_axes = |m: &DMatrix<f64>| &turn * m * turn.transpose();
         Self {
-            by_velocity: rotate_to_stability_axes(&self.by_velocity),
-            by_acceleration: rotate_to_stability_axes(&self.by_acceleration),
+            by_velocity: rotate_matrix_to_stability_axes(&self.by_velocity),
+            acceleration_derivative_matrix: rotate_matrix_to_stability_axes(
+                &self.acceleration_derivative_matrix,
+            ),
             by_input: &turn * &self.by_input,
             forces: &turn * &self.forces,
             velocity: &turn * &self.velocity,
@@ -129,15 +143,16 @@ impl Derivatives {
     ///
     /// [`Error::Unknown`] with the list of existing names.
     pub fn of_force(&self, force: &str, by: &str) -> Result<f64, Error> {
-        let row = index_of_known_name("force", &FORCES, force)?;
+        let row = index_of_name_or_error("force", &FORCES, force)?;
         if let Some(velocity) = by.strip_suffix('\'') {
-            return Ok(self.by_acceleration[(row, index_of_known_name("velocity", &VELOCITIES, velocity)?)]);
+            return Ok(self.acceleration_derivative_matrix
+                [(row, index_of_name_or_error("velocity", &VELOCITIES, velocity)?)]);
         }
         if let Some(column) = VELOCITIES.iter().position(|name| *name == by) {
             return Ok(self.by_velocity[(row, column)]);
         }
         let names: Vec<&str> = VELOCITIES.iter().copied().chain(self.inputs.iter().copied()).collect();
-        Ok(self.by_input[(row, index_of_known_name("velocity or input", &names, by)?.saturating_sub(6))])
+        Ok(self.by_input[(row, index_of_name_or_error("velocity or input", &names, by)?.saturating_sub(6))])
     }
 
     /// Returns a dimensionless aerodynamic derivative as defined by Etkin and Reid (*Dynamics of Flight*,
@@ -163,7 +178,7 @@ impl Derivatives {
             _ => 1.0,
         };
         let own = if by == "u" {
-            2.0 * self.forces[index_of_known_name("force", &FORCES, force)?] / speed
+            2.0 * self.forces[index_of_name_or_error("force", &FORCES, force)?] / speed
         } else {
             0.0
         };
@@ -218,7 +233,7 @@ where
     })
 }
 
-fn index_of_known_name(kind: &'static str, names: &[&str], name: &str) -> Result<usize, Error> {
+fn index_of_name_or_error(kind: &'static str, names: &[&str], name: &str) -> Result<usize, Error> {
     names.iter().position(|known| *known == name).ok_or_else(|| Error::Unknown {
         kind,
         name: name.to_owned(),

@@ -24,7 +24,7 @@ pub struct FlightModes {
     pub others: Vec<Mode>,
 }
 
-fn share_of_states(mode: &Mode, states: &[&str]) -> f64 {
+fn participation_of_states(mode: &Mode, states: &[&str]) -> f64 {
     states.iter().filter_map(|state| mode.participation_of(state)).sum()
 }
 
@@ -54,20 +54,20 @@ impl FlightModes {
             return Err(Error::Unknown { kind: "state", name: LONGITUDINAL.join(", "), known });
         }
         let mut modes = system.modes()?;
-        let longitudinal_share = |mode: &Mode| share_of_states(mode, &LONGITUDINAL);
-        let lateral_share = |mode: &Mode| share_of_states(mode, &LATERAL);
+        let longitudinal_share = |mode: &Mode| participation_of_states(mode, &LONGITUDINAL);
+        let lateral_share = |mode: &Mode| participation_of_states(mode, &LATERAL);
         let is_longitudinal_mode = |mode: &Mode| longitudinal_share(mode) > 0.5;
         let is_lateral_mode = |mode: &Mode| lateral_share(mode) > 0.5;
         let is_oscillating_mode = |mode: &Mode| mode.exponent.im > 0.0;
-        let pitch_share = |mode: &Mode| share_of_states(mode, &["w", "q"]);
-        let surge_share = |mode: &Mode| share_of_states(mode, &["u", "theta", "h"]);
+        let pitch_share = |mode: &Mode| participation_of_states(mode, &["w", "q"]);
+        let surge_share = |mode: &Mode| participation_of_states(mode, &["u", "theta", "h"]);
         let is_short_period = |mode: &Mode| {
             is_longitudinal_mode(mode) && is_oscillating_mode(mode) && pitch_share(mode) > surge_share(mode)
         };
         let is_phugoid = |mode: &Mode| {
             is_longitudinal_mode(mode) && is_oscillating_mode(mode) && pitch_share(mode) <= surge_share(mode)
         };
-        let yaw_share = |mode: &Mode| share_of_states(mode, &["v", "r"]);
+        let yaw_share = |mode: &Mode| participation_of_states(mode, &["v", "r"]);
         let is_aperiodic_lateral = |mode: &Mode| is_lateral_mode(mode) && !is_oscillating_mode(mode);
         Ok(Self {
             short_period: take_matching_mode(&mut modes, is_short_period, Mode::frequency),
@@ -79,12 +79,12 @@ impl FlightModes {
             ),
             roll: take_matching_mode(
                 &mut modes,
-                |mode| is_aperiodic_lateral(mode) && share_of_states(mode, &["p"]) > 0.3,
+                |mode| is_aperiodic_lateral(mode) && participation_of_states(mode, &["p"]) > 0.3,
                 Mode::frequency,
             ),
             spiral: take_matching_mode(
                 &mut modes,
-                |mode| is_aperiodic_lateral(mode) && share_of_states(mode, &["phi"]) > 0.3,
+                |mode| is_aperiodic_lateral(mode) && participation_of_states(mode, &["phi"]) > 0.3,
                 |mode| -mode.frequency(),
             ),
             others: modes,

@@ -35,7 +35,7 @@ const ROUNDING: f64 = 1e-9;
 const FREE: [&str; 6] = [".vx", ".vy", ".vz", ".wx", ".wy", ".wz"];
 
 /// Returns an error for a mechanism that does not begin with a free joint.
-pub(super) fn check_free(velocities: &[&'static str]) -> Result<(), Error> {
+pub(super) fn check_begins_with_free_joint(velocities: &[&'static str]) -> Result<(), Error> {
     for (k, suffix) in FREE.iter().enumerate() {
         let name = velocities.get(k).copied().unwrap_or("nothing");
         if !name.ends_with(suffix) {
@@ -58,7 +58,7 @@ struct AirframeAttitude {
 }
 
 impl AirframeAttitude {
-    fn from_configuration(q: &[f64]) -> Result<Self, Error> {
+    fn attitude_from_configuration(q: &[f64]) -> Result<Self, Error> {
         let turn = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
         let axes = turn.to_rotation_matrix().into_inner();
         let (sine, across) = (-axes[(2, 0)], axes[(2, 1)].hypot(axes[(2, 2)]));
@@ -93,8 +93,8 @@ pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64> + Scleronomic,
 {
-    check_free(&M::VELOCITIES)?;
-    let attitude = AirframeAttitude::from_configuration(q.as_slice())?;
+    check_begins_with_free_joint(&M::VELOCITIES)?;
+    let attitude = AirframeAttitude::attitude_from_configuration(q.as_slice())?;
     let forces = Mechanism::generalized_forces(m, 0.0, q, v, u);
     let acceleration = Mechanism::forward_dynamics(m, 0.0, q, v, &forces);
     let turning = attitude.rates * v.fixed_rows::<3>(3);
@@ -106,10 +106,10 @@ where
         return Err(Error::NotSteady { what, rate });
     }
     let system = mechanism::linear_system(m, q, v, u)?;
-    transform_to_flight_states(&system, &attitude, NV - M::FIRST_ORDER)
+    system_in_flight_states(&system, &attitude, NV - M::FIRST_ORDER)
 }
 
-fn transform_to_flight_states(
+fn system_in_flight_states(
     system: &StateSpace,
     attitude: &AirframeAttitude,
     displacements: usize,

@@ -1,6 +1,6 @@
 //! Eigenvalues of real matrices, in exactly conjugate pairs.
 
-use super::{C, balance_matrix, check_square};
+use super::{C, balance_matrix, checked_square_size};
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -15,7 +15,7 @@ const MAX_ITERATIONS: usize = 120;
 ///
 /// [`Error::Shape`], [`Error::NotFinite`], and [`Error::NotConverged`] if the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
-    let n = check_square("A", a)?;
+    let n = checked_square_size("A", a)?;
     let mut h = hessenberg_form(balance_matrix(a).0);
     let size = h.norm();
     let mut found = Vec::with_capacity(n);

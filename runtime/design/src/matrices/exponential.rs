@@ -1,6 +1,6 @@
 //! Matrix exponential.
 
-use super::{check_square, norm_one, solve_linear_system};
+use super::{checked_square_size, norm_one, solve_linear_system};
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -40,7 +40,7 @@ pub fn exponential(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         182.0,
         1.0,
     ];
-    let n = check_square("A", a)?;
+    let n = checked_square_size("A", a)?;
     if n == 0 {
         return Ok(a.clone());
     }

@@ -1,6 +1,6 @@
 //! Matrix logarithm.
 
-use super::{C, CMatrix, Schur, check_square, complex_matrix};
+use super::{C, CMatrix, Schur, checked_square_size, complex_matrix};
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -26,7 +26,7 @@ const RULE: [(f64, f64); 8] = [
 ///
 /// [`Error::Range`] with a zero or negative eigenvalue, for which no real logarithm exists.
 pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-    let n = check_square("A", a)?;
+    let n = checked_square_size("A", a)?;
     if n == 0 {
         return Ok(a.clone());
     }

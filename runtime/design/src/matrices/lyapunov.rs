@@ -1,7 +1,7 @@
 //! Solvers of Sylvester and Lyapunov equations by Schur forms (Bartels and Stewart, *Solution of the matrix
 //! equation AX + XB = C*, 1972), with one step of iterative refinement.
 
-use super::{C, CMatrix, Schur, check_matrix, check_square, complex_matrix, symmetric_part};
+use super::{C, CMatrix, Schur, check_matrix, checked_square_size, complex_matrix, symmetric_part};
 use crate::Error;
 use nalgebra::{DMatrix, DVector};
 
@@ -27,7 +27,7 @@ impl SylvesterForms {
     }
 
     /// Solves the Sylvester equation `A X + X B = F`, or `A X B − X = F`, for `X`.
-    fn solve_equation(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    fn solve_sylvester_equation(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let (t, s) = (&self.left.t, &self.right.t);
         let f = self.left.q.adjoint() * complex_matrix(f) * &self.right.q;
         let mut y = CMatrix::zeros(f.nrows(), f.ncols());
@@ -77,12 +77,12 @@ fn solve_shifted_triangular(t: &CMatrix, factor: C, plus: C, mut right: CVector)
 /// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix; [`Error::Singular`] if an
 /// eigenvalue of `A` is the negative of an eigenvalue of `B`.
 pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-    let (n, m) = (check_square("A", a)?, check_square("B", b)?);
+    let (n, m) = (checked_square_size("A", a)?, checked_square_size("B", b)?);
     check_matrix("C", c, n, m)?;
     let sides = SylvesterForms::new(a, b, SylvesterKind::Continuous)?;
-    let x = sides.solve_equation(c)?;
+    let x = sides.solve_sylvester_equation(c)?;
     let residual = c - a * &x - &x * b;
-    Ok(&x + sides.solve_equation(&residual)?)
+    Ok(&x + sides.solve_sylvester_equation(&residual)?)
 }
 
 /// Solves the discrete Sylvester equation `A X B − X + C = 0` for `X`.
@@ -96,12 +96,12 @@ pub fn discrete_sylvester(
     b: &DMatrix<f64>,
     c: &DMatrix<f64>,
 ) -> Result<DMatrix<f64>, Error> {
-    let (n, m) = (check_square("A", a)?, check_square("B", b)?);
+    let (n, m) = (checked_square_size("A", a)?, checked_square_size("B", b)?);
     check_matrix("C", c, n, m)?;
     let sides = SylvesterForms::new(a, b, SylvesterKind::Discrete)?;
-    let x = sides.solve_equation(&-c)?;
+    let x = sides.solve_sylvester_equation(&-c)?;
     let residual = -(c + a * &x * b - &x);
-    Ok(&x + sides.solve_equation(&residual)?)
+    Ok(&x + sides.solve_sylvester_equation(&residual)?)
 }
 
 /// Solves the Lyapunov equation `A X + X Aᵀ + Q = 0` for `X`, the covariance of a stable system under white
@@ -112,7 +112,7 @@ pub fn discrete_sylvester(
 /// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix; [`Error::Singular`] if two
 /// eigenvalues of `A` add up to zero.
 pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-    let n = check_square("A", a)?;
+    let n = checked_square_size("A", a)?;
     check_matrix("Q", q, n, n)?;
     Ok(restore_symmetry(q, sylvester(a, &a.transpose(), &-q)?))
 }
@@ -125,7 +125,7 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Erro
 /// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix; [`Error::Singular`] if the product
 /// of two eigenvalues of `A` is one.
 pub fn discrete_lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-    let n = check_square("A", a)?;
+    let n = checked_square_size("A", a)?;
     check_matrix("Q", q, n, n)?;
     Ok(restore_symmetry(q, discrete_sylvester(a, &a.transpose(), q)?))
 }

@@ -65,7 +65,7 @@ pub fn rank(m: &DMatrix<f64>, tolerance: f64) -> Result<usize, Error> {
 }
 
 /// Returns the smallest singular value of a complex matrix that does not have more rows than columns.
-pub(crate) fn smallest_singular(m: &super::CMatrix) -> f64 {
+pub(crate) fn smallest_singular_value(m: &super::CMatrix) -> f64 {
     if m.is_empty() {
         return f64::INFINITY;
     }

@@ -2,8 +2,8 @@
 //! by an invariant subspace or by doubling; Newton's method refines both solutions.
 
 use super::{
-    C, CMatrix, Schur, balance_matrix, balance_system, check_matrix, check_square, complex_matrix,
-    discrete_lyapunov, eigenvalues, lyapunov, smallest_singular, solve_linear_system, symmetric_part,
+    C, CMatrix, Schur, balance_matrix, balance_system, check_matrix, checked_square_size, complex_matrix,
+    discrete_lyapunov, eigenvalues, lyapunov, smallest_singular_value, solve_linear_system, symmetric_part,
 };
 use crate::Error;
 use nalgebra::DMatrix;
@@ -43,8 +43,8 @@ impl Cost {
         self
     }
 
-    fn check_weights(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<usize, Error> {
-        let n = check_square("A", a)?;
+    fn check_cost_weights(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<usize, Error> {
+        let n = checked_square_size("A", a)?;
         check_matrix("B", b, n, b.ncols())?;
         check_matrix("Q", &self.q, n, n)?;
         check_matrix("R", &self.r, b.ncols(), b.ncols())?;
@@ -68,7 +68,11 @@ impl Cost {
 
     /// Returns `A − B R⁻¹ Nᵀ`, `B R⁻¹ Bᵀ` and `Q − N R⁻¹ Nᵀ`: the equivalent regulator problem whose cost has
     /// no products of states and inputs.
-    fn without_products(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<[DMatrix<f64>; 3], Error> {
+    fn regulator_without_cross_terms(
+        &self,
+        a: &DMatrix<f64>,
+        b: &DMatrix<f64>,
+    ) -> Result<[DMatrix<f64>; 3], Error> {
         let both = solve_linear_system("R", &self.r, &self.n.transpose())?;
         let g = b * solve_linear_system("R", &self.r, &b.transpose())?;
         Ok([a - b * &both, symmetric_part(&g), symmetric_part(&(&self.q - &self.n * both))])
@@ -106,9 +110,9 @@ pub struct Riccati {
 /// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
 /// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
-    let n = cost.check_weights(a, b)?;
-    check_modes(a, b, cost, |mode| mode.re >= 0.0, |mode| mode.re.abs())?;
-    let [f, g, q] = cost.without_products(a, b)?;
+    let n = cost.check_cost_weights(a, b)?;
+    check_stabilisable_modes(a, b, cost, |mode| mode.re >= 0.0, |mode| mode.re.abs())?;
+    let [f, g, q] = cost.regulator_without_cross_terms(a, b)?;
     let mut h = DMatrix::zeros(2 * n, 2 * n);
     h.view_mut((0, 0), (n, n)).copy_from(&f);
     h.view_mut((0, n), (n, n)).copy_from(&-&g);
@@ -173,7 +177,7 @@ fn refine_by_newton(
 
 /// Returns an error that names the mode for which the Riccati equation has no stabilising solution: unstable
 /// modes must be controllable, and modes on the stability boundary must contribute to the cost.
-fn check_modes(
+fn check_stabilisable_modes(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
     cost: &Cost,
@@ -186,7 +190,7 @@ fn check_modes(
             return Err(Error::Unstabilizable { mode });
         }
     }
-    let [f, _, q] = cost.without_products(a, b)?;
+    let [f, _, q] = cost.regulator_without_cross_terms(a, b)?;
     for mode in eigenvalues(&f)? {
         if distance(mode) <= 1e-10 * size && is_uncontrollable_mode(&f.transpose(), &q, mode) {
             return Err(Error::Undetectable { mode });
@@ -200,8 +204,8 @@ fn check_modes(
 pub(crate) fn is_uncontrollable_mode(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
     let n = a.nrows();
     let (a, b, _, _) = balance_system(a, b, &DMatrix::zeros(0, n));
-    let inverse_norm = |m: &DMatrix<f64>| if m.norm() > 0.0 { 1.0 / m.norm() } else { 1.0 };
-    let (of_a, of_b) = (inverse_norm(&a), inverse_norm(&b));
+    let reciprocal_norm = |m: &DMatrix<f64>| if m.norm() > 0.0 { 1.0 / m.norm() } else { 1.0 };
+    let (of_a, of_b) = (reciprocal_norm(&a), reciprocal_norm(&b));
     let m = CMatrix::from_fn(n, n + b.ncols(), |i, j| {
         if j >= n {
             return C::new(b[(i, j - n)] * of_b, 0.0);
@@ -209,7 +213,7 @@ pub(crate) fn is_uncontrollable_mode(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C
         let entry = C::new(a[(i, j)], 0.0);
         (if i == j { entry - mode } else { entry }) * of_a
     });
-    smallest_singular(&m) <= 1e-12 * n as f64
+    smallest_singular_value(&m) <= 1e-12 * n as f64
 }
 
 /// Solves the discrete Riccati equation `Aᵀ X A − X − (Aᵀ X B + N) (R + Bᵀ X B)⁻¹ (Bᵀ X A + Nᵀ) + Q = 0`. Two
@@ -223,16 +227,16 @@ pub(crate) fn is_uncontrollable_mode(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C
 /// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
 /// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
-    match cost.check_weights(a, b) {
+    match cost.check_cost_weights(a, b) {
         Err(Error::Singular { .. }) if cost.r.clone().symmetric_eigenvalues().iter().all(|x| *x >= 0.0) => {
-            return solve_with_free_inputs(a, b, cost);
+            return solve_with_singular_input_weight(a, b, cost);
         }
         checked => checked?,
     };
-    check_modes(a, b, cost, |mode| mode.norm() >= 1.0, |mode| (mode.norm() - 1.0).abs())?;
-    let [f, g, q] = cost.without_products(a, b)?;
+    check_stabilisable_modes(a, b, cost, |mode| mode.norm() >= 1.0, |mode| (mode.norm() - 1.0).abs())?;
+    let [f, g, q] = cost.regulator_without_cross_terms(a, b)?;
     // The symplectic matrix loses digits if A is nearly singular, doubling if A is far from stable.
-    let ways = [symplectic_subspace(&f, &g, &q), doubling_limit(&f, &g, &q)];
+    let ways = [solve_discrete_riccati(&f, &g, &q), doubling_limit(&f, &g, &q)];
     let mut best = Err(Error::NotConverged { what: "the discrete Riccati equation" });
     let mut least = f64::INFINITY;
     for x in ways.into_iter().flatten() {
@@ -246,7 +250,11 @@ pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Resu
 
 /// Solves a discrete Riccati equation with singular `R` by Newton's method, starting from the solution for
 /// slightly increased `R`.
-fn solve_with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
+fn solve_with_singular_input_weight(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    cost: &Cost,
+) -> Result<Riccati, Error> {
     let little = 1e-6 * (cost.r.norm() + cost.q.norm() * b.norm_squared());
     if little == 0.0 {
         return Err(Error::Singular { what: "R" });
@@ -282,7 +290,11 @@ fn doubling_limit(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Resul
 
 /// Computes the solution of a discrete Riccati equation from the invariant subspace of the symplectic matrix
 /// inside the unit circle (Laub, 1979).
-fn symplectic_subspace(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+fn solve_discrete_riccati(
+    f: &DMatrix<f64>,
+    g: &DMatrix<f64>,
+    q: &DMatrix<f64>,
+) -> Result<DMatrix<f64>, Error> {
     let n = f.nrows();
     let inverse = solve_linear_system("A", &f.transpose(), &DMatrix::identity(n, n))?;
     let below = solve_linear_system("A", &f.transpose(), q)?;

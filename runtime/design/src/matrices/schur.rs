@@ -21,7 +21,7 @@ struct GivensRotation {
 }
 
 impl GivensRotation {
-    fn zeroing_second(x: C, y: C) -> Self {
+    fn rotation_zeroing_second_entry(x: C, y: C) -> Self {
         let (a, b) = (x.norm(), y.norm());
         if b == 0.0 {
             return Self { c: 1.0, s: C::new(0.0, 0.0) };
@@ -90,7 +90,7 @@ impl Schur {
         let mut high = n.saturating_sub(1);
         let mut steps = 0;
         while high > 0 {
-            let low = split_active_block(&mut t, high, size);
+            let low = start_of_active_block(&mut t, high, size);
             if low == high {
                 (high, steps) = (high - 1, 0);
                 continue;
@@ -132,7 +132,7 @@ impl Schur {
     fn swap_eigenvalues(&mut self, k: usize) {
         let n = self.t.nrows();
         let (first, second) = (self.t[(k, k)], self.t[(k + 1, k + 1)]);
-        let rotation = GivensRotation::zeroing_second(self.t[(k, k + 1)], second - first);
+        let rotation = GivensRotation::rotation_zeroing_second_entry(self.t[(k, k + 1)], second - first);
         rotation.rotate_rows(&mut self.t, k, k..n);
         rotation.rotate_columns(&mut self.t, k, 0..k + 2);
         rotation.rotate_columns(&mut self.q, k, 0..n);
@@ -181,7 +181,7 @@ fn nonzero_pivot(x: C, least: f64) -> C {
 
 /// Returns the first row of the active block that ends at row `high`. The subdiagonal entry above that block
 /// is set to zero.
-fn split_active_block(t: &mut CMatrix, high: usize, size: f64) -> usize {
+fn start_of_active_block(t: &mut CMatrix, high: usize, size: f64) -> usize {
     for k in (1..=high).rev() {
         let mut near = t[(k - 1, k - 1)].norm() + t[(k, k)].norm();
         if near == 0.0 {
@@ -213,7 +213,7 @@ fn single_qr_step(t: &mut CMatrix, q: &mut CMatrix, low: usize, high: usize, shi
     let n = t.nrows();
     let (mut x, mut y) = (t[(low, low)] - shift, t[(low + 1, low)]);
     for k in low..high {
-        let rotation = GivensRotation::zeroing_second(x, y);
+        let rotation = GivensRotation::rotation_zeroing_second_entry(x, y);
         rotation.rotate_rows(t, k, k.saturating_sub(1).max(low)..n);
         rotation.rotate_columns(t, k, 0..(k + 3).min(high + 1));
         rotation.rotate_columns(q, k, 0..n);

@@ -44,13 +44,13 @@ pub fn named_modes(modes: &[(&str, &Mode)]) -> Result<String, Error> {
              fill=\"white\"/>\n"
     );
     for (k, (name, mode)) in modes.iter().enumerate() {
-        write_mode(&mut out, name, mode, ROW * (k as f64 + 0.5) + 5.0);
+        write_mode_svg(&mut out, name, mode, ROW * (k as f64 + 0.5) + 5.0);
     }
     out.push_str("</svg>\n");
     Ok(out)
 }
 
-fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
+fn write_mode_svg(out: &mut String, name: &str, mode: &Mode, y: f64) {
     let x = 90.0;
     let _ = writeln!(
         out,
@@ -67,7 +67,7 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
              stroke-linecap=\"round\"/>"
         );
     }
-    write_motion(out, mode);
+    write_mode_animation(out, mode);
     out.push_str("</g></g>\n");
     let write_text_row = |out: &mut String, row: f64, colour: &str, words: &str| {
         let place = y - 45.0 + 19.0 * row;
@@ -82,13 +82,13 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
     let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
     write_text_row(out, 0.0, "#000", &format!("{before}{heading}"));
     for (row, (name, part)) in mode.participants().into_iter().take(5).enumerate() {
-        let place = mode.place_of(name);
+        let place = mode.index_of_state_name(name);
         let shape = mode.shape.get(place).copied().unwrap_or_default();
-        let unit = mode.unit_of(name).map_or(String::new(), |unit| format!(" {unit}"));
+        let unit = mode.unit_of_state(name).map_or(String::new(), |unit| format!(" {unit}"));
         let words = format!(
             "{name}: takes part {:.1} %, phasor {}{unit} at {:.0}°",
             100.0 * part,
-            format_significant(shape.norm()),
+            format_three_significant_digits(shape.norm()),
             shape.arg().to_degrees()
         );
         write_text_row(out, row as f64 + 1.2, COLOURS[place % COLOURS.len()], &words);
@@ -96,14 +96,14 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
 }
 
 /// Formats a number with three significant digits.
-fn format_significant(x: f64) -> String {
+fn format_three_significant_digits(x: f64) -> String {
     let decimals = if x > 0.0 { (2.0 - x.log10().floor()).clamp(0.0, 9.0) as usize } else { 0 };
     format!("{x:.decimals$}")
 }
 
 /// Writes the animation of a mode: a revolution per period if it is between 0.5 s and 20 s, or an exponential
 /// decay or growth of fixed duration for a real mode.
-fn write_motion(out: &mut String, mode: &Mode) {
+fn write_mode_animation(out: &mut String, mode: &Mode) {
     match mode.period() {
         Some(period) => {
             let time = if (0.5..20.0).contains(&period) { period } else { TURN };

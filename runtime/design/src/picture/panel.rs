@@ -25,12 +25,12 @@ const NAMES: u32 = 22;
 /// Maximum number of points drawn per curve: more would be closer together than a pixel.
 const MAX_POINTS: usize = 3000;
 
-fn units_of_pixels(pixels: u32) -> u32 {
+fn drawing_units_from_pixels(pixels: u32) -> u32 {
     pixels * UNITS
 }
 
 fn text_style(size: u32) -> TextStyle<'static> {
-    (FONT, units_of_pixels(size)).into_font().color(&BLACK)
+    (FONT, drawing_units_from_pixels(size)).into_font().color(&BLACK)
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -79,12 +79,12 @@ impl Panel {
     /// Returns both axes of the panel for a drawing area of this size. With equal scales, the shorter axis is
     /// extended to the aspect ratio of the area.
     fn axes_for_area(&self, (width, height): (u32, u32)) -> Option<(Axis, Axis)> {
-        let window_test = |k: usize| {
+        let window_predicate = |k: usize| {
             let window = self.window.map(|window| window[k]);
             move |v: f64| window.is_none_or(|(low, high)| (low..=high).contains(&v))
         };
         let along = if self.equal { 0.06 } else { 0.0 };
-        let (in_x, in_y) = (window_test(0), window_test(1));
+        let (in_x, in_y) = (window_predicate(0), window_predicate(1));
         let shown: Vec<_> = self.all_points().filter(|(x, y)| in_x(*x) && in_y(*y)).collect();
         let x = Axis::fit(shown.iter().map(|p| p.0), along, self.logarithmic)?;
         let y = Axis::fit(shown.iter().map(|p| p.1), 0.06, self.decades)?;
@@ -99,35 +99,37 @@ impl Panel {
     fn draw_panel<DB: DrawingBackend>(&self, area: DrawingArea<DB, Shift>) -> Result<(), Error> {
         let mut area = area;
         if !self.title.is_empty() {
-            let (top, rest) = area.split_vertically(units_of_pixels(HEADING));
+            let (top, rest) = area.split_vertically(drawing_units_from_pixels(HEADING));
             let middle = (
                 i32::try_from(top.dim_in_pixel().0).unwrap_or(0) / 2,
-                as_i32(units_of_pixels(HEADING / 2 + 2)),
+                as_i32(drawing_units_from_pixels(HEADING / 2 + 2)),
             );
             let style = text_style(16).pos(Pos::new(HPos::Center, VPos::Center));
             top.draw_text(&self.title, &style, middle).map_err(drawing_error)?;
             area = rest;
         }
         if self.curves.iter().any(|c| !c.name.is_empty()) || !self.mark_names.is_empty() {
-            let (top, rest) = area.split_vertically(units_of_pixels(NAMES));
-            self.draw_names(&top)?;
+            let (top, rest) = area.split_vertically(drawing_units_from_pixels(NAMES));
+            self.draw_legend(&top)?;
             area = rest;
         }
         let (width, height) = area.dim_in_pixel();
-        let (left, below, border) = (units_of_pixels(74), units_of_pixels(46), units_of_pixels(10));
+        let (left, below, border) =
+            (drawing_units_from_pixels(74), drawing_units_from_pixels(46), drawing_units_from_pixels(10));
         let inner = (
-            width.saturating_sub(left + border + units_of_pixels(24)),
+            width.saturating_sub(left + border + drawing_units_from_pixels(24)),
             height.saturating_sub(below + 2 * border),
         );
         let Some((x, y)) = self.axes_for_area(inner) else {
             return Err(Error::Picture("no finite values to draw".into()));
         };
-        let most_x = (inner.0 / units_of_pixels(if self.logarithmic { 60 } else { 80 })).max(2) as usize;
-        let most_y = (inner.1 / units_of_pixels(36)).max(2) as usize;
+        let most_x =
+            (inner.0 / drawing_units_from_pixels(if self.logarithmic { 60 } else { 80 })).max(2) as usize;
+        let most_y = (inner.1 / drawing_units_from_pixels(36)).max(2) as usize;
         let (across, up) = (x.clone(), y.clone());
         let mut chart = ChartBuilder::on(&area)
             .margin(border)
-            .margin_right(units_of_pixels(24))
+            .margin_right(drawing_units_from_pixels(24))
             .x_label_area_size(below)
             .y_label_area_size(left)
             .build_cartesian_2d(
@@ -144,7 +146,7 @@ impl Panel {
             .light_line_style(TRANSPARENT)
             .bold_line_style(RGBColor(225, 228, 232).stroke_width(UNITS))
             .axis_style(GREY.stroke_width(UNITS))
-            .set_all_tick_mark_size(units_of_pixels(4))
+            .set_all_tick_mark_size(drawing_units_from_pixels(4))
             .x_labels(100)
             .y_labels(100)
             .x_label_formatter(&|v| across.label(*v, most_x))
@@ -160,8 +162,8 @@ impl Panel {
             let line = [(*at, y.low), (*at, y.high)];
             let dashed = DashedLineSeries::new(
                 line,
-                units_of_pixels(4) as i32,
-                units_of_pixels(4) as i32,
+                drawing_units_from_pixels(4) as i32,
+                drawing_units_from_pixels(4) as i32,
                 GREY.stroke_width(UNITS),
             );
             chart.draw_series(dashed).map_err(drawing_error)?;
@@ -177,8 +179,10 @@ impl Panel {
         let style = BLACK.stroke_width(2 * UNITS);
         for (mark, x, y) in &self.marks {
             match mark {
-                Mark::Cross => chart.draw_series([Cross::new((*x, *y), units_of_pixels(5), style)]),
-                Mark::Circle => chart.draw_series([Circle::new((*x, *y), units_of_pixels(6), style)]),
+                Mark::Cross => chart.draw_series([Cross::new((*x, *y), drawing_units_from_pixels(5), style)]),
+                Mark::Circle => {
+                    chart.draw_series([Circle::new((*x, *y), drawing_units_from_pixels(6), style)])
+                }
             }
             .map_err(drawing_error)?;
         }
@@ -186,30 +190,31 @@ impl Panel {
     }
 
     /// Draws the legend: the names of curves and marks in a row.
-    fn draw_names<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Error> {
-        let (mut x, y) = (as_i32(units_of_pixels(84)), as_i32(units_of_pixels(NAMES / 2 + 2)));
+    fn draw_legend<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Error> {
+        let (mut x, y) =
+            (as_i32(drawing_units_from_pixels(84)), as_i32(drawing_units_from_pixels(NAMES / 2 + 2)));
         let style = text_style(14).pos(Pos::new(HPos::Left, VPos::Center));
         let draw_word = |x: &mut i32, word: &str| {
-            let place = (*x + as_i32(units_of_pixels(26)), y);
-            *x += as_i32(units_of_pixels(26 + 20))
-                + (word.chars().count() * units_of_pixels(8) as usize) as i32;
+            let place = (*x + as_i32(drawing_units_from_pixels(26)), y);
+            *x += as_i32(drawing_units_from_pixels(26 + 20))
+                + (word.chars().count() * drawing_units_from_pixels(8) as usize) as i32;
             area.draw_text(word, &style, place).map_err(drawing_error)
         };
-        let end_of_line_sample = |x: i32| x + as_i32(units_of_pixels(20));
+        let end_of_legend_line = |x: i32| x + as_i32(drawing_units_from_pixels(20));
         for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
             if !curve.name.is_empty() {
                 let line =
-                    PathElement::new([(x, y), (end_of_line_sample(x), y)], colour.stroke_width(2 * UNITS));
+                    PathElement::new([(x, y), (end_of_legend_line(x), y)], colour.stroke_width(2 * UNITS));
                 area.draw(&line).map_err(drawing_error)?;
                 draw_word(&mut x, &curve.name)?;
             }
         }
         let thick = BLACK.stroke_width(2 * UNITS);
         for (mark, name) in &self.mark_names {
-            let middle = (x + as_i32(units_of_pixels(12)), y);
+            let middle = (x + as_i32(drawing_units_from_pixels(12)), y);
             match mark {
-                Mark::Cross => area.draw(&Cross::new(middle, units_of_pixels(5), thick)),
-                Mark::Circle => area.draw(&Circle::new(middle, units_of_pixels(6), thick)),
+                Mark::Cross => area.draw(&Cross::new(middle, drawing_units_from_pixels(5), thick)),
+                Mark::Circle => area.draw(&Circle::new(middle, drawing_units_from_pixels(6), thick)),
             }
             .map_err(drawing_error)?;
             draw_word(&mut x, name)?;
@@ -230,8 +235,10 @@ fn thin_out_points(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     }
     let mut out = Vec::with_capacity(MAX_POINTS + 2);
     for bunch in points.chunks(2 * points.len().div_ceil(MAX_POINTS)) {
-        let by_height = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        if let (Some(low), Some(high)) = (bunch.iter().min_by(by_height), bunch.iter().max_by(by_height)) {
+        let compare_heights = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        if let (Some(low), Some(high)) =
+            (bunch.iter().min_by(compare_heights), bunch.iter().max_by(compare_heights))
+        {
             let (first, second) = if low.0 < high.0 { (low, high) } else { (high, low) };
             out.extend([*first, *second]);
         }
@@ -244,7 +251,7 @@ fn clip_curve(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>>
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut open = false;
     for pair in points.windows(2) {
-        let Some((from, to)) = part_within(pair[0], pair[1], x, y) else {
+        let Some((from, to)) = clipped_segment(pair[0], pair[1], x, y) else {
             open = false;
             continue;
         };
@@ -258,7 +265,7 @@ fn clip_curve(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>>
 }
 
 /// Returns the part of a line segment that lies within the axes (Liang and Barsky).
-fn part_within(a: (f64, f64), b: (f64, f64), x: &Axis, y: &Axis) -> Option<((f64, f64), (f64, f64))> {
+fn clipped_segment(a: (f64, f64), b: (f64, f64), x: &Axis, y: &Axis) -> Option<((f64, f64), (f64, f64))> {
     if ![a.0, a.1, b.0, b.1].iter().all(|v| v.is_finite()) {
         return None;
     }
@@ -288,8 +295,11 @@ fn drawing_error(error: impl std::fmt::Display) -> Error {
 pub fn draw(panels: &[Panel], (width, height): (u32, u32)) -> Result<String, Error> {
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, (units_of_pixels(width), units_of_pixels(height)))
-            .into_drawing_area();
+        let root = SVGBackend::with_string(
+            &mut svg,
+            (drawing_units_from_pixels(width), drawing_units_from_pixels(height)),
+        )
+        .into_drawing_area();
         root.fill(&WHITE).map_err(drawing_error)?;
         for (panel, area) in panels.iter().zip(root.split_evenly((panels.len().max(1), 1))) {
             panel.draw_panel(area)?;
@@ -298,7 +308,7 @@ pub fn draw(panels: &[Panel], (width, height): (u32, u32)) -> Result<String, Err
     }
     let size_attributes = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
     Ok(svg.replacen(
-        &size_attributes(units_of_pixels(width), units_of_pixels(height)),
+        &size_attributes(drawing_units_from_pixels(width), drawing_units_from_pixels(height)),
         &size_attributes(width, height),
         1,
     ))

@@ -3,7 +3,9 @@
 use super::problem::{SteadyProblem, TrimState, dynamic_matrix};
 use super::solve::check_steady;
 use super::{SteadyState, Trim};
-use crate::mechanism::{displacement_signals, effective_mass, input_names, signals_with_units, state_names};
+use crate::mechanism::{
+    displacement_signals, effective_mass_at_state, input_signals, signals_of_states, signals_with_units,
+};
 use crate::{Error, SecondOrderForm, StateSpace};
 use linkwork::{Derivatives, OutputDerivatives};
 use nalgebra::{DMatrix, SVector};
@@ -23,14 +25,14 @@ pub struct LinearisedMotion {
     /// Derivative of the accelerations with respect to displacements.
     pub by_q: DMatrix<f64>,
     pub mass: DMatrix<f64>,
-    motion: DependentMotions,
+    motion: IndependentMotionMaps,
     /// Whether all constraints of the mechanism are holonomic.
     pub is_holonomic: bool,
 }
 
 /// Maps from independent coordinates, independent velocities and inputs to the displacements, velocities and
 /// accelerations of all coordinates. Outputs are linearised with them.
-struct DependentMotions {
+struct IndependentMotionMaps {
     /// Derivatives of all velocities with respect to the independent coordinates and the independent
     /// velocities.
     velocities: [DMatrix<f64>; 2],
@@ -43,14 +45,14 @@ struct DependentMotions {
 
 /// Reduced form of the equations `J x = R y` for the dependent entries of `x`, by Gauss–Jordan elimination
 /// with complete pivoting.
-struct DependentEntries {
+struct DependentEntryElimination {
     left: DMatrix<f64>,
     right: DMatrix<f64>,
     /// Row and column of each pivot of the elimination.
     pivots: Vec<(usize, usize)>,
 }
 
-impl DependentEntries {
+impl DependentEntryElimination {
     fn eliminate_dependent_entries(mut left: DMatrix<f64>, mut right: DMatrix<f64>) -> Self {
         let (rows, columns) = left.shape();
         let mut pivots: Vec<(usize, usize)> = Vec::new();
@@ -95,7 +97,7 @@ impl DependentEntries {
 }
 
 /// Appends unit rows to a constraint matrix, one for each coordinate that is held constant.
-fn append_held_rows(m: &DMatrix<f64>, columns: usize, held: &[usize]) -> DMatrix<f64> {
+fn append_fixed_coordinate_rows(m: &DMatrix<f64>, columns: usize, held: &[usize]) -> DMatrix<f64> {
     let mut all = m.clone().resize(m.nrows() + held.len(), columns, 0.0);
     held.iter().enumerate().for_each(|(i, k)| all[(m.nrows() + i, *k)] = 1.0);
     all
@@ -114,9 +116,9 @@ where
     problem.held.iter().zip(&found.holding).for_each(|(k, (_, force))| place.holding[*k] = *force);
     check_steady(&problem, &place)?;
     let motion = problem.accelerations_at(&place)?;
-    let (mass, turning) = trim.with_mechanism(&place.parameters, |m| {
+    let (mass, turning) = trim.call_with_mechanism(&place.parameters, |m| {
         let turning = Derivatives::turning(m, &place.q, &place.v);
-        (effective_mass(m, trim.t, &place.q, &place.v), dynamic_matrix(&turning))
+        (effective_mass_at_state(m, trim.t, &place.q, &place.v), dynamic_matrix(&turning))
     });
     let held = &problem.held;
     let by_force = dynamic_matrix(&motion.by_force);
@@ -130,13 +132,14 @@ where
         .map_or((&empty, &empty, 0), |bounds| (&bounds.jacobian, &bounds.rates_by_q, bounds.residuals.len()));
     // States of first order have no displacement coordinate.
     let placeless: Vec<usize> = held.iter().copied().chain(NV.saturating_sub(M::FIRST_ORDER)..NV).collect();
-    let on_configurations = append_held_rows(&jacobian.rows(0, holonomic).clone_owned(), NV, &placeless);
+    let on_configurations =
+        append_fixed_coordinate_rows(&jacobian.rows(0, holonomic).clone_owned(), NV, &placeless);
     let rows = on_configurations.nrows();
     let positions =
-        DependentEntries::eliminate_dependent_entries(on_configurations, DMatrix::zeros(rows, NV));
-    let on_velocities = append_held_rows(jacobian, NV, held);
+        DependentEntryElimination::eliminate_dependent_entries(on_configurations, DMatrix::zeros(rows, NV));
+    let on_velocities = append_fixed_coordinate_rows(jacobian, NV, held);
     let right = (-rates_by_q).resize(on_velocities.nrows(), NV, 0.0);
-    let velocities = DependentEntries::eliminate_dependent_entries(on_velocities, right);
+    let velocities = DependentEntryElimination::eliminate_dependent_entries(on_velocities, right);
     let ((coordinates, shape), (speeds, gamma)) =
         (positions.independent_entries(), velocities.independent_entries());
     let carried = velocities.particular_solution() * &shape;
@@ -153,7 +156,7 @@ where
     });
     let b = DMatrix::from_fn(np + ns, NU, |i, j| if i < np { 0.0 } else { by_u[(row_of_state(i), j)] });
     let is_holonomic = holonomic == jacobian.nrows();
-    let motion = DependentMotions {
+    let motion = IndependentMotionMaps {
         velocities: [carried, gamma],
         accelerations: [by_position, by_speed, by_u],
         acceleration: (&lock * dynamic_matrix(&motion.value)).iter().copied().collect(),
@@ -197,7 +200,7 @@ where
     /// condition of this trim, with the condition that is violated most and its residual.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
         let system = Self::system_of_linear_model(&linearise_about_steady_state(self, found)?)?;
-        Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
+        Ok(system.with_inputs(input_signals::<M, NQ, NV, NU>())?.with_states_as_outputs())
     }
 
     fn system_of_linear_model(
@@ -205,7 +208,10 @@ where
     ) -> Result<StateSpace, Error> {
         let n = a.nrows();
         let system = StateSpace::new(a.clone(), b.clone(), DMatrix::identity(n, n), DMatrix::zeros(n, NU))?;
-        system.with_states(state_names::<M, NQ, NV, NU>(coordinates.iter().copied(), speeds.iter().copied()))
+        system.with_states(signals_of_states::<M, NQ, NV, NU>(
+            coordinates.iter().copied(),
+            speeds.iter().copied(),
+        ))
     }
 
     /// Returns the linearised motion as [`linear_system`](Self::linear_system) does, with the declared
@@ -249,13 +255,13 @@ where
         M: OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
     {
         let linear = linearise_about_steady_state(self, found)?;
-        let DependentMotions {
+        let IndependentMotionMaps {
             velocities: [carried, gamma],
             accelerations: [by_position, by_speed, by_u],
             ..
         } = &linear.motion;
         let a = SVector::from_iterator(linear.motion.acceleration.iter().copied());
-        let seen = self.with_mechanism(&linear.motion.parameters, |m| {
+        let seen = self.call_with_mechanism(&linear.motion.parameters, |m| {
             m.output_derivatives(self.t, &found.q, &found.v, &a, &found.u)
         });
         let [of_q, of_v, of_a] = [&seen.by_q, &seen.by_v, &seen.by_a].map(dynamic_matrix);
@@ -269,7 +275,7 @@ where
         let names = Self::system_of_linear_model(&linear)?;
         let system = StateSpace::new(linear.a, linear.b, c, d)?.with_states(names.states().to_vec())?;
         let outputs = signals_with_units(&M::OUTPUTS, &M::OUTPUT_UNITS);
-        system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(outputs)
+        system.with_inputs(input_signals::<M, NQ, NV, NU>())?.with_outputs(outputs)
     }
 
     /// Returns the second-order form of the motion about a steady state,
@@ -345,6 +351,6 @@ where
         let position = -(&mass * (by_position - by_speed * drift));
         let input = &mass * b.rows(np, ns);
         let form = SecondOrderForm::new(mass, velocity, position, input)?;
-        form.with_names(displacement_signals::<M, NQ, NV, NU>(speeds), input_names::<M, NQ, NV, NU>())
+        form.with_names(displacement_signals::<M, NQ, NV, NU>(speeds), input_signals::<M, NQ, NV, NU>())
     }
 }

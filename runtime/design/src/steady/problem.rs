@@ -176,17 +176,17 @@ fn index_of_name(kind: &'static str, name: &str, known: &[&str]) -> Result<usize
 }
 
 fn indices_of_names(kind: &'static str, names: &[String], known: &[&str]) -> Result<Vec<usize>, Error> {
-    check_repeated(kind, names)?;
+    check_repeated_names(kind, names)?;
     names.iter().map(|name| index_of_name(kind, name, known)).collect()
 }
 
 /// Returns an error for a repeated name, which would duplicate an unknown or a condition.
-fn check_repeated(kind: &'static str, names: &[String]) -> Result<(), Error> {
+fn check_repeated_names(kind: &'static str, names: &[String]) -> Result<(), Error> {
     let twice = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name));
     twice.map_or(Ok(()), |(_, name)| Err(Error::Repeated { kind, name: name.clone() }))
 }
 
-fn names_in_list<T>(list: &[(String, T)]) -> Vec<String> {
+fn collect_entry_names<T>(list: &[(String, T)]) -> Vec<String> {
     list.iter().map(|(name, _)| name.clone()).collect()
 }
 
@@ -195,11 +195,11 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     pub fn new(trim: &'a Trim<'m, M, NQ, NV, NU>) -> Result<Self, Error> {
-        check_repeated("parameter", &names_in_list(&trim.parameters))?;
-        check_repeated("velocity", &names_in_list(&trim.accelerations))?;
-        check_repeated("output", &names_in_list(&trim.conditions))?;
+        check_repeated_names("parameter", &collect_entry_names(&trim.parameters))?;
+        check_repeated_names("velocity", &collect_entry_names(&trim.accelerations))?;
+        check_repeated_names("output", &collect_entry_names(&trim.conditions))?;
         let quantities: Vec<String> = trim.quantities.iter().map(|(name, ..)| name.clone()).collect();
-        check_repeated("condition", &quantities)?;
+        check_repeated_names("condition", &quantities)?;
         let held = indices_of_names("coordinate", &trim.held, &M::VELOCITIES)?;
         let fixed = indices_of_names("coordinate", &trim.fixed, &M::VELOCITIES)?;
         let among = match &trim.coordinates {
@@ -230,7 +230,7 @@ where
         if let Some(outputs) = trim.outputs {
             let start = problem.initial_state();
             let zero = SVector::zeros();
-            let seen = trim.with_mechanism(&start.parameters, |m| {
+            let seen = trim.call_with_mechanism(&start.parameters, |m| {
                 outputs(m, trim.t, &start.q, &start.v, &zero, &start.u)
             });
             for (name, value) in &trim.conditions {
@@ -258,13 +258,13 @@ where
                 UnknownQuantity::Parameter(k) => to.parameters[k] += by,
             }
         }
-        to.q = self.trim.with_mechanism(&to.parameters, |m| m.integrate(&from.q, &dq));
+        to.q = self.trim.call_with_mechanism(&to.parameters, |m| m.integrate(&from.q, &dq));
         to
     }
 
     /// Returns the magnitude to which changes of an unknown are compared: its absolute value, but at least
     /// one unless it is a parameter.
-    pub fn size_of_unknown(&self, place: &TrimState<NQ, NV, NU>, unknown: UnknownQuantity) -> f64 {
+    pub fn magnitude_of_unknown(&self, place: &TrimState<NQ, NV, NU>, unknown: UnknownQuantity) -> f64 {
         match unknown {
             UnknownQuantity::Coordinate(_) => 1.0,
             UnknownQuantity::Speed(k) => place.v[k].abs().max(1.0),
@@ -301,7 +301,7 @@ where
 
     pub fn constraint_residuals(&self, place: &TrimState<NQ, NV, NU>) -> Option<ConstraintResiduals> {
         let (bounds, _) = self.trim.constraints?;
-        Some(self.trim.with_mechanism(&place.parameters, |m| bounds(m, self.trim.t, &place.q, &place.v)))
+        Some(self.trim.call_with_mechanism(&place.parameters, |m| bounds(m, self.trim.t, &place.q, &place.v)))
     }
 
     pub fn accelerations_at(
@@ -309,7 +309,7 @@ where
         place: &TrimState<NQ, NV, NU>,
     ) -> Result<AccelerationDerivatives<NV, NU>, Error> {
         let (t, TrimState { q, v, u, holding, parameters }) = (self.trim.t, place);
-        self.trim.with_mechanism(parameters, |m| {
+        self.trim.call_with_mechanism(parameters, |m| {
             let tau = Mechanism::generalized_forces(m, t, q, v, u) + holding;
             let value = Mechanism::try_forward_dynamics(m, t, q, v, &tau)?;
             let (by_q, by_v, by_force) = Derivatives::forward_dynamics_derivatives(m, t, q, v, &tau);
@@ -332,14 +332,14 @@ where
     /// Computes the residuals of the steady-state conditions and their derivatives with respect to the
     /// unknowns.
     pub fn condition_residuals(&self, place: &TrimState<NQ, NV, NU>) -> Result<ConditionResiduals, Error> {
-        let mut equations = self.generated_equations(place)?;
+        let mut equations = self.residuals_with_generated_derivatives(place)?;
         for (j, unknown) in self.unknowns.iter().enumerate() {
             let UnknownQuantity::Parameter(k) = *unknown else { continue };
             let step = STEP * if place.parameters[k] == 0.0 { 1.0 } else { place.parameters[k].abs() };
             let residuals_displaced = |h: f64| {
                 let mut place = place.clone();
                 place.parameters[k] += h;
-                Ok::<_, Error>(self.generated_equations(&place)?.residuals)
+                Ok::<_, Error>(self.residuals_with_generated_derivatives(&place)?.residuals)
             };
             equations
                 .jacobian
@@ -350,12 +350,15 @@ where
 
     /// Computes the residuals of all steady-state conditions, and their derivatives except those with respect
     /// to parameters.
-    fn generated_equations(&self, place: &TrimState<NQ, NV, NU>) -> Result<ConditionResiduals, Error> {
+    fn residuals_with_generated_derivatives(
+        &self,
+        place: &TrimState<NQ, NV, NU>,
+    ) -> Result<ConditionResiduals, Error> {
         let motion = self.accelerations_at(place)?;
         let mut rows: Vec<ConditionRow> = Vec::new();
         for (i, target) in self.targets.iter().enumerate() {
             let Some(target) = target else { continue };
-            let by = self.derivative_row(|unknown| acceleration_derivative(&motion, i, unknown));
+            let by = self.row_over_all_unknowns(|unknown| acceleration_derivative(&motion, i, unknown));
             rows.push(ConditionRow { residual: motion.value[i] - target, by, floor: motion.scale });
         }
         if let Some(bounds) = self.constraint_residuals(place) {
@@ -363,11 +366,12 @@ where
         }
         if let Some(outputs) = self.trim.outputs {
             let TrimState { q, v, u, parameters, .. } = place;
-            let seen =
-                self.trim.with_mechanism(parameters, |m| outputs(m, self.trim.t, q, v, &motion.value, u));
-            self.push_output_rows(&motion, &seen, &mut rows);
+            let seen = self
+                .trim
+                .call_with_mechanism(parameters, |m| outputs(m, self.trim.t, q, v, &motion.value, u));
+            self.add_output_condition_rows(&motion, &seen, &mut rows);
         }
-        self.push_quantity_rows(place, &mut rows);
+        self.push_required_quantity_rows(place, &mut rows);
         let jacobian = DMatrix::from_fn(rows.len(), self.unknowns.len(), |i, j| rows[i].by[j]);
         let residuals = DVector::from_fn(rows.len(), |i, _| rows[i].residual);
         Ok(ConditionResiduals { residuals, jacobian, floors: rows.iter().map(|row| row.floor).collect() })
@@ -376,31 +380,31 @@ where
     fn push_constraint_rows(&self, bounds: &ConstraintResiduals, rows: &mut Vec<ConditionRow>) {
         let residual_floor = |i: usize| TAKEN * bounds.jacobian.row(i).norm();
         for (i, residual) in bounds.residuals.iter().enumerate() {
-            let derivative_of_residual = |unknown| match unknown {
+            let constraint_residual_derivative = |unknown| match unknown {
                 UnknownQuantity::Coordinate(k) => bounds.jacobian[(i, k)],
                 _ => 0.0,
             };
             rows.push(ConditionRow {
                 residual: *residual,
-                by: self.derivative_row(derivative_of_residual),
+                by: self.row_over_all_unknowns(constraint_residual_derivative),
                 floor: residual_floor(i),
             });
         }
         for (i, rate) in bounds.rates.iter().enumerate() {
-            let derivative_of_rate = |unknown| match unknown {
+            let constraint_rate_derivative = |unknown| match unknown {
                 UnknownQuantity::Coordinate(k) => bounds.rates_by_q[(i, k)],
                 UnknownQuantity::Speed(k) => bounds.jacobian[(i, k)],
                 _ => 0.0,
             };
             rows.push(ConditionRow {
                 residual: *rate,
-                by: self.derivative_row(derivative_of_rate),
+                by: self.row_over_all_unknowns(constraint_rate_derivative),
                 floor: residual_floor(i),
             });
         }
     }
 
-    fn push_output_rows(
+    fn add_output_condition_rows(
         &self,
         motion: &AccelerationDerivatives<NV, NU>,
         seen: &OutputSensitivities,
@@ -422,16 +426,17 @@ where
             let floor = BESIDE * all.into_iter().fold(0.0, f64::max);
             rows.push(ConditionRow {
                 residual: seen.values[*i] - value,
-                by: self.derivative_row(output_derivative),
+                by: self.row_over_all_unknowns(output_derivative),
                 floor,
             });
         }
     }
 
-    fn push_quantity_rows(&self, place: &TrimState<NQ, NV, NU>, rows: &mut Vec<ConditionRow>) {
+    fn push_required_quantity_rows(&self, place: &TrimState<NQ, NV, NU>, rows: &mut Vec<ConditionRow>) {
         for (_, wanted, quantity) in &self.trim.quantities {
             let value_of_quantity = |place: &TrimState<NQ, NV, NU>| {
-                self.trim.with_mechanism(&place.parameters, |m| quantity(m, &place.q, &place.v, &place.u))
+                self.trim
+                    .call_with_mechanism(&place.parameters, |m| quantity(m, &place.q, &place.v, &place.u))
             };
             let by: Vec<f64> = (0..self.unknowns.len())
                 .map(|k| {
@@ -439,14 +444,14 @@ where
                     if matches!(unknown, UnknownQuantity::Holding(_) | UnknownQuantity::Parameter(_)) {
                         return 0.0;
                     }
-                    let step = STEP * self.size_of_unknown(place, unknown);
-                    let quantity_displaced = |h: f64| {
+                    let step = STEP * self.magnitude_of_unknown(place, unknown);
+                    let quantity_after_displacement = |h: f64| {
                         value_of_quantity(&self.displace_state(
                             place,
                             &DVector::from_fn(self.unknowns.len(), |i, _| if i == k { h } else { 0.0 }),
                         ))
                     };
-                    (quantity_displaced(step) - quantity_displaced(-step)) / (2.0 * step)
+                    (quantity_after_displacement(step) - quantity_after_displacement(-step)) / (2.0 * step)
                 })
                 .collect();
             // Differences of values leave this much rounding.
@@ -456,7 +461,7 @@ where
         }
     }
 
-    fn derivative_row(&self, by: impl Fn(UnknownQuantity) -> f64) -> Vec<f64> {
+    fn row_over_all_unknowns(&self, by: impl Fn(UnknownQuantity) -> f64) -> Vec<f64> {
         self.unknowns.iter().map(|unknown| by(*unknown)).collect()
     }
 }

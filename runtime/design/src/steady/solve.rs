@@ -89,7 +89,7 @@ fn damped_least_squares(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<D
 }
 
 /// State, equations and iteration count at the end of the search for a steady state.
-struct SearchResult<const NQ: usize, const NV: usize, const NU: usize> {
+struct SteadyStateSearchResult<const NQ: usize, const NV: usize, const NU: usize> {
     place: TrimState<NQ, NV, NU>,
     scales: EquationScales,
     equations: ConditionResiduals,
@@ -104,7 +104,7 @@ where
 {
     let problem = SteadyProblem::new(trim)?;
     let ended = descend_to_solution(&problem)?;
-    let SearchResult { place, scales, equations, iterations } = &ended;
+    let SteadyStateSearchResult { place, scales, equations, iterations } = &ended;
     let ConditionResiduals { residuals, jacobian, .. } = equations;
     let left = scales.weighted_residuals(residuals);
     let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
@@ -114,16 +114,18 @@ where
             residual: residuals[row],
             conditions: residuals.len(),
             unknowns: problem.unknowns.len(),
-            place: named_unknowns(&problem, place),
+            place: unknown_names_and_values(&problem, place),
         });
     }
     let open = undetermined_unknowns(&problem, &scales.scaled_jacobian(jacobian));
     if !trim.nearest && !open.is_empty() {
-        return Err(Error::Undetermined { unknowns: open, place: named_unknowns(&problem, place) });
+        return Err(Error::Undetermined { unknowns: open, place: unknown_names_and_values(&problem, place) });
     }
     let motion = problem.accelerations_at(place)?;
     let multipliers = trim.constraints.map_or(Vec::new(), |(_, multipliers)| {
-        trim.with_mechanism(&place.parameters, |m| multipliers(m, trim.t, &place.q, &place.v, &motion.tau))
+        trim.call_with_mechanism(&place.parameters, |m| {
+            multipliers(m, trim.t, &place.q, &place.v, &motion.tau)
+        })
     });
     let TrimState { q, v, u, holding, parameters } = ended.place.clone();
     let holding = problem.held.iter().map(|k| (M::VELOCITIES[*k].to_string(), holding[*k])).collect();
@@ -132,7 +134,7 @@ where
     Ok(SteadyState { q, v, u, acceleration, parameters, holding, multipliers, iterations, residual })
 }
 
-fn named_unknowns<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn unknown_names_and_values<M, const NQ: usize, const NV: usize, const NU: usize>(
     problem: &SteadyProblem<'_, '_, M, NQ, NV, NU>,
     place: &TrimState<NQ, NV, NU>,
 ) -> Vec<(String, f64)>
@@ -156,7 +158,7 @@ where
 
 fn descend_to_solution<M, const NQ: usize, const NV: usize, const NU: usize>(
     problem: &SteadyProblem<'_, '_, M, NQ, NV, NU>,
-) -> Result<SearchResult<NQ, NV, NU>, Error>
+) -> Result<SteadyStateSearchResult<NQ, NV, NU>, Error>
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
@@ -171,7 +173,8 @@ where
     let (mut mu, mut iterations) = (1e-4, 0);
     while iterations < problem.trim.iterations && mu < DAMPED {
         iterations += 1;
-        let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size_of_unknown(&place, *u)).collect();
+        let sizes: Vec<f64> =
+            problem.unknowns.iter().map(|u| problem.magnitude_of_unknown(&place, *u)).collect();
         scales.update_scales(&equations, &sizes);
         let (a, r) =
             (scales.scaled_jacobian(&equations.jacobian), scales.weighted_residuals(&equations.residuals));
@@ -206,9 +209,9 @@ where
             mu *= 4.0;
         }
     }
-    let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size_of_unknown(&place, *u)).collect();
+    let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.magnitude_of_unknown(&place, *u)).collect();
     scales.update_scales(&equations, &sizes);
-    Ok(SearchResult { place, scales, equations, iterations })
+    Ok(SteadyStateSearchResult { place, scales, equations, iterations })
 }
 
 /// Returns an error for a state that violates a condition, with the name of the condition that is violated
@@ -224,7 +227,7 @@ where
     let (rows, columns) = equations.jacobian.shape();
     let mut scales = EquationScales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
     let sizes: Vec<f64> =
-        problem.unknowns.iter().map(|unknown| problem.size_of_unknown(place, *unknown)).collect();
+        problem.unknowns.iter().map(|unknown| problem.magnitude_of_unknown(place, *unknown)).collect();
     scales.update_scales(&equations, &sizes);
     let left = scales.weighted_residuals(&equations.residuals);
     let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
@@ -256,8 +259,9 @@ where
     let square = scaled.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = square.svd(false, true);
     let Some(directions) = svd.v_t else { return Vec::new() };
-    let is_singular_direction = |k: &usize| svd.singular_values[*k] <= SINGULAR;
-    let takes_part =
-        |j: &usize| (0..columns).filter(is_singular_direction).any(|k| directions[(k, *j)].abs() > PART);
+    let has_negligible_singular_value = |k: &usize| svd.singular_values[*k] <= SINGULAR;
+    let takes_part = |j: &usize| {
+        (0..columns).filter(has_negligible_singular_value).any(|k| directions[(k, *j)].abs() > PART)
+    };
     (0..columns).filter(takes_part).map(|j| problem.name_of_unknown(problem.unknowns[j])).collect()
 }

@@ -99,7 +99,7 @@ where
         let matrix = -(shape.transpose() * &mass * by_q * &shape);
         let own = symmetric_part(&(shape.transpose() * mass * &shape));
         let lower = own.cholesky().ok_or(Error::Indefinite { matrix: "M" })?.l();
-        let curvatures = relative_eigenvalues(&lower, &matrix)?;
+        let curvatures = generalized_symmetric_eigenvalues(&lower, &matrix)?;
         let size = matrix.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let skew = (&matrix - matrix.transpose()).iter().fold(0.0, |most: f64, x| most.max(x.abs())) / 2.0;
         let asymmetry = if size > 0.0 { skew / size } else { 0.0 };
@@ -109,7 +109,7 @@ where
 }
 
 /// Returns the eigenvalues of `L⁻¹ K L⁻ᵀ` in ascending order, for a lower triangular matrix `L`.
-fn relative_eigenvalues(lower: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
+fn generalized_symmetric_eigenvalues(lower: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
     let singular = Error::Indefinite { matrix: "M" };
     let half = lower.solve_lower_triangular(&symmetric_part(matrix)).ok_or(singular.clone())?;
     let whole = lower.solve_lower_triangular(&half.transpose()).ok_or(singular)?;

@@ -164,8 +164,8 @@ fn six_legs_support_a_platform() {
         axial.view_mut((3, k), (3, 1)).copy_from(&arm.cross(&n));
         // Perpendicular to the leg: the share of the leg's weights that acts at the head, from moments
         // about the foot.
-        let component_across_normal = |w: Vector3<f64>| w - n * n.dot(&w);
-        let carried = component_across_normal(weight_of_mass(2.0)) * ((0.3 + length - 0.3) / length);
+        let component_perpendicular_to_leg = |w: Vector3<f64>| w - n * n.dot(&w);
+        let carried = component_perpendicular_to_leg(weight_of_mass(2.0)) * ((0.3 + length - 0.3) / length);
         let mut view = load.rows_mut(0, 3);
         view += carried;
         let mut view = load.rows_mut(3, 3);

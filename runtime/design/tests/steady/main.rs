@@ -217,7 +217,7 @@ struct CartPole {
 }
 
 #[test]
-fn errors_name_the_wrong_entry() {
+fn steady_state_errors_name_the_variable() {
     let cart = CartPole {};
     // The position of the cart is not determined.
     let error = equilibrium(&cart).find().unwrap_err();

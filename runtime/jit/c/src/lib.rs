@@ -87,7 +87,7 @@ fn c_text(text: &str) -> CString {
 /// Runs a function, stores the message of its failure and returns its error code. No panic leaves the C
 /// interface.
 fn run_guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
-    let internal_error = |_| Err(Failure::Linkwork(Error::Internal("a panic".to_string())));
+    let internal_error = |_| Err(Failure::Linkwork(Error::InternalFunction("a panic".to_string())));
     match catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(internal_error) {
         Ok(()) => 0,
         Err(failure) => {
@@ -110,7 +110,7 @@ fn value_or_default<T>(otherwise: T, run: impl FnOnce() -> Result<T, Failure>) -
 impl LwRobot {
     fn new(robot: Robot) -> LwRobot {
         let functions: Vec<Function> = robot.functions().collect();
-        let name_without_unit = |name: &str| (c_text(name), CString::default());
+        let name_with_empty_unit = |name: &str| (c_text(name), CString::default());
         let signature_of_function = |f: &Function| Signature {
             documentation: c_text(f.documentation()),
             arguments: f.arguments().iter().map(|(name, length)| (c_text(name), *length)).collect(),
@@ -119,9 +119,9 @@ impl LwRobot {
         let quantities = [robot.configuration(), robot.velocities(), robot.inputs(), robot.parameters()]
             .map(|list| list.iter().map(|entry| (c_text(&entry.name), c_text(&entry.unit))).collect());
         let [configuration, velocities, inputs, parameters] = quantities;
-        let frames = robot.frames().iter().map(|name| name_without_unit(name)).collect();
-        let names = functions.iter().map(|f| name_without_unit(f.name())).collect();
-        let tables = robot.tables().iter().map(|(name, _)| name_without_unit(name)).collect();
+        let frames = robot.frames().iter().map(|name| name_with_empty_unit(name)).collect();
+        let names = functions.iter().map(|f| name_with_empty_unit(f.name())).collect();
+        let tables = robot.tables().iter().map(|(name, _)| name_with_empty_unit(name)).collect();
         LwRobot {
             signatures: functions.iter().map(signature_of_function).collect(),
             lists: [configuration, velocities, inputs, parameters, frames, names, tables],
@@ -131,7 +131,7 @@ impl LwRobot {
         }
     }
 
-    fn names_of_list(&self, list: c_int) -> Result<&[(CString, CString)], Failure> {
+    fn names_and_units_of_list(&self, list: c_int) -> Result<&[(CString, CString)], Failure> {
         let index = usize::try_from(list).unwrap_or(usize::MAX);
         self.lists.get(index).map(Vec::as_slice).ok_or(Failure::Index(index))
     }
@@ -144,7 +144,7 @@ impl LwRobot {
 fn load_robot_into(to: *mut *mut LwRobot, load: impl FnOnce() -> Result<Robot, Failure>) -> c_int {
     run_guarded(|| {
         // SAFETY: the header says that the pointer is that of a variable of the caller.
-        let to = unsafe { raw::unique(to) }?;
+        let to = unsafe { raw::mutable_reference_from_pointer(to) }?;
         *to = std::ptr::null_mut();
         *to = Box::into_raw(Box::new(LwRobot::new(load()?)));
         Ok(())
@@ -152,7 +152,7 @@ fn load_robot_into(to: *mut *mut LwRobot, load: impl FnOnce() -> Result<Robot, F
 }
 
 /// Returns the text of options passed from C; a null pointer counts as an empty text.
-unsafe fn options_text<'a>(options: *const c_char) -> Result<&'a str, Failure> {
+unsafe fn read_c_options_text<'a>(options: *const c_char) -> Result<&'a str, Failure> {
     // SAFETY: as the caller promises.
     if options.is_null() { Ok("") } else { unsafe { raw::text(options) } }
 }
@@ -165,7 +165,9 @@ pub extern "C" fn lw_message() -> *const c_char {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_load(path: *const c_char, more: *const c_char, to: *mut *mut LwRobot) -> c_int {
     // SAFETY: texts of the caller, as the header says.
-    load_robot_into(to, || unsafe { Ok(Loader::file(raw::text(path)?).options(options_text(more)?).load()?) })
+    load_robot_into(to, || unsafe {
+        Ok(Loader::file(raw::text(path)?).options(read_c_options_text(more)?).load()?)
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -175,7 +177,9 @@ pub unsafe extern "C" fn lw_declare(
     to: *mut *mut LwRobot,
 ) -> c_int {
     // SAFETY: texts of the caller, as the header says.
-    load_robot_into(to, || unsafe { Ok(Loader::text(raw::text(text)?).options(options_text(more)?).load()?) })
+    load_robot_into(to, || unsafe {
+        Ok(Loader::text(raw::text(text)?).options(read_c_options_text(more)?).load()?)
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -202,14 +206,14 @@ pub unsafe extern "C" fn lw_mechanism(robot: *const LwRobot) -> *const c_char {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_count(robot: *const LwRobot, list: c_int) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || Ok(unsafe { raw::shared(robot) }?.names_of_list(list)?.len()))
+    value_or_default(0, || Ok(unsafe { raw::shared(robot) }?.names_and_units_of_list(list)?.len()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_name(robot: *const LwRobot, list: c_int, index: usize) -> *const c_char {
     value_or_default(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
-        let list = unsafe { raw::shared(robot) }?.names_of_list(list)?;
+        let list = unsafe { raw::shared(robot) }?.names_and_units_of_list(list)?;
         Ok(list.get(index).ok_or(Failure::Index(index))?.0.as_ptr())
     })
 }
@@ -218,7 +222,7 @@ pub unsafe extern "C" fn lw_name(robot: *const LwRobot, list: c_int, index: usiz
 pub unsafe extern "C" fn lw_unit(robot: *const LwRobot, list: c_int, index: usize) -> *const c_char {
     value_or_default(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
-        let list = unsafe { raw::shared(robot) }?.names_of_list(list)?;
+        let list = unsafe { raw::shared(robot) }?.names_and_units_of_list(list)?;
         Ok(list.get(index).ok_or(Failure::Index(index))?.1.as_ptr())
     })
 }
@@ -232,9 +236,11 @@ pub unsafe extern "C" fn lw_index(
 ) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library, a text and a variable of the caller, as the header says.
-        let (robot, name, to) = unsafe { (raw::shared(robot)?, raw::text(name)?, raw::unique(to)?) };
+        let (robot, name, to) =
+            unsafe { (raw::shared(robot)?, raw::text(name)?, raw::mutable_reference_from_pointer(to)?) };
         let is_searched_name = |known: &CStr| known.to_bytes() == name.as_bytes();
-        let found = robot.names_of_list(list)?.iter().position(|(known, _)| is_searched_name(known));
+        let found =
+            robot.names_and_units_of_list(list)?.iter().position(|(known, _)| is_searched_name(known));
         let kinds = ["coordinate", "velocity", "input", "parameter", "frame", "function", "table"];
         *to = match found {
             Some(index) => index,
@@ -255,7 +261,7 @@ pub unsafe extern "C" fn lw_index(
 pub unsafe extern "C" fn lw_set_parameter(robot: *mut LwRobot, index: usize, number: f64) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library that nothing else uses now, as the header says.
-        let robot = &mut unsafe { raw::unique(robot) }?.robot;
+        let robot = &mut unsafe { raw::mutable_reference_from_pointer(robot) }?.robot;
         let name = robot.parameters().get(index).ok_or(Failure::Index(index))?.name.clone();
         Ok(robot.set_parameter(&name, number)?)
     })
@@ -265,7 +271,7 @@ pub unsafe extern "C" fn lw_set_parameter(robot: *mut LwRobot, index: usize, num
 pub unsafe extern "C" fn lw_parameter(robot: *const LwRobot, index: usize, to: *mut f64) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library and a variable of the caller, as the header says.
-        let (robot, to) = unsafe { (raw::shared(robot)?, raw::unique(to)?) };
+        let (robot, to) = unsafe { (raw::shared(robot)?, raw::mutable_reference_from_pointer(to)?) };
         *to = *robot.robot.parameter_values().get(index).ok_or(Failure::Index(index))?;
         Ok(())
     })
@@ -332,7 +338,13 @@ pub unsafe extern "C" fn lw_argument(
 ) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library and variables of the caller, as the header says.
-        let (robot, to, size) = unsafe { (raw::shared(robot)?, raw::unique(name)?, raw::unique(length)?) };
+        let (robot, to, size) = unsafe {
+            (
+                raw::shared(robot)?,
+                raw::mutable_reference_from_pointer(name)?,
+                raw::mutable_reference_from_pointer(length)?,
+            )
+        };
         let found = robot
             .function_with_signature(function)?
             .1
@@ -363,9 +375,11 @@ pub unsafe extern "C" fn lw_result(
 ) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library and variables of the caller, as the header says.
-        let (robot, to) = unsafe { (raw::shared(robot)?, raw::unique(name)?) };
+        let (robot, to) = unsafe { (raw::shared(robot)?, raw::mutable_reference_from_pointer(name)?) };
         // SAFETY: as before.
-        let (rows, columns) = unsafe { (raw::unique(rows)?, raw::unique(columns)?) };
+        let (rows, columns) = unsafe {
+            (raw::mutable_reference_from_pointer(rows)?, raw::mutable_reference_from_pointer(columns)?)
+        };
         let found =
             robot.function_with_signature(function)?.1.results.get(result).ok_or(Failure::Index(result))?;
         (*to, *rows, *columns) = (found.0.as_ptr(), found.1, found.2);

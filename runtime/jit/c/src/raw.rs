@@ -20,7 +20,7 @@ pub unsafe fn shared<'a, T>(pointer: *const T) -> Result<&'a T, Failure> {
 /// # Safety
 ///
 /// The pointer is null or points to a value that outlives the result and that nothing else uses.
-pub unsafe fn unique<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
+pub unsafe fn mutable_reference_from_pointer<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     // SAFETY: as the caller promises.
     unsafe { pointer.as_mut() }.ok_or(Failure::Null)
 }
@@ -48,7 +48,7 @@ pub unsafe fn array<'a, T>(pointer: *const T, length: usize) -> Result<&'a [T], 
     match (length, pointer.is_null()) {
         (0, _) => Ok(&[]),
         (_, true) => Err(Failure::Null),
-        _ if is_too_long::<T>(length) => Err(Failure::Index(length)),
+        _ if exceeds_address_space::<T>(length) => Err(Failure::Index(length)),
         // SAFETY: as the caller promises.
         (_, false) => Ok(unsafe { std::slice::from_raw_parts(pointer, length) }),
     }
@@ -64,14 +64,14 @@ pub unsafe fn array_mut<'a, T>(pointer: *mut T, length: usize) -> Result<&'a mut
     match (length, pointer.is_null()) {
         (0, _) => Ok(&mut []),
         (_, true) => Err(Failure::Null),
-        _ if is_too_long::<T>(length) => Err(Failure::Index(length)),
+        _ if exceeds_address_space::<T>(length) => Err(Failure::Index(length)),
         // SAFETY: as the caller promises.
         (_, false) => Ok(unsafe { std::slice::from_raw_parts_mut(pointer, length) }),
     }
 }
 
 /// Whether an array of this length is larger than the address space.
-fn is_too_long<T>(length: usize) -> bool {
+fn exceeds_address_space<T>(length: usize) -> bool {
     length > isize::MAX as usize / size_of::<T>().max(1)
 }
 

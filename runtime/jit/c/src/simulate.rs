@@ -22,10 +22,10 @@ pub struct LwSimulation {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_sample(robot: *const LwRobot) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || Ok(sample_width(&unsafe { raw::shared(robot) }?.robot)))
+    value_or_default(0, || Ok(values_per_sample(&unsafe { raw::shared(robot) }?.robot)))
 }
 
-fn sample_width(robot: &Robot) -> usize {
+fn values_per_sample(robot: &Robot) -> usize {
     1 + robot.nq() + robot.nv() + robot.states() + robot.nu()
 }
 
@@ -41,9 +41,10 @@ pub unsafe extern "C" fn lw_simulate(
 ) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library, and variables of the caller, as the header says.
-        let (robot, settings, count) =
-            unsafe { (&raw::shared(robot)?.robot, raw::shared(settings)?, raw::unique(count)?) };
-        let width = sample_width(robot);
+        let (robot, settings, count) = unsafe {
+            (&raw::shared(robot)?.robot, raw::shared(settings)?, raw::mutable_reference_from_pointer(count)?)
+        };
+        let width = values_per_sample(robot);
         *count = 0;
         // SAFETY: arrays of these lengths, as the header says.
         let (q, v, samples) = unsafe {

@@ -29,7 +29,7 @@ pub unsafe extern "C" fn lw_set_table(
 ) -> c_int {
     run_guarded(|| {
         // SAFETY: a robot of this library that nothing else uses now, as the header says.
-        let robot = &mut unsafe { raw::unique(robot) }?.robot;
+        let robot = &mut unsafe { raw::mutable_reference_from_pointer(robot) }?.robot;
         let (name, variables) = robot.tables().get(table).cloned().ok_or(Failure::Index(table))?;
         // SAFETY: pointers to the axes, and their lengths, one for each variable, as the header says.
         let (axes, lengths) = unsafe { (raw::array(axes, variables)?, raw::array(lengths, variables)?) };

@@ -39,16 +39,16 @@ pub fn translate(
     results: usize,
     helpers: fn(&str) -> Option<*const u8>,
 ) -> Result<(Module, *const u8), String> {
-    let module = JITModule::new(JITBuilder::with_isa(target()?, default_libcall_names()));
+    let module = JITModule::new(JITBuilder::with_isa(host_instruction_set()?, default_libcall_names()));
     let mut module = Module(ManuallyDrop::new(module));
-    let address = define(&mut module.0, plan, results, helpers)?;
+    let address = define_cranelift_function(&mut module.0, plan, results, helpers)?;
     Ok((module, address))
 }
 
 /// Returns Cranelift's description of the host's instruction set.
-fn target() -> Result<OwnedTargetIsa, String> {
+fn host_instruction_set() -> Result<OwnedTargetIsa, String> {
     static TARGET: OnceLock<Result<OwnedTargetIsa, String>> = OnceLock::new();
-    let make = || {
+    let detect_host_instruction_set = || {
         let mut flags = settings::builder();
         for (name, value) in [
             ("opt_level", "none"),
@@ -62,10 +62,10 @@ fn target() -> Result<OwnedTargetIsa, String> {
         let builder = cranelift_native::builder()?;
         builder.finish(settings::Flags::new(flags)).map_err(|error| error.to_string())
     };
-    TARGET.get_or_init(make).clone()
+    TARGET.get_or_init(detect_host_instruction_set).clone()
 }
 
-fn define(
+fn define_cranelift_function(
     module: &mut JITModule,
     plan: &Allocation,
     results: usize,
@@ -85,7 +85,7 @@ fn define(
     builder.seal_block(block);
     let size = u32::try_from(8 * (plan.work + 3 * plan.angle_count())).map_err(|_| "too many values")?;
     let slot = builder.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, size, 4));
-    let mut translator = Translator {
+    let mut translator = CraneliftTranslator {
         parameters: builder.block_params(block).to_vec(),
         frame: builder.ins().stack_addr(pointer, slot, 0),
         builder,
@@ -97,7 +97,7 @@ fn define(
         inputs: vec![None; plan.lengths.len()],
     };
     plan.steps.iter().try_for_each(|step| translator.step(*step))?;
-    let Translator { mut builder, .. } = translator;
+    let CraneliftTranslator { mut builder, .. } = translator;
     builder.ins().return_(&[]);
     builder.finalize();
     module.define_function(id, &mut context).map_err(|error| format!("{error:?}"))?;
@@ -106,7 +106,7 @@ fn define(
     Ok(module.get_finalized_function(id))
 }
 
-struct Translator<'a> {
+struct CraneliftTranslator<'a> {
     builder: FunctionBuilder<'a>,
     pointer: Type,
     plan: &'a Allocation,
@@ -123,7 +123,7 @@ struct Translator<'a> {
     inputs: Vec<Option<Value>>,
 }
 
-impl Translator<'_> {
+impl CraneliftTranslator<'_> {
     fn step(&mut self, step: Step) -> Result<(), String> {
         match step {
             Step::Load(to, from, _) => {
@@ -144,7 +144,7 @@ impl Translator<'_> {
                 (first..first + count).try_for_each(|k| self.store(value, Memory::Output(k)))?;
             }
             Step::Operation(op, to, places, _) => {
-                let value = self.operation(op, places)?;
+                let value = self.translate_operation(op, places)?;
                 self.registers[usize::from(to)] = Some(value);
             }
             Step::Sines => self.call_of_sines()?,
@@ -167,7 +167,7 @@ impl Translator<'_> {
         self.call("sines", &[array, count], None).map(|_| ())
     }
 
-    fn operation(&mut self, op: Op, [a, b, c]: [Place; 3]) -> Result<Value, String> {
+    fn translate_operation(&mut self, op: Op, [a, b, c]: [Place; 3]) -> Result<Value, String> {
         let a = self.value(a)?;
         Ok(match op {
             Op::Neg(_) => self.builder.ins().fneg(a),
@@ -276,8 +276,8 @@ impl Translator<'_> {
     ) -> Result<Option<Value>, String> {
         let address = (self.helpers)(name).ok_or("a function is missing")?;
         let mut signature = self.builder.func.signature.clone();
-        let kind = |value: &Value| AbiParam::new(self.builder.func.dfg.value_type(*value));
-        signature.params = arguments.iter().map(kind).collect();
+        let parameter_of_value = |value: &Value| AbiParam::new(self.builder.func.dfg.value_type(*value));
+        signature.params = arguments.iter().map(parameter_of_value).collect();
         signature.returns = result.into_iter().map(AbiParam::new).collect();
         let signature = self.builder.import_signature(signature);
         let address = self.builder.ins().iconst(self.pointer, address as i64);

@@ -27,7 +27,7 @@ impl Pieces {
     /// Splits the values of a program. Inputs that are adjacent in memory are read together.
     pub fn split_program(program: &Program, layout: &Layout) -> Result<Pieces, String> {
         let covered = Angles::find_angles(program).covered;
-        let mut splitter = Splitter {
+        let mut splitter = LaneSplitter {
             from: program,
             layout,
             program: Program::default(),
@@ -41,25 +41,25 @@ impl Pieces {
         }
         splitter.program.outputs =
             program.outputs.iter().map(|output| splitter.lane(*output, 0)).collect::<Result<_, _>>()?;
-        let Splitter { program, widths, .. } = splitter;
-        Ok(Pieces { program, widths }.with_used_values())
+        let LaneSplitter { program, widths, .. } = splitter;
+        Ok(Pieces { program, widths }.without_unused_instructions())
     }
 
     /// Removes unused instructions.
-    fn with_used_values(mut self) -> Pieces {
+    fn without_unused_instructions(mut self) -> Pieces {
         let mut used = vec![false; self.widths.len()];
-        let note = |operand: Operand, used: &mut [bool]| {
+        let mark_used = |operand: Operand, used: &mut [bool]| {
             if let Operand::Value(k) = operand {
                 used[k] = true;
             }
         };
-        self.program.outputs.iter().for_each(|output| note(*output, &mut used));
+        self.program.outputs.iter().for_each(|output| mark_used(*output, &mut used));
         for k in (0..used.len()).rev() {
             if used[k] {
-                self.program.instructions[k].visit_operands(|operand| note(operand, &mut used));
+                self.program.instructions[k].visit_operands(|operand| mark_used(operand, &mut used));
             }
         }
-        self.program.remove_unused();
+        self.program.remove_unused_instructions();
         self.widths =
             self.widths.iter().zip(used).filter_map(|(width, used)| used.then_some(*width)).collect();
         self
@@ -91,7 +91,7 @@ fn is_same_operand(a: Operand, b: Operand) -> bool {
 }
 
 /// Returns the bits of the constants of an operation.
-fn constant_bits(op: &Op) -> Vec<u64> {
+fn bits_of_operation_constants(op: &Op) -> Vec<u64> {
     let mut bits = Vec::new();
     op.visit_operands(|operand| {
         if let Operand::Const(c) = operand {
@@ -102,61 +102,62 @@ fn constant_bits(op: &Op) -> Vec<u64> {
 }
 
 /// Value of the program with lanes: its number of lanes, and its pieces.
-struct Split {
+struct SplitValue {
     lanes: usize,
     pieces: Vec<Operand>,
 }
 
-struct Splitter<'a> {
+struct LaneSplitter<'a> {
     from: &'a Program,
     layout: &'a Layout,
     program: Program,
     widths: Vec<usize>,
-    values: Vec<Split>,
+    values: Vec<SplitValue>,
     /// Moves between lanes, with their numbers of lanes and results: each is made once.
     moves: Vec<(Op, usize, Operand)>,
 }
 
-impl Splitter<'_> {
-    fn split_operation(&mut self, op: Op, is_angle: bool) -> Result<Split, String> {
+impl LaneSplitter<'_> {
+    fn split_operation(&mut self, op: Op, is_angle: bool) -> Result<SplitValue, String> {
         let mut lanes = 1;
         op.visit_operands(|operand| lanes = lanes.max(self.lane_count(operand)));
         match op {
-            Op::Lane(k, a) => Ok(Split { lanes: 1, pieces: vec![self.lane(a, k)?] }),
-            Op::Sum(n, a) => Ok(Split { lanes: 1, pieces: vec![self.sum(n, a)?] }),
+            Op::Lane(k, a) => Ok(SplitValue { lanes: 1, pieces: vec![self.lane(a, k)?] }),
+            Op::Sum(n, a) => Ok(SplitValue { lanes: 1, pieces: vec![self.sum(n, a)?] }),
             Op::Join(n, a, b) => {
-                let whole = |operand| self.lane_count(operand) == n && n.is_multiple_of(WIDEST);
-                if whole(a) && whole(b) {
+                let fills_widest_registers =
+                    |operand| self.lane_count(operand) == n && n.is_multiple_of(WIDEST);
+                if fills_widest_registers(a) && fills_widest_registers(b) {
                     let count = n / WIDEST;
                     let pieces = [a, b].into_iter().flat_map(|o| (0..count).map(move |k| (o, k)));
                     let pieces = pieces.map(|(o, k)| self.piece(o, n, k)).collect::<Result<_, _>>()?;
-                    return Ok(Split { lanes: 2 * n, pieces });
+                    return Ok(SplitValue { lanes: 2 * n, pieces });
                 }
                 let all = [a, b].into_iter().flat_map(|o| (0..n).map(move |k| (o, k)));
                 let all = all.map(|(o, k)| self.lane(o, k)).collect::<Result<Vec<_>, _>>()?;
-                Ok(self.joined_lanes(&all))
+                Ok(self.join_scalars_as_lanes(&all))
             }
             op if is_call(&op) && !is_angle && lanes > 1 => {
                 let mut all = Vec::with_capacity(lanes);
                 for k in 0..lanes {
-                    let op = self.with_operands(op, |own, operand| own.lane(operand, k))?;
+                    let op = self.operation_with_operands(op, |own, operand| own.lane(operand, k))?;
                     all.push(self.push(op, 1));
                 }
-                Ok(self.joined_lanes(&all))
+                Ok(self.join_scalars_as_lanes(&all))
             }
             op => {
                 let mut pieces = Vec::with_capacity(lanes.div_ceil(WIDEST));
                 for k in 0..lanes.div_ceil(WIDEST) {
-                    let op = self.with_operands(op, |own, operand| own.piece(operand, lanes, k))?;
+                    let op = self.operation_with_operands(op, |own, operand| own.piece(operand, lanes, k))?;
                     pieces.push(self.push(op, width_of_piece(lanes, k)));
                 }
-                Ok(Split { lanes, pieces })
+                Ok(SplitValue { lanes, pieces })
             }
         }
     }
 
     /// Returns an operation with other operands.
-    fn with_operands(
+    fn operation_with_operands(
         &mut self,
         op: Op,
         mut operand: impl FnMut(&mut Self, Operand) -> Result<Operand, String>,
@@ -179,8 +180,11 @@ impl Splitter<'_> {
 
     /// Returns the result of a move between lanes, which is appended if it does not exist.
     fn append_move(&mut self, op: Op, width: usize) -> Operand {
-        let is_same = |known: &Op| *known == op && constant_bits(known) == constant_bits(&op);
-        let known = self.moves.iter().rev().find(|(known, lanes, _)| *lanes == width && is_same(known));
+        let is_same_operation = |known: &Op| {
+            *known == op && bits_of_operation_constants(known) == bits_of_operation_constants(&op)
+        };
+        let known =
+            self.moves.iter().rev().find(|(known, lanes, _)| *lanes == width && is_same_operation(known));
         if let Some((.., value)) = known {
             return *value;
         }
@@ -207,7 +211,7 @@ impl Splitter<'_> {
             Operand::Tuple(t) => self.from.tuples[t].get(k).map(|c| Operand::Const(*c)),
             Operand::Gather(g) => self.from.gathers[g].get(k).map(|symbol| Operand::Symbol(*symbol)),
             Operand::Value(v) => {
-                let Split { lanes, pieces } = &self.values[v];
+                let SplitValue { lanes, pieces } = &self.values[v];
                 (k < *lanes).then(|| pieces[k / WIDEST]).map(|piece| self.lane_of_piece(piece, k % WIDEST))
             }
         }
@@ -244,7 +248,7 @@ impl Splitter<'_> {
             }
             Operand::Gather(g) => {
                 let list: Vec<Symbol> = entries.map(|lane| self.from.gathers[g][lane]).collect();
-                Ok(if width == 1 { Operand::Symbol(list[0]) } else { self.gather(list) })
+                Ok(if width == 1 { Operand::Symbol(list[0]) } else { self.load_inputs_as_lanes(list) })
             }
             Operand::Symbol(_) => Ok(self.append_move(Op::Lane(0, operand), width)),
             Operand::Value(v) => {
@@ -279,15 +283,15 @@ impl Splitter<'_> {
     }
 
     /// Returns inputs as lanes: they are read together if they are adjacent, and joined otherwise.
-    fn gather(&mut self, list: Vec<Symbol>) -> Operand {
+    fn load_inputs_as_lanes(&mut self, list: Vec<Symbol>) -> Operand {
         let places: Vec<_> = list.iter().map(|symbol| self.layout.locate(*symbol)).collect();
-        let is_next = |pair: &[Option<(usize, usize)>]| match (pair[0], pair[1]) {
+        let is_adjacent_slot_pair = |pair: &[Option<(usize, usize)>]| match (pair[0], pair[1]) {
             (Some((slot, index)), Some((other, next))) => slot == other && next == index + 1,
             _ => false,
         };
-        if !places.windows(2).all(is_next) {
+        if !places.windows(2).all(is_adjacent_slot_pair) {
             let lanes: Vec<Operand> = list.into_iter().map(Operand::Symbol).collect();
-            return self.joined(&lanes);
+            return self.scalars_joined_as_lanes(&lanes);
         }
         let known = self.program.gathers.iter().position(|known| *known == list);
         Operand::Gather(known.unwrap_or_else(|| {
@@ -297,7 +301,7 @@ impl Splitter<'_> {
     }
 
     /// Returns one, two or four scalars as lanes of one value.
-    fn joined(&mut self, lanes: &[Operand]) -> Operand {
+    fn scalars_joined_as_lanes(&mut self, lanes: &[Operand]) -> Operand {
         match *lanes {
             [a, ref others @ ..] if others.iter().all(|other| is_same_operand(*other, a)) => {
                 match others.len() {
@@ -307,7 +311,8 @@ impl Splitter<'_> {
             }
             [a, b] => self.append_move(Op::Join(1, a, b), 2),
             [a, b, c, d] => {
-                let (first, last) = (self.joined(&[a, b]), self.joined(&[c, d]));
+                let (first, last) =
+                    (self.scalars_joined_as_lanes(&[a, b]), self.scalars_joined_as_lanes(&[c, d]));
                 self.append_move(Op::Join(2, first, last), WIDEST)
             }
             _ => lanes.first().copied().unwrap_or(Operand::Const(0.0)),
@@ -315,14 +320,14 @@ impl Splitter<'_> {
     }
 
     /// Returns scalars as lanes of a split value.
-    fn joined_lanes(&mut self, all: &[Operand]) -> Split {
+    fn join_scalars_as_lanes(&mut self, all: &[Operand]) -> SplitValue {
         let lanes = all.len();
         let pieces = (0..lanes.div_ceil(WIDEST)).map(|k| {
             let width = width_of_piece(lanes, k);
             let list: Vec<Operand> = (0..width).map(|lane| all[(WIDEST * k + lane).min(lanes - 1)]).collect();
-            self.joined(&list)
+            self.scalars_joined_as_lanes(&list)
         });
-        Split { lanes, pieces: pieces.collect() }
+        SplitValue { lanes, pieces: pieces.collect() }
     }
 
     /// Returns the sum of the first `n` lanes, in the order of the runtime: the upper half is added to the
@@ -337,7 +342,7 @@ impl Splitter<'_> {
             (2 | 4, true) => self.piece(a, n, 0)?,
             _ => {
                 let all = (0..n).map(|k| self.lane(a, k)).collect::<Result<_, _>>()?;
-                return Ok(self.sum_of_scalars(all));
+                return Ok(self.add_scalar_sum_instructions(all));
             }
         };
         if n >= WIDEST {
@@ -348,7 +353,7 @@ impl Splitter<'_> {
         Ok(self.push(Op::Add(piece, last), 1))
     }
 
-    fn sum_of_scalars(&mut self, mut lanes: Vec<Operand>) -> Operand {
+    fn add_scalar_sum_instructions(&mut self, mut lanes: Vec<Operand>) -> Operand {
         while lanes.len() > 1 {
             let half = lanes.len().div_ceil(2);
             for (k, upper) in lanes.split_off(half).into_iter().enumerate() {

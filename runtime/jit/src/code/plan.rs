@@ -126,7 +126,7 @@ impl Allocation {
         };
         let angles = Angles::find_angles(program);
         planner.angles(&angles)?;
-        planner.body(results)?;
+        planner.plan_outputs(results)?;
         // The angles follow the work space.
         planner.plan.work = planner.plan.work.next_multiple_of(WIDEST);
         Ok(planner.plan)
@@ -176,11 +176,11 @@ struct Residence {
 
 impl Planner<'_> {
     /// Plans the outputs.
-    fn body(&mut self, results: usize) -> Result<(), String> {
+    fn plan_outputs(&mut self, results: usize) -> Result<(), String> {
         let (program, n) = (self.program, self.program.instructions.len());
         let mut stores = vec![Vec::new(); n];
         let mut live = vec![false; n];
-        let is_operand = self.values_that_are_operands();
+        let is_operand = self.operand_flags_of_values();
         for (k, output) in program.outputs.iter().enumerate() {
             match *output {
                 Operand::Value(at) if !self.sines.contains_key(&at) => {
@@ -221,12 +221,12 @@ impl Planner<'_> {
                 });
             }
         }
-        stores.iter_mut().for_each(|targets| join_targets(targets, results));
+        stores.iter_mut().for_each(|targets| join_adjacent_stores(targets, results));
         self.run(&live, &stores)
     }
 
     /// Returns for each value whether an instruction uses it.
-    fn values_that_are_operands(&self) -> Vec<bool> {
+    fn operand_flags_of_values(&self) -> Vec<bool> {
         let mut is_operand = vec![false; self.program.instructions.len()];
         for op in &self.program.instructions {
             op.visit_operands(|operand| {
@@ -269,7 +269,7 @@ impl Planner<'_> {
 }
 
 /// Joins the stores of a value's first and second lane in adjacent outputs.
-fn join_targets(targets: &mut Vec<Target>, results: usize) {
+fn join_adjacent_stores(targets: &mut Vec<Target>, results: usize) {
     let seconds: Vec<usize> = (targets.iter())
         .filter_map(|target| match target {
             Target::Second(Memory::Output(k)) => Some(*k),

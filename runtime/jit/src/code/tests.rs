@@ -89,7 +89,7 @@ impl Random {
         }
         let outputs = 1 + self.index_below(40);
         program.outputs = (0..outputs).map(|_| self.operand(length, length)).collect();
-        program.remove_unused();
+        program.remove_unused_instructions();
         program
     }
 }
@@ -118,7 +118,7 @@ fn values(
             Op::Atan2(a, b) => get(a).atan2(get(b)),
             Op::Pow(a, b) => get(a).powf(get(b)),
             Op::Extreme(f, a, b) => f.evaluate_extreme(get(a), get(b)),
-            Op::Table(_, a, ..) => table.derivative_value([get(a); 3], [1, 0, 0]),
+            Op::Table(_, a, ..) => table.value_or_derivative([get(a); 3], [1, 0, 0]),
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => f64::NAN,
         };
         values.push(known.get(&k).copied().unwrap_or(found));
@@ -127,7 +127,7 @@ fn values(
 }
 
 /// Program under construction whose values have one lane or `lanes` lanes.
-struct Wide {
+struct LaneProgramBuilder {
     program: Program,
     lanes: usize,
     /// Whether each value has lanes.
@@ -136,7 +136,7 @@ struct Wide {
     is_plain: Vec<bool>,
 }
 
-impl Wide {
+impl LaneProgramBuilder {
     fn push(&mut self, op: Op, is_wide: bool) {
         let mut is_plain = true;
         op.visit_operands(|operand| is_plain &= !matches!(operand, Operand::Value(k) if !self.is_plain[k]));
@@ -158,7 +158,7 @@ impl Wide {
     }
 
     /// Returns a random operand with lanes: constants, inputs in any order or adjacent ones, or a value.
-    fn wide_operand(&mut self, random: &mut Random, reach: usize) -> Operand {
+    fn random_wide_operand(&mut self, random: &mut Random, reach: usize) -> Operand {
         let choice = random.index_below(12);
         if let Some(value) = self.value(random, reach, true).filter(|_| choice > 2) {
             return value;
@@ -179,23 +179,27 @@ impl Wide {
     }
 
     /// Returns a random operand without lanes.
-    fn scalar_operand(&self, random: &mut Random, reach: usize) -> Operand {
+    fn random_scalar_operand(&self, random: &mut Random, reach: usize) -> Operand {
         match self.value(random, reach, false).filter(|_| random.index_below(3) > 0) {
             Some(value) => value,
             None => random.operand(0, 1),
         }
     }
 
-    fn add_instruction(&mut self, random: &mut Random, reach: usize, calls: usize) {
+    fn add_random_instruction(&mut self, random: &mut Random, reach: usize, calls: usize) {
         let is_wide = random.index_below(4) > 0;
         let half = self.lanes / 2;
         let (op, is_wide) = match random.index_below(10) {
-            0 => (Op::Sum(1 + random.index_below(self.lanes), self.wide_operand(random, reach)), false),
-            1 | 2 => (Op::Lane(random.index_below(self.lanes), self.wide_operand(random, reach)), false),
+            0 => {
+                (Op::Sum(1 + random.index_below(self.lanes), self.random_wide_operand(random, reach)), false)
+            }
+            1 | 2 => {
+                (Op::Lane(random.index_below(self.lanes), self.random_wide_operand(random, reach)), false)
+            }
             3 if self.lanes == 2 * half => {
                 let [a, b] = std::array::from_fn(|_| match random.index_below(2) {
-                    0 => self.wide_operand(random, reach),
-                    _ => self.scalar_operand(random, reach),
+                    0 => self.random_wide_operand(random, reach),
+                    _ => self.random_scalar_operand(random, reach),
                 });
                 (Op::Join(half, a, b), true)
             }
@@ -204,8 +208,8 @@ impl Wide {
                 let mut first = is_wide;
                 let op = op.map_operands(|_| {
                     match std::mem::take(&mut first) || is_wide && random.index_below(3) > 0 {
-                        true => self.wide_operand(random, reach),
-                        false => self.scalar_operand(random, reach),
+                        true => self.random_wide_operand(random, reach),
+                        false => self.random_scalar_operand(random, reach),
                     }
                 });
                 (op, is_wide)
@@ -217,18 +221,18 @@ impl Wide {
     fn random_program(random: &mut Random) -> Program {
         let lanes = LANES[random.index_below(LANES.len())];
         let (is_wide, is_plain) = (Vec::new(), Vec::new());
-        let mut wide = Wide { program: Program::default(), lanes, is_wide, is_plain };
+        let mut wide = LaneProgramBuilder { program: Program::default(), lanes, is_wide, is_plain };
         let most = [8, 40, 200][random.index_below(3)];
         let reach = [4, 20, 1000][random.index_below(3)];
         let calls = [0, 0, 5][random.index_below(3)];
-        (0..1 + random.index_below(most)).for_each(|_| wide.add_instruction(random, reach, calls));
+        (0..1 + random.index_below(most)).for_each(|_| wide.add_random_instruction(random, reach, calls));
         let mut outputs = Vec::new();
         for _ in 0..1 + random.index_below(10) {
             match random.index_below(3) {
-                0 => outputs.push(wide.scalar_operand(random, 1000)),
+                0 => outputs.push(wide.random_scalar_operand(random, 1000)),
                 // Lanes of one value are neighbours.
                 _ => {
-                    let value = wide.wide_operand(random, 1000);
+                    let value = wide.random_wide_operand(random, 1000);
                     for k in 0..lanes {
                         wide.push(Op::Lane(k, value), false);
                         outputs.push(Operand::Value(wide.is_wide.len() - 1));
@@ -236,9 +240,9 @@ impl Wide {
                 }
             }
         }
-        let Wide { mut program, .. } = wide;
+        let LaneProgramBuilder { mut program, .. } = wide;
         program.outputs = outputs;
-        program.remove_unused();
+        program.remove_unused_instructions();
         program
     }
 }
@@ -269,7 +273,7 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
 /// Compares machine code of random programs with their evaluation.
 ///
 /// `random_program` returns a program, and the program without lanes that computes the same bits.
-fn agree(
+fn compare_code_with_evaluation(
     compile: fn(&Program, &Layout, usize) -> Result<Code, String>,
     random_program: fn(&mut Random) -> [Program; 2],
 ) {
@@ -298,7 +302,7 @@ fn agree(
     }
 }
 
-fn program_without_lanes(random: &mut Random) -> [Program; 2] {
+fn random_program_pair_without_lanes(random: &mut Random) -> [Program; 2] {
     let program = random.program();
     [program.clone(), program]
 }
@@ -307,7 +311,7 @@ fn program_without_lanes(random: &mut Random) -> [Program; 2] {
 #[test]
 fn assembled_programs_equal_an_evaluation_operation_by_operation() {
     if super::x86::is_supported() {
-        agree(Code::assemble_x86_code, program_without_lanes);
+        compare_code_with_evaluation(Code::assemble_x86_code, random_program_pair_without_lanes);
     }
 }
 
@@ -316,8 +320,8 @@ fn assembled_programs_equal_an_evaluation_operation_by_operation() {
 #[test]
 fn assembled_lanes_equal_an_evaluation_lane_by_lane() {
     if super::x86::is_supported() {
-        agree(Code::assemble_x86_code, |random| {
-            let program = Wide::random_program(random);
+        compare_code_with_evaluation(Code::assemble_x86_code, |random| {
+            let program = LaneProgramBuilder::random_program(random);
             let oracle = program.expand_lanes();
             [program, oracle]
         });
@@ -326,5 +330,5 @@ fn assembled_lanes_equal_an_evaluation_lane_by_lane() {
 
 #[test]
 fn programs_by_cranelift_equal_an_evaluation_operation_by_operation() {
-    agree(Code::by_cranelift, program_without_lanes);
+    compare_code_with_evaluation(Code::compile_with_cranelift, random_program_pair_without_lanes);
 }

@@ -20,7 +20,7 @@ pub fn is_supported() -> bool {
 }
 
 /// Function that returns the address of a function by name, for calls from generated code.
-type Helpers = fn(&str) -> Option<*const u8>;
+type HelperAddresses = fn(&str) -> Option<*const u8>;
 
 /// Register with the address of workspace and angles, plus [`BIAS`] bytes.
 const FRAME: u8 = RBP;
@@ -34,7 +34,7 @@ const ALIGNMENT: i32 = 32;
 const PAGE: i32 = 4096;
 
 /// Writes the code of a plan. Further constants are appended to those of the plan.
-pub fn write(plan: &mut Allocation, results: usize, helpers: Helpers) -> Result<Vec<u8>, String> {
+pub fn write(plan: &mut Allocation, results: usize, helpers: HelperAddresses) -> Result<Vec<u8>, String> {
     // Masks of the sign and of everything else, for whole registers.
     let masks = plan.constants.len().next_multiple_of(4);
     plan.constants.resize(masks, 0.0);
@@ -51,9 +51,9 @@ pub fn write(plan: &mut Allocation, results: usize, helpers: Helpers) -> Result<
     let registers = if plan.steps.iter().any(calls) { CALLING } else { LEAF };
     let (code, pointers) = (Assembler::default(), Vec::new());
     let mut writer = Writer { code, plan, results, masks, helpers, registers, pointers, uses: 0, slow: None };
-    let frame = writer.enter()?;
+    let frame = writer.write_prologue()?;
     plan.steps.iter().try_for_each(|step| writer.step(*step))?;
-    writer.leave(frame);
+    writer.write_epilogue(frame);
     writer.large_angles()?;
     Ok(writer.code.bytes)
 }
@@ -64,7 +64,7 @@ struct Writer<'a> {
     results: usize,
     /// Index of the sign masks among the constants.
     masks: usize,
-    helpers: Helpers,
+    helpers: HelperAddresses,
     registers: Registers,
     /// Inputs whose addresses are in registers, in the order of [`Registers::pointers`].
     pointers: Vec<Pointer>,
@@ -76,7 +76,7 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     /// Writes the prologue of the function. Returns the size of its stack frame, bytes.
-    fn enter(&mut self) -> Result<i32, String> {
+    fn write_prologue(&mut self) -> Result<i32, String> {
         let Registers { constants, more, results, inputs, tables, saved, .. } = self.registers;
         saved.iter().for_each(|register| self.code.general(0x50, *register));
         let numbers = self.plan.work + 3 * self.plan.angle_count();
@@ -90,9 +90,9 @@ impl Writer<'_> {
             self.code.bytes.extend([0x89, 0x04, 0x24]); // mov [rsp], eax
         }
         self.code.add_to_stack(-(frame % PAGE));
-        self.code.address_of(FRAME, RSP, BIAS + ALIGNMENT - 1);
+        self.code.write_effective_address(FRAME, RSP, BIAS + ALIGNMENT - 1);
         self.code.bytes.extend([0x48, 0x83, 0xE5, -ALIGNMENT as i8 as u8]); // and rbp, -32
-        self.code.address_of(constants, RSI, BIAS);
+        self.code.write_effective_address(constants, RSI, BIAS);
         for (to, from) in [(results, RCX), (more, 8), (inputs, RDI), (tables, RDX)] {
             if to != from {
                 self.code.copy(to, from);
@@ -101,8 +101,8 @@ impl Writer<'_> {
         Ok(frame)
     }
 
-    fn leave(&mut self, frame: i32) {
-        self.code.clear_upper_halves();
+    fn write_epilogue(&mut self, frame: i32) {
+        self.code.write_vzeroupper();
         self.code.add_to_stack(frame);
         self.registers.saved.iter().rev().for_each(|register| self.code.general(0x58, *register));
         self.code.bytes.push(0xC3);
@@ -124,8 +124,8 @@ impl Writer<'_> {
                 self.code.load(SCRATCH, from, width);
                 self.store(SCRATCH, to, width);
             }
-            Step::Fill(constant, first, count) => self.fill(constant, first, count),
-            Step::Operation(op, to, places, 1) if is_call(&op) => self.call_of(op, to, places)?,
+            Step::Fill(constant, first, count) => self.store_constant_repeatedly(constant, first, count),
+            Step::Operation(op, to, places, 1) if is_call(&op) => self.write_function_call(op, to, places)?,
             Step::Operation(op, to, places, width) => {
                 let places = places.map(|place| self.operand(place));
                 self.operation(op, to, places, width)?;
@@ -137,13 +137,13 @@ impl Writer<'_> {
 
     fn operation(&mut self, op: Op, to: u8, [a, b, c]: [Rm; 3], width: usize) -> Result<(), String> {
         match op {
-            Op::Add(..) => self.commutative(ADD, to, a, b, width),
-            Op::Mul(..) => self.commutative(MULTIPLY, to, a, b, width),
-            Op::Sub(..) => self.ordered(SUBTRACT, to, a, b, width),
-            Op::Div(..) => self.ordered(DIVIDE, to, a, b, width),
-            Op::Neg(_) => self.commutative(XOR, to, a, self.constant(self.masks), width),
+            Op::Add(..) => self.write_commutative(ADD, to, a, b, width),
+            Op::Mul(..) => self.write_commutative(MULTIPLY, to, a, b, width),
+            Op::Sub(..) => self.write_noncommutative(SUBTRACT, to, a, b, width),
+            Op::Div(..) => self.write_noncommutative(DIVIDE, to, a, b, width),
+            Op::Neg(_) => self.write_commutative(XOR, to, a, self.constant(self.masks), width),
             Op::Call(Elementary::Abs, _) => {
-                self.commutative(AND, to, a, self.constant(self.masks + 4), width)
+                self.write_commutative(AND, to, a, self.constant(self.masks + 4), width)
             }
             Op::Call(Elementary::Sqrt, _) => {
                 let other = match a {
@@ -158,16 +158,16 @@ impl Writer<'_> {
             Op::MulAdd(..) => self.product(0x99, to, [a, b, c], width),
             Op::MulSub(..) => self.product(0x9B, to, [a, b, c], width),
             Op::NegMulAdd(..) => self.product(0x9D, to, [a, b, c], width),
-            Op::Lane(k, _) => self.lanes_from(k, to, a, width),
-            Op::Join(1, ..) => self.join_two(to, a, b),
-            Op::Join(2, ..) => self.join_four(to, a, b),
+            Op::Lane(k, _) => self.write_lane_move(k, to, a, width),
+            Op::Join(1, ..) => self.write_join_of_numbers(to, a, b),
+            Op::Join(2, ..) => self.write_join_of_pairs(to, a, b),
             _ => return Err("an operation has no instruction".to_string()),
         }
         Ok(())
     }
 
     /// Writes the move of the lanes from lane `k` on, or of the first lane to all lanes.
-    fn lanes_from(&mut self, k: usize, to: u8, from: Rm, width: usize) {
+    fn write_lane_move(&mut self, k: usize, to: u8, from: Rm, width: usize) {
         match (k, from) {
             (0, from) => match width {
                 2 => self.code.instruction(COPY_TO_TWO, to, 0, from),
@@ -185,7 +185,7 @@ impl Writer<'_> {
     }
 
     /// Writes the join of two numbers.
-    fn join_two(&mut self, to: u8, a: Rm, b: Rm) {
+    fn write_join_of_numbers(&mut self, to: u8, a: Rm, b: Rm) {
         match (a, b) {
             (Rm::Register(first), Rm::Register(_)) => self.code.instruction(FIRST_LANES, to, first, b),
             (Rm::Memory(..), Rm::Register(_)) => {
@@ -201,7 +201,7 @@ impl Writer<'_> {
     }
 
     /// Writes the join of two pairs of numbers.
-    fn join_four(&mut self, to: u8, a: Rm, b: Rm) {
+    fn write_join_of_pairs(&mut self, to: u8, a: Rm, b: Rm) {
         let first = match a {
             Rm::Register(first) => first,
             Rm::Memory(..) => {
@@ -214,7 +214,7 @@ impl Writer<'_> {
     }
 
     /// Writes an instruction whose operands can be exchanged.
-    fn commutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm, width: usize) {
+    fn write_commutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm, width: usize) {
         let code = on_lanes(code, width);
         match (a, b) {
             (Rm::Register(a), b) => self.code.instruction(code, to, a, b),
@@ -226,7 +226,7 @@ impl Writer<'_> {
         }
     }
 
-    fn ordered(&mut self, code: Encoding, to: u8, a: Rm, b: Rm, width: usize) {
+    fn write_noncommutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm, width: usize) {
         let code = on_lanes(code, width);
         let first = match a {
             Rm::Register(a) => a,
@@ -244,16 +244,16 @@ impl Writer<'_> {
     fn product(&mut self, first: u8, to: u8, [a, b, c]: [Rm; 3], width: usize) {
         use Rm::{Memory, Register};
         let [exchanged, product, sum] = [0, 16, 32].map(|more| on_lanes(fused(first + more), width));
-        let is_to = |rm: Rm| matches!(rm, Register(register) if register == to);
+        let is_destination_register = |rm: Rm| matches!(rm, Register(register) if register == to);
         // A factor in the result's register, or otherwise one in memory, comes first.
         let [a, b] = match (a, b) {
-            (a, b) if is_to(b) && !is_to(a) => [b, a],
-            (Register(_), Memory(..)) if !is_to(a) => [b, a],
+            (a, b) if is_destination_register(b) && !is_destination_register(a) => [b, a],
+            (Register(_), Memory(..)) if !is_destination_register(a) => [b, a],
             factors => [factors.0, factors.1],
         };
-        let keeps_sum = is_to(c) || !is_to(a) && matches!(c, Memory(..));
+        let keeps_sum = is_destination_register(c) || !is_destination_register(a) && matches!(c, Memory(..));
         if keeps_sum || matches!((a, b), (Register(first), Register(second)) if first != to && second != to) {
-            if !is_to(c) {
+            if !is_destination_register(c) {
                 self.code.load(to, c, width);
             }
             match (a, b) {
@@ -265,7 +265,7 @@ impl Writer<'_> {
             }
             return;
         }
-        if !is_to(a) {
+        if !is_destination_register(a) {
             self.code.load(to, a, width);
         }
         match (b, c) {
@@ -279,7 +279,7 @@ impl Writer<'_> {
     }
 
     /// Writes a call of a function whose arguments are numbers in memory.
-    fn call_of(&mut self, op: Op, to: u8, places: [Place; 3]) -> Result<(), String> {
+    fn write_function_call(&mut self, op: Op, to: u8, places: [Place; 3]) -> Result<(), String> {
         let (name, count) = match op {
             Op::Call(f, _) => (f.function_name(), 1),
             Op::Atan2(..) => ("atan2", 2),
@@ -288,10 +288,10 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Max, ..) => ("max", 2),
             Op::Table(lookup, ..) => {
                 self.code.copy(RDI, self.registers.tables);
-                self.code.immediate(RSI, lookup.table_index() as u64);
+                self.code.write_move_immediate(RSI, lookup.table_index() as u64);
                 let orders = (0..lookup.variable_count())
                     .fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
-                self.code.immediate(RDX, orders as u64);
+                self.code.write_move_immediate(RDX, orders as u64);
                 ("lookup", 3)
             }
             _ => return Err("an operation calls nothing".to_string()),
@@ -313,14 +313,14 @@ impl Writer<'_> {
     /// Writes a call of a function, after which no address of an input is in a register.
     fn call(&mut self, name: &str) -> Result<(), String> {
         let address = (self.helpers)(name).ok_or("a function is missing")?;
-        self.code.clear_upper_halves();
-        self.code.immediate(RAX, address as u64);
+        self.code.write_vzeroupper();
+        self.code.write_move_immediate(RAX, address as u64);
         self.code.bytes.extend([0xFF, 0xD0]);
         self.pointers.clear();
         Ok(())
     }
 
-    fn fill(&mut self, constant_: usize, first: usize, count: usize) {
+    fn store_constant_repeatedly(&mut self, constant_: usize, first: usize, count: usize) {
         let long = count >= 4;
         let code = if long { BROADCAST } else { LOAD };
         let from = self.memory(Memory::Constant(constant_));

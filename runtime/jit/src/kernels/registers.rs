@@ -21,17 +21,17 @@ pub fn multiply<const K: usize>(
     for (matrix, groups) in matrices.into_iter().zip(columns) {
         for group in groups {
             match group.columns.len() {
-                1 => multiply_columns::<1>(n, square, matrix, group, work),
-                2 => multiply_columns::<2>(n, square, matrix, group, work),
-                3 => multiply_columns::<3>(n, square, matrix, group, work),
-                _ => multiply_columns::<4>(n, square, matrix, group, work),
+                1 => subtract_product_from_columns::<1>(n, square, matrix, group, work),
+                2 => subtract_product_from_columns::<2>(n, square, matrix, group, work),
+                3 => subtract_product_from_columns::<3>(n, square, matrix, group, work),
+                _ => subtract_product_from_columns::<4>(n, square, matrix, group, work),
             }
         }
     }
 }
 
 #[target_feature(enable = "avx512f")]
-fn multiply_columns<const M: usize>(
+fn subtract_product_from_columns<const M: usize>(
     n: usize,
     square: &[f64],
     matrix: &mut [f64],

@@ -1,12 +1,12 @@
 //! Constraints of robots that are padded to constant dimensions.
 
 use super::Padded;
-use crate::internal::Internal;
-use crate::names::{List, numbers_of_names};
+use crate::internal::InternalFunction;
+use crate::names::{List, placeholder_numbers};
 use crate::robot::{Robot, State};
 use linkwork::__private::{
-    Elimination, Responses, Structure, careful_dynamics, careful_response, independent_solution,
-    least_solution, nearly_singular, regular_solution, slipping_solution,
+    Elimination, Responses, Structure, careful_response, least_solution, nearly_singular,
+    rank_revealing_dynamics, regular_solution, slipping_solution, solution_with_predetermined_pivots,
 };
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Constrained, ConstraintError};
@@ -49,7 +49,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         }
     }
 
-    pub(super) fn constraints_nearly_singular(
+    pub(super) fn are_constraints_nearly_singular(
         &self,
         t: f64,
         q: &SVector<f64, NQ>,
@@ -60,9 +60,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Evaluates an elimination of the constraint equations. Rows of the padding get pivots of one, and
     /// accelerations of the padding are taken from `more`.
-    pub(super) fn evaluate_elimination(
+    pub(super) fn evaluate_constraint_elimination(
         &self,
-        f: Internal,
+        f: InternalFunction,
         state: State<'_>,
         more: &SVector<f64, NV>,
     ) -> Elimination<f64, NV, NV> {
@@ -93,9 +93,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Evaluates the quantities from which accelerations under redundant constraints follow.
-    fn evaluate_responses(
+    fn evaluate_constraint_responses(
         &self,
-        f: Internal,
+        f: InternalFunction,
         state: State<'_>,
         more: &SVector<f64, NV>,
     ) -> Responses<f64, NV, NV> {
@@ -121,9 +121,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns accelerations and multipliers from an elimination; `None` if the elimination loses accuracy.
-    fn solution_by_elimination(
+    fn accelerations_by_elimination(
         &self,
-        f: Internal,
+        f: InternalFunction,
         independent: bool,
         state: State<'_>,
         more: &SVector<f64, NV>,
@@ -133,12 +133,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
             return least_solution(
                 &self.constraint_groups(),
                 constraints.rank,
-                &self.evaluate_responses(f, state, more),
+                &self.evaluate_constraint_responses(f, state, more),
             );
         }
-        let found = self.evaluate_elimination(f, state, more);
+        let found = self.evaluate_constraint_elimination(f, state, more);
         if independent {
-            independent_solution(&found)
+            solution_with_predetermined_pivots(&found)
         } else {
             regular_solution(&self.constraint_groups(), &found)
         }
@@ -155,11 +155,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let slipping = self.robot().shared.constraints.slipping.len();
         let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let mut more = *tau;
-        self.add_free_rates(state, 1.0, &mut more);
+        self.add_first_order_state_rates(state, 1.0, &mut more);
         let names = Self::CONSTRAINTS;
         slipping_solution(&self.sliding_rows(), &self.constraint_groups(), &names, |sides: &[f64; NV]| {
             let state = State { other: &[&sides[..slipping]], ..state };
-            self.evaluate_elimination(Internal::ConstrainedDynamics, state, &more)
+            self.evaluate_constraint_elimination(InternalFunction::ConstrainedDynamics, state, &more)
         })
     }
 
@@ -175,7 +175,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let (n, rows) = (self.robot().nv(), self.constraint_count());
         let state = State { other: &[&force[..n], &bias[..rows]], ..self.state_without_velocity(t, q) };
         let more = SVector::from(*force);
-        self.solution_by_elimination(Internal::ConstraintCorrection, false, state, &more)
+        self.accelerations_by_elimination(InternalFunction::ConstraintCorrection, false, state, &more)
             .unwrap_or_else(|| {
                 careful_response::<Self, f64, NQ, NV, NU, NV, NV>(
                     self,
@@ -193,7 +193,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constrained<NQ, NV, NU, NV, NV>
     for Padded<NQ, NV, NU, R>
 {
-    const CONSTRAINTS: [&'static str; NV] = numbers_of_names(List::Constraints);
+    const CONSTRAINTS: [&'static str; NV] = placeholder_numbers(List::Constraints);
 
     fn holonomic(&self) -> usize {
         self.robot().shared.constraints.holonomic
@@ -212,8 +212,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         let count = self.robot().shared.constraints.holonomic;
         match count {
             0 => SVector::zeros(),
-            _ => self.fill_vector(
-                Internal::ConstraintResiduals,
+            _ => self.vector_with_results(
+                InternalFunction::ConstraintResiduals,
                 self.state_without_velocity(t, q),
                 count,
                 SVector::zeros(),
@@ -222,8 +222,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
     }
 
     fn constraint_rates(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.fill_vector(
-            Internal::ConstraintRates,
+        self.vector_with_results(
+            InternalFunction::ConstraintRates,
             self.state_with_velocity(t, q, v),
             self.constraint_count(),
             SVector::zeros(),
@@ -233,7 +233,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
     fn constraint_jacobian(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let size = (self.constraint_count(), self.robot().nv());
         self.fill_matrix(
-            Internal::ConstraintJacobian,
+            InternalFunction::ConstraintJacobian,
             self.state_without_velocity(t, q),
             size,
             SMatrix::zeros(),
@@ -241,8 +241,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
     }
 
     fn constraint_bias(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.fill_vector(
-            Internal::ConstraintBias,
+        self.vector_with_results(
+            InternalFunction::ConstraintBias,
             self.state_with_velocity(t, q, v),
             self.constraint_count(),
             SVector::zeros(),
@@ -264,18 +264,23 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         }
         let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let mut more = *tau;
-        self.add_free_rates(state, 1.0, &mut more);
-        self.solution_by_elimination(Internal::ConstrainedDynamics, constraints.independent, state, &more)
-            .unwrap_or_else(|| {
-                careful_dynamics::<Self, f64, NQ, NV, NU, NV, NV>(
-                    self,
-                    &self.constraint_structure(),
-                    t,
-                    q,
-                    v,
-                    tau,
-                )
-            })
+        self.add_first_order_state_rates(state, 1.0, &mut more);
+        self.accelerations_by_elimination(
+            InternalFunction::ConstrainedDynamics,
+            constraints.independent,
+            state,
+            &more,
+        )
+        .unwrap_or_else(|| {
+            rank_revealing_dynamics::<Self, f64, NQ, NV, NU, NV, NV>(
+                self,
+                &self.constraint_structure(),
+                t,
+                q,
+                v,
+                tau,
+            )
+        })
     }
 
     fn constraint_correction(

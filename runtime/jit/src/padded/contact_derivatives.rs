@@ -1,7 +1,7 @@
 //! Derivatives of robots with contacts that are padded to constant dimensions.
 
 use super::{Padded, PaddedContacts, write_block};
-use crate::internal::Internal;
+use crate::internal::InternalFunction;
 use crate::robot::{Robot, State};
 use linkwork::contact::{ContactDerivatives, FirstOrder};
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -16,7 +16,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     pub(super) fn has_contact_derivatives(&self) -> bool {
         self.has_derivatives()
             && self.robot().shared.states.is_empty()
-            && self.has_function(Internal::ContactDerivatives)
+            && self.has_function(InternalFunction::ContactDerivatives)
     }
 }
 
@@ -59,7 +59,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
             ..self.plain.state_with_velocity(t, q, v)
         };
         let mut found = vec![0.0; n * (n + 3 * rows)];
-        self.plain.call_function(Internal::ContactDerivatives, state, &mut found);
+        self.plain.call_function(InternalFunction::ContactDerivatives, state, &mut found);
         let (forces, accelerations) = found.split_at(n * n);
         let mut forces_by_q = Square::zeros();
         write_block(&mut forces_by_q, n, forces);

@@ -2,8 +2,8 @@
 
 use super::{Padded, write_block};
 use crate::error::Error;
-use crate::internal::Internal;
-use crate::names::{List, numbers_of_names};
+use crate::internal::InternalFunction;
+use crate::names::{List, placeholder_numbers};
 use crate::robot::{Robot, State};
 use linkwork::__private::{differentiate_step, held_derivatives};
 use linkwork::constraint::Projected;
@@ -81,9 +81,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 {
     type Scalar = f64;
 
-    const CONFIGURATION: [&'static str; NQ] = numbers_of_names(List::Configuration);
-    const VELOCITIES: [&'static str; NV] = numbers_of_names(List::Velocities);
-    const INPUTS: [&'static str; NU] = numbers_of_names(List::Inputs);
+    const CONFIGURATION: [&'static str; NQ] = placeholder_numbers(List::Configuration);
+    const VELOCITIES: [&'static str; NV] = placeholder_numbers(List::Velocities);
+    const INPUTS: [&'static str; NU] = placeholder_numbers(List::Inputs);
 
     forward! {
         neutral() -> Vector<NQ>;
@@ -147,7 +147,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize, R: Borrow<Robot>>
     Contacts<NQ, NV, NU, NK, NR> for PaddedContacts<NQ, NV, NU, NK, NR, R>
 {
-    const CONTACTS: [&'static str; NK] = numbers_of_names(List::Contacts);
+    const CONTACTS: [&'static str; NK] = placeholder_numbers(List::Contacts);
     const CONTACT_ROWS: [Rows; NK] = [Rows { first: NR, count: 0 }; NK];
 
     fn contact_tables(&self) -> ([Rows; NK], [usize; NK]) {
@@ -161,8 +161,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_gaps(&self, t: f64, q: &Vector<NQ>) -> Vector<NK> {
         let count = self.robot().shared.contacts.len();
-        self.plain.fill_vector(
-            Internal::ContactGaps,
+        self.plain.vector_with_results(
+            InternalFunction::ContactGaps,
             self.plain.state_without_velocity(t, q),
             count,
             SVector::repeat(FAR),
@@ -171,13 +171,18 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_rates(&self, t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Vector<NR> {
         let state = self.plain.state_with_velocity(t, q, v);
-        self.plain.fill_vector(Internal::ContactRates, state, self.contact_rate_count(), SVector::zeros())
+        self.plain.vector_with_results(
+            InternalFunction::ContactRates,
+            state,
+            self.contact_rate_count(),
+            SVector::zeros(),
+        )
     }
 
     fn contact_jacobian(&self, t: f64, q: &Vector<NQ>) -> SMatrix<f64, NR, NV> {
         let size = (self.contact_rate_count(), self.robot().nv());
         self.plain.fill_matrix(
-            Internal::ContactJacobian,
+            InternalFunction::ContactJacobian,
             self.plain.state_without_velocity(t, q),
             size,
             SMatrix::zeros(),
@@ -186,17 +191,22 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_bias(&self, t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Vector<NR> {
         let state = self.plain.state_with_velocity(t, q, v);
-        self.plain.fill_vector(Internal::ContactBias, state, self.contact_rate_count(), SVector::zeros())
+        self.plain.vector_with_results(
+            InternalFunction::ContactBias,
+            state,
+            self.contact_rate_count(),
+            SVector::zeros(),
+        )
     }
 
     fn contact_responses(&self, t: f64, q: &Vector<NQ>, closed: &[bool; NK]) -> Responses<f64, NV, NR> {
-        if !self.plain.has_function(Internal::ContactResponses) {
+        if !self.plain.has_function(InternalFunction::ContactResponses) {
             return contact::responses(self, t, q, closed);
         }
         let (n, rates) = (self.robot().nv(), self.contact_rate_count());
         let mut found = vec![0.0; rates * (n + rates)];
         self.plain.call_function(
-            Internal::ContactResponses,
+            InternalFunction::ContactResponses,
             self.plain.state_without_velocity(t, q),
             &mut found,
         );
@@ -235,7 +245,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
     fn contact_laws(&self) -> [Law<f64>; NK] {
         let contacts = &self.robot().shared.contacts;
         let mut laws = vec![0.0; 3 * contacts.len()];
-        self.plain.call_function(Internal::ContactLaws, State::default(), &mut laws);
+        self.plain.call_function(InternalFunction::ContactLaws, State::default(), &mut laws);
         std::array::from_fn(|k| {
             let contact_coefficient = |i: usize| laws.get(3 * k + i).copied().unwrap_or(0.0);
             let by_impulses = contacts.get(k).is_some_and(|contact| contact.of_impulses);

@@ -1,7 +1,7 @@
 //! Derivatives of the dynamics of robots that are padded to constant dimensions.
 
 use super::{Padded, write_block};
-use crate::internal::Internal;
+use crate::internal::InternalFunction;
 use crate::robot::{Robot, State};
 use linkwork::__private::{
     MotionDerivatives, ball_integrate_derivatives, ball_tangent_rate_derivatives, constrained_derivatives,
@@ -27,14 +27,14 @@ pub(super) fn consecutive_entries<const N: usize, const NV: usize>(
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
     /// Whether the robot was loaded with the option `derivatives`.
     pub(super) fn has_derivatives(&self) -> bool {
-        self.has_function(Internal::GeneralizedForcesDerivatives)
-            && (self.has_function(Internal::MotionDerivatives) || !self.is_constrained())
+        self.has_function(InternalFunction::GeneralizedForcesDerivatives)
+            && (self.has_function(InternalFunction::MotionDerivatives) || !self.is_constrained())
     }
 
     /// Evaluates a function whose results are matrices with as many rows as there are velocities.
     pub(super) fn evaluate_matrices<const K: usize>(
         &self,
-        f: Internal,
+        f: InternalFunction,
         state: State<'_>,
         columns: [usize; K],
     ) -> impl Iterator<Item = (usize, Vec<f64>)> + use<NQ, NV, NU, K, R> {
@@ -53,7 +53,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     /// of the given larger matrices.
     pub(super) fn evaluate_square_matrices<const K: usize>(
         &self,
-        f: Internal,
+        f: InternalFunction,
         state: State<'_>,
         mut all: [Square<NV>; K],
     ) -> [Square<NV>; K] {
@@ -87,7 +87,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns the derivatives of the rate of a displacement for velocities that are joint velocities.
-    fn plain_rate_derivatives(
+    fn joint_velocity_rate_derivatives(
         &self,
         dv: &SVector<f64, NV>,
         v: &SVector<f64, NV>,
@@ -122,13 +122,18 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Converts a velocity vector between generalized speeds and joint velocities, by the function `f`.
-    fn convert_velocity(&self, f: Internal, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+    fn convert_velocity(
+        &self,
+        f: InternalFunction,
+        q: &SVector<f64, NQ>,
+        v: &SVector<f64, NV>,
+    ) -> SVector<f64, NV> {
         let state =
             State { q: self.configuration_entries(q), v: self.velocity_entries(v), ..State::default() };
-        self.fill_vector(f, state, self.robot().nv(), *v)
+        self.vector_with_results(f, state, self.robot().nv(), *v)
     }
 
-    pub(crate) fn speed_matrix(&self, f: Internal, q: &SVector<f64, NQ>) -> Square<NV> {
+    pub(crate) fn speed_matrix(&self, f: InternalFunction, q: &SVector<f64, NQ>) -> Square<NV> {
         let n = self.robot().nv();
         let state = State { q: self.configuration_entries(q), ..State::default() };
         self.fill_matrix(f, state, (n, n), Square::identity())
@@ -138,16 +143,16 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let n = self.robot().nv();
         let state =
             State { q: self.configuration_entries(q), v: self.velocity_entries(v), ..State::default() };
-        self.fill_matrix(Internal::RateChanges, state, (n, n), Square::zeros())
+        self.fill_matrix(InternalFunction::RateChanges, state, (n, n), Square::zeros())
     }
 
     /// Returns the displacement `dv` in joint velocities, and the displaced configuration.
-    fn displace_configuration(
+    fn displacement_and_new_configuration(
         &self,
         q: &SVector<f64, NQ>,
         dv: &SVector<f64, NV>,
     ) -> (SVector<f64, NV>, SVector<f64, NQ>) {
-        let way = self.convert_velocity(Internal::RatesOfSpeeds, q, dv);
+        let way = self.convert_velocity(InternalFunction::RatesOfSpeeds, q, dv);
         let mut there = *q;
         let charts = &self.robot().shared.charts;
         crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
@@ -172,7 +177,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         };
         let lengths = [n, n, rows, rows, rows, n];
         let mut found = vec![0.0; n * lengths.iter().sum::<usize>()];
-        self.call_function(Internal::MotionDerivatives, state, &mut found);
+        self.call_function(InternalFunction::MotionDerivatives, state, &mut found);
         let mut rest = &found[..];
         let take_padded_block = |rows: usize| {
             let (own, others) = rest.split_at(n * rows);
@@ -207,7 +212,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let solve = slipping_response(&slipping, &groups, &lambda, |force, bias, sides| {
             let other = &[&force[..n], &bias[..rows], &sides[..sliding]];
             let state = State { other, ..self.state_with_velocity(t, q, v) };
-            self.evaluate_elimination(Internal::SlippingResponse, state, &SVector::from(*force))
+            self.evaluate_constraint_elimination(
+                InternalFunction::SlippingResponse,
+                state,
+                &SVector::from(*force),
+            )
         });
         constrained_derivatives(&parts, solve)
     }
@@ -230,7 +239,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
     ) -> (Square<NV>, Square<NV>) {
         match self.has_speeds() {
             true => (Square::repeat(f64::NAN), Square::repeat(f64::NAN)),
-            false => self.plain_rate_derivatives(dv, v),
+            false => self.joint_velocity_rate_derivatives(dv, v),
         }
     }
 
@@ -242,10 +251,10 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         if !self.has_speeds() {
             return self.plain_integrate_derivatives(dv);
         }
-        let (way, there) = self.displace_configuration(q, dv);
+        let (way, there) = self.displacement_and_new_configuration(q, dv);
         integrate_derivatives_in_speeds(
-            &self.speed_matrix(Internal::RateMatrix, q),
-            &self.speed_matrix(Internal::SpeedMatrix, &there),
+            &self.speed_matrix(InternalFunction::RateMatrix, q),
+            &self.speed_matrix(InternalFunction::SpeedMatrix, &there),
             &self.plain_integrate_derivatives(&way),
             &self.rate_changes(q, dv),
         )
@@ -258,19 +267,19 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         v: &SVector<f64, NV>,
     ) -> ByMotion<f64, NV, NV> {
         if !self.has_speeds() {
-            let (by_dv, by_v) = self.plain_rate_derivatives(dv, v);
+            let (by_dv, by_v) = self.joint_velocity_rate_derivatives(dv, v);
             return (Square::zeros(), by_dv, by_v);
         }
-        let (way, there) = self.displace_configuration(q, dv);
-        let rates = self.convert_velocity(Internal::RatesOfSpeeds, &there, v);
+        let (way, there) = self.displacement_and_new_configuration(q, dv);
+        let rates = self.convert_velocity(InternalFunction::RatesOfSpeeds, &there, v);
         let found = self.displacement_rate(q, dv, v);
         displacement_rate_derivatives_in_speeds(
             [
-                &self.speed_matrix(Internal::SpeedMatrix, q),
-                &self.speed_matrix(Internal::RateMatrix, q),
-                &self.speed_matrix(Internal::RateMatrix, &there),
+                &self.speed_matrix(InternalFunction::SpeedMatrix, q),
+                &self.speed_matrix(InternalFunction::RateMatrix, q),
+                &self.speed_matrix(InternalFunction::RateMatrix, &there),
             ],
-            &self.plain_rate_derivatives(&way, &rates),
+            &self.joint_velocity_rate_derivatives(&way, &rates),
             &self.integrate_derivatives_at(q, dv),
             [&self.rate_changes(q, dv), &self.rate_changes(q, &found), &self.rate_changes(&there, v)],
         )
@@ -285,15 +294,20 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
                     v: self.velocity_entries(v),
                     ..State::default()
                 };
-                self.fill_matrix(Internal::Turning, state, (n, n), Square::zeros())
+                self.fill_matrix(InternalFunction::Turning, state, (n, n), Square::zeros())
             }
-            false => self.plain_rate_derivatives(&SVector::zeros(), v).0 * 2.0,
+            false => self.joint_velocity_rate_derivatives(&SVector::zeros(), v).0 * 2.0,
         }
     }
 
     fn coriolis_matrix(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
         let n = self.robot().nv();
-        self.fill_matrix(Internal::CoriolisMatrix, self.state_with_velocity(t, q, v), (n, n), Square::zeros())
+        self.fill_matrix(
+            InternalFunction::CoriolisMatrix,
+            self.state_with_velocity(t, q, v),
+            (n, n),
+            Square::zeros(),
+        )
     }
 
     fn inverse_dynamics_derivatives(
@@ -304,8 +318,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         a: &SVector<f64, NV>,
     ) -> (Square<NV>, Square<NV>) {
         let state = State { a: self.velocity_entries(a), ..self.state_with_velocity(t, q, v) };
-        self.evaluate_square_matrices(Internal::InverseDynamicsDerivatives, state, [Square::zeros(); 2])
-            .into()
+        self.evaluate_square_matrices(
+            InternalFunction::InverseDynamicsDerivatives,
+            state,
+            [Square::zeros(); 2],
+        )
+        .into()
     }
 
     fn forward_dynamics_derivatives(
@@ -320,7 +338,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         }
         let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let padding = [Square::zeros(), Square::zeros(), Square::identity()];
-        self.evaluate_square_matrices(Internal::ForwardDynamicsDerivatives, state, padding).into()
+        self.evaluate_square_matrices(InternalFunction::ForwardDynamicsDerivatives, state, padding).into()
     }
 
     fn generalized_forces_derivatives(
@@ -333,7 +351,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         let (n, m) = (self.robot().nv(), self.robot().nu());
         let state = State { u: self.input_entries(u), ..self.state_with_velocity(t, q, v) };
         let mut all = (Square::zeros(), Square::zeros(), SMatrix::zeros());
-        let mut found = self.evaluate_matrices(Internal::GeneralizedForcesDerivatives, state, [n, n, m]);
+        let mut found =
+            self.evaluate_matrices(InternalFunction::GeneralizedForcesDerivatives, state, [n, n, m]);
         for to in [&mut all.0, &mut all.1] {
             if let Some((n, block)) = found.next() {
                 write_block(to, n, &block);
@@ -353,7 +372,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
     ) -> Square<NV> {
         let n = self.robot().nv();
         let state = self.state_with_velocity(t, q, v);
-        self.fill_matrix(Internal::GeneralizedMomentumDerivatives, state, (n, n), Square::zeros())
+        self.fill_matrix(InternalFunction::GeneralizedMomentumDerivatives, state, (n, n), Square::zeros())
     }
 
     fn momentum_rate_derivatives(
@@ -363,7 +382,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         v: &SVector<f64, NV>,
     ) -> (Square<NV>, Square<NV>) {
         self.evaluate_square_matrices(
-            Internal::MomentumRateDerivatives,
+            InternalFunction::MomentumRateDerivatives,
             self.state_with_velocity(t, q, v),
             [Square::zeros(); 2],
         )
@@ -372,7 +391,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
 
     fn visit_constraints<V: Visitor<f64, NQ, NV, NU>>(&self, visitor: V) -> Option<V::Output> {
         let slips = !self.robot().shared.constraints.slipping.is_empty();
-        let is_available = self.has_function(Internal::MotionDerivatives) && !slips;
+        let is_available = self.has_function(InternalFunction::MotionDerivatives) && !slips;
         is_available.then(|| visitor.visit(self))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::derivatives::consecutive_entries;
 use super::{Padded, write_block};
-use crate::internal::Internal;
+use crate::internal::InternalFunction;
 use crate::robot::{Robot, State};
 use linkwork::__private::{
     ConstraintCurvature, ball_tangent_rate_second_derivatives, constrained_second_derivatives,
@@ -55,7 +55,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>>
             other: &[lambda, self.velocity_entries(w), z, y],
             ..self.state_with_velocity(t, q, v)
         };
-        let found = self.evaluate_matrices(Internal::ConstraintCurvature, state, [n, n, n, n, rows]);
+        let found = self.evaluate_matrices(InternalFunction::ConstraintCurvature, state, [n, n, n, n, rows]);
         let mut all = [Square::<NV>::zeros(); 5];
         for (to, (n, block)) in all.iter_mut().zip(found) {
             write_block(to, n, &block);
@@ -84,7 +84,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Second
             other: &[self.velocity_entries(lambda)],
             ..self.state_with_velocity(t, q, v)
         };
-        let f = Internal::InverseDynamicsSecondDerivatives;
+        let f = InternalFunction::InverseDynamicsSecondDerivatives;
         self.evaluate_square_matrices(f, state, [Square::zeros(); 4]).into()
     }
 
@@ -121,7 +121,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Second
             ..self.state_with_velocity(t, q, v)
         };
         let mut found = vec![0.0; 3 * n * n + 2 * n * m + m * m];
-        self.call_function(Internal::GeneralizedForcesSecondDerivatives, state, &mut found);
+        self.call_function(InternalFunction::GeneralizedForcesSecondDerivatives, state, &mut found);
         let (squares, rest) = found.split_at(3 * n * n);
         let (mixed, by_inputs) = rest.split_at(2 * n * m);
         let square_block = |k: usize| {
@@ -173,6 +173,6 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Second
         &self,
         visitor: V,
     ) -> Option<V::Output> {
-        self.has_function(Internal::ConstraintCurvature).then(|| visitor.visit(self))
+        self.has_function(InternalFunction::ConstraintCurvature).then(|| visitor.visit(self))
     }
 }

@@ -16,7 +16,7 @@ use std::cell::{Cell, RefCell};
 
 /// Inputs of a simulation that do not depend on the state.
 #[derive(Clone, Copy)]
-pub(super) enum Given<'a> {
+pub(super) enum InputSource<'a> {
     Zero,
     Constant(&'a [f64]),
     Samples(&'a [f64], &'a [f64]),
@@ -31,7 +31,7 @@ pub(super) struct Settings<'a> {
     pub(super) end: f64,
     pub(super) every: Option<f64>,
     pub(super) overlaps: Overlaps,
-    pub(super) inputs: Given<'a>,
+    pub(super) inputs: InputSource<'a>,
 }
 
 /// Driver of a simulation run: settings, controller, and receiver of the samples.
@@ -59,7 +59,7 @@ impl Visitor for Moving<'_, '_, '_, '_> {
         let driver = self.driver;
         let start = PaddedState::new(driver.settings.start, self.q, self.v);
         match driver.settings.method {
-            Method::Automatic(e) => driver.integrate_automatically(robot, start, e),
+            Method::Automatic(e) => driver.integrate_with_stiffness_switch(robot, start, e),
             Method::DormandPrince(e) => {
                 driver.integrate_with_method(robot, start, DormandPrince::new().tolerance(e, e))
             }
@@ -103,7 +103,7 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
             Method::EventDriven(e) => {
                 driver.integrate_with_method(robot, start, EventDriven::new().tolerance(e, e))
             }
-            _ => Err(Error::Internal("a method without contacts".to_string())),
+            _ => Err(Error::InternalFunction("a method without contacts".to_string())),
         }
     }
 }
@@ -143,9 +143,9 @@ impl Settings<'_> {
         let row =
             |values: &[f64], k: usize| SVector::from_fn(|i, _| if i < n { values[k * n + i] } else { 0.0 });
         match self.inputs {
-            Given::Zero => SVector::zeros(),
-            Given::Constant(u) => row(u, 0),
-            Given::Samples(times, values) => {
+            InputSource::Zero => SVector::zeros(),
+            InputSource::Constant(u) => row(u, 0),
+            InputSource::Samples(times, values) => {
                 let after = match is_before {
                     true => times.partition_point(|known| *known < t),
                     false => times.partition_point(|known| *known <= t),
@@ -166,7 +166,7 @@ impl Settings<'_> {
     /// simulation.
     fn section_ends(&self) -> Vec<f64> {
         let mut stops = match self.inputs {
-            Given::Samples(times, _) => times.to_vec(),
+            InputSource::Samples(times, _) => times.to_vec(),
             _ => Vec::new(),
         };
         stops.retain(|t| *t > self.start && *t < self.end);
@@ -186,7 +186,7 @@ impl Settings<'_> {
     fn sample_of_state<const N: usize>(&self, state: &PaddedState<N>, u: &SVector<f64, N>) -> Sample {
         let (robot, t) = (self.robot, state.t);
         let u = match self.inputs {
-            Given::Samples(..) => self.inputs_at_time(t, false),
+            InputSource::Samples(..) => self.inputs_at_time(t, false),
             _ => *u,
         };
         let leading_entries = |x: &SVector<f64, N>, count: usize| x.as_slice()[..count].to_vec();
@@ -201,7 +201,7 @@ impl Settings<'_> {
 }
 
 /// Inputs of a section, in the form in which integration methods request them.
-struct Feed<'f, 'i, const N: usize> {
+struct SectionInputs<'f, 'i, const N: usize> {
     settings: &'f Settings<'f>,
     section: &'f Section<N>,
     controller: Option<&'f mut (Option<f64>, Controller<'i>)>,
@@ -211,7 +211,7 @@ struct Feed<'f, 'i, const N: usize> {
     failure: &'f RefCell<Option<String>>,
 }
 
-impl<const N: usize> Feed<'_, '_, N> {
+impl<const N: usize> SectionInputs<'_, '_, N> {
     /// Calls the controller. Inputs that are NaN end the simulation.
     fn call_control(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         let Some((_, function)) = &mut self.controller else { return SVector::zeros() };
@@ -227,7 +227,7 @@ impl<const N: usize> Feed<'_, '_, N> {
     }
 }
 
-impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
+impl<const N: usize> integrate::Inputs<f64, N, N, N> for SectionInputs<'_, '_, N> {
     fn evaluate(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         self.evaluations.set(self.evaluations.get() + 1);
         match &self.controller {
@@ -247,7 +247,7 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
 }
 
 /// State at the end of an integration; after an error, the state of the last sample before it.
-type Reached<const N: usize> = (PaddedState<N>, Result<(), Error>);
+type IntegrationEnd<const N: usize> = (PaddedState<N>, Result<(), Error>);
 
 /// Maximum number of steps of an explicit method before an implicit method is tried.
 const MOST_STEPS: u64 = 200_000;
@@ -263,7 +263,7 @@ impl Driver<'_, '_, '_> {
     fn integrate_sections<const N: usize>(
         &mut self,
         start: PaddedState<N>,
-        mut integrate: impl FnMut(&mut Self, &Section<N>) -> Reached<N>,
+        mut integrate: impl FnMut(&mut Self, &Section<N>) -> IntegrationEnd<N>,
     ) -> Result<(), Error> {
         let settings = self.settings;
         let (mut start, mut overlaps, mut next) = (start, settings.overlaps, 1);
@@ -313,7 +313,7 @@ impl Driver<'_, '_, '_> {
         from: PaddedState<N>,
         method: S,
         goes_on: &mut dyn FnMut(&PaddedState<N>, u64) -> bool,
-    ) -> Reached<N>
+    ) -> IntegrationEnd<N>
     where
         M: Mechanism<N, N, N, Scalar = f64>,
         S: integrate::Method<f64>,
@@ -324,7 +324,7 @@ impl Driver<'_, '_, '_> {
             times.insert(0, from.t);
         }
         let (evaluations, failure) = (Cell::new(0_u64), RefCell::new(None));
-        let feed = Feed {
+        let feed = SectionInputs {
             settings: &settings,
             section,
             controller: self.controller.as_mut(),
@@ -349,7 +349,7 @@ impl Driver<'_, '_, '_> {
                 Err(error) => {
                     let error = match failure.take() {
                         Some(message) => Error::Value(message),
-                        None => settings.robot.motion_error(error),
+                        None => settings.robot.error_from_integrator(error),
                     };
                     return (last, Err(error));
                 }
@@ -373,7 +373,7 @@ impl Driver<'_, '_, '_> {
     }
 
     /// Integrates with an explicit method, and switches to an implicit method where that is cheaper.
-    fn integrate_automatically<const N: usize>(
+    fn integrate_with_stiffness_switch<const N: usize>(
         &mut self,
         m: &Padded<N, N, N, &Robot>,
         start: PaddedState<N>,
@@ -410,7 +410,7 @@ impl Driver<'_, '_, '_> {
                     }
                     Err(_) => return (reached, result),
                 };
-                match driver.is_cheaper(m, section, from, until, implicit, total / 2) {
+                match driver.is_implicit_method_cheaper(m, section, from, until, implicit, total / 2) {
                     true => driver.stiff_from = Some(from.t),
                     false if result.is_err() => return (reached, result),
                     false => {}
@@ -422,7 +422,7 @@ impl Driver<'_, '_, '_> {
 
     /// Whether an implicit method reaches a time of a section with fewer evaluations of the dynamics than an
     /// explicit method.
-    fn is_cheaper<const N: usize>(
+    fn is_implicit_method_cheaper<const N: usize>(
         &mut self,
         m: &Padded<N, N, N, &Robot>,
         section: &Section<N>,
@@ -432,7 +432,7 @@ impl Driver<'_, '_, '_> {
         most: u64,
     ) -> bool {
         let (evaluations, failure) = (Cell::new(0_u64), RefCell::new(None));
-        let feed = Feed {
+        let feed = SectionInputs {
             settings: &self.settings,
             section,
             controller: self.controller.as_mut(),

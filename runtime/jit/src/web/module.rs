@@ -88,12 +88,12 @@ impl BinaryModule {
         }
         write_section(&mut out, 1, self.types.len(), &types);
         let mut imports = Vec::new();
-        write_text(&mut imports, "m");
-        write_text(&mut imports, "memory");
+        write_length_prefixed_name(&mut imports, "m");
+        write_length_prefixed_name(&mut imports, "memory");
         imports.extend([2, 0, 1]);
         for (name, kind) in &self.imports {
-            write_text(&mut imports, "m");
-            write_text(&mut imports, name);
+            write_length_prefixed_name(&mut imports, "m");
+            write_length_prefixed_name(&mut imports, name);
             imports.push(0);
             write_unsigned(&mut imports, *kind);
         }
@@ -101,7 +101,7 @@ impl BinaryModule {
         let (mut kinds, mut exports, mut code) = (Vec::new(), Vec::new(), Vec::new());
         for (k, (name, kind, body)) in self.functions.iter().enumerate() {
             write_unsigned(&mut kinds, *kind);
-            write_text(&mut exports, name);
+            write_length_prefixed_name(&mut exports, name);
             exports.push(0);
             write_unsigned(&mut exports, self.imports.len() + k);
             write_unsigned(&mut code, body.len());
@@ -306,7 +306,7 @@ fn write_signed(out: &mut Vec<u8>, mut x: usize) {
 }
 
 /// Writes a name, preceded by its length.
-fn write_text(out: &mut Vec<u8>, name: &str) {
+fn write_length_prefixed_name(out: &mut Vec<u8>, name: &str) {
     write_unsigned(out, name.len());
     out.extend(name.bytes());
 }

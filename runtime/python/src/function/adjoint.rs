@@ -2,44 +2,48 @@
 
 use super::{ARGUMENTS, Argument, Kind, Signature};
 use crate::robot::{Robot, set_parameters};
-use crate::shared::Failed;
+use crate::shared::FirstFailedState;
 use linkwork_jit::{AdjointStepper, Error, Sensitivity, VectorJacobian};
 use std::ops::Range;
 
 /// Vector–Jacobian product for one state: derivatives with respect to the arguments in order, then the
 /// parameters.
-enum Adjoint {
+enum VectorJacobianComputation {
     Product(linkwork_jit::Robot, VectorJacobian),
     /// Derivatives of a frame's placement as a matrix of four rows, whose last row is constant.
     Placement(linkwork_jit::Robot, VectorJacobian),
     Step(Box<AdjointStepper>),
 }
 
-impl Adjoint {
+impl VectorJacobianComputation {
     fn robot_mut(&mut self) -> &mut linkwork_jit::Robot {
         match self {
-            Adjoint::Product(robot, _) | Adjoint::Placement(robot, _) => robot,
-            Adjoint::Step(stepper) => stepper.robot_mut(),
+            VectorJacobianComputation::Product(robot, _) | VectorJacobianComputation::Placement(robot, _) => {
+                robot
+            }
+            VectorJacobianComputation::Step(stepper) => stepper.robot_mut(),
         }
     }
 
     fn evaluate(&mut self, arguments: &[&[f64]], factors: &[f64], out: &mut [f64]) -> Result<(), Error> {
         match self {
-            Adjoint::Product(robot, product) => product.evaluate_into(robot, arguments, factors, out),
-            Adjoint::Placement(robot, product) => {
+            VectorJacobianComputation::Product(robot, product) => {
+                product.evaluate_into(robot, arguments, factors, out)
+            }
+            VectorJacobianComputation::Placement(robot, product) => {
                 let mut own = [0.0; 12];
                 for (column, factors) in own.chunks_exact_mut(3).zip(factors.chunks_exact(4)) {
                     column.copy_from_slice(&factors[..3]);
                 }
                 product.evaluate_into(robot, arguments, &own, out)
             }
-            Adjoint::Step(stepper) => {
+            VectorJacobianComputation::Step(stepper) => {
                 let (t, rest, first) = match arguments {
                     [t, rest @ ..] if rest.len() == 4 => (t[0], rest, 1),
                     rest => (0.0, rest, 0),
                 };
                 let [q, v, u, h] = rest else {
-                    return Err(Error::Internal("the arguments of a step".to_string()));
+                    return Err(Error::InternalFunction("the arguments of a step".to_string()));
                 };
                 out.fill(0.0);
                 let (time, own) = out.split_at_mut(first);
@@ -69,7 +73,7 @@ impl Signature {
         states: Range<usize>,
         factors: &[f64],
         out: &mut [f64],
-    ) -> Failed {
+    ) -> FirstFailedState {
         let mut adjoint = match self.adjoint(&robot.robot, frame) {
             Ok(adjoint) => adjoint,
             Err(error) => return Some((states.start, error)),
@@ -97,12 +101,16 @@ impl Signature {
     }
 
     /// Returns the computation of derivatives, for the given frame if the function takes a frame.
-    fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Adjoint, Error> {
+    fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<VectorJacobianComputation, Error> {
         Ok(match &self.kind {
-            Kind::Generated(f) => Adjoint::Product(robot.clone(), f.vector_jacobian()?),
-            Kind::Frames(all) => Adjoint::Product(robot.clone(), all[frame].vector_jacobian()?),
-            Kind::Placements(all) => Adjoint::Placement(robot.clone(), all[frame].vector_jacobian()?),
-            Kind::Step => Adjoint::Step(Box::new(AdjointStepper::new(robot)?)),
+            Kind::Generated(f) => VectorJacobianComputation::Product(robot.clone(), f.vector_jacobian()?),
+            Kind::Frames(all) => {
+                VectorJacobianComputation::Product(robot.clone(), all[frame].vector_jacobian()?)
+            }
+            Kind::Placements(all) => {
+                VectorJacobianComputation::Placement(robot.clone(), all[frame].vector_jacobian()?)
+            }
+            Kind::Step => VectorJacobianComputation::Step(Box::new(AdjointStepper::new(robot)?)),
             _ => return Err(Error::Value(format!("`{}` has no vector–Jacobian product", self.name))),
         })
     }

@@ -1,6 +1,6 @@
 //! Computation of a function's results for one state.
 
-use super::{Kind, OnConstraints, Output, Signature};
+use super::{ConstraintProjection, Kind, Output, Signature};
 use linkwork_jit::{Error, Stepper};
 
 /// Computation of a function's results for one state, with its workspace.
@@ -9,7 +9,7 @@ pub(super) enum Evaluator {
     Placement(linkwork_jit::Robot, linkwork_jit::Function),
     Step(Box<Stepper>, bool),
     Derivatives(linkwork_jit::Robot, bool),
-    Constraint(linkwork_jit::Robot, OnConstraints),
+    Constraint(linkwork_jit::Robot, ConstraintProjection),
 }
 
 impl Signature {
@@ -52,7 +52,9 @@ impl Evaluator {
             Evaluator::Generated(robot, f) => robot.evaluate_into(f, arguments, out),
             Evaluator::Placement(robot, f) => placement(robot, f, arguments, out),
             Evaluator::Step(stepper, jacobians) => step(stepper, *jacobians, arguments, out),
-            Evaluator::Constraint(robot, which) => satisfy(robot, *which, arguments, out),
+            Evaluator::Constraint(robot, which) => {
+                write_constraint_satisfying_state(robot, *which, arguments, out)
+            }
             Evaluator::Derivatives(robot, of_rate) => {
                 let found = match *of_rate {
                     true => robot.tangent_rate_derivatives(arguments[0], arguments[1])?,
@@ -83,9 +85,9 @@ pub(super) fn placement(
 }
 
 /// Writes a configuration or velocity that satisfies the constraints.
-fn satisfy(
+fn write_constraint_satisfying_state(
     robot: &mut linkwork_jit::Robot,
-    which: OnConstraints,
+    which: ConstraintProjection,
     arguments: &[&[f64]],
     out: &mut [f64],
 ) -> Result<(), Error> {
@@ -96,13 +98,13 @@ fn satisfy(
     }
     let nonzero_indices = |list: &[f64]| (0..list.len()).filter(|k| list[*k] != 0.0).collect::<Vec<usize>>();
     let found = match (which, rest) {
-        (OnConstraints::Assemble, [q, held]) => robot.assemble(q, &nonzero_indices(held)),
-        (OnConstraints::ProjectConfiguration, [q]) => robot.project_configuration(q),
-        (OnConstraints::ProjectVelocity, [q, v]) => robot.project_velocity(q, v),
-        (OnConstraints::CompleteVelocity, [q, v, held]) => {
+        (ConstraintProjection::Assemble, [q, held]) => robot.assemble(q, &nonzero_indices(held)),
+        (ConstraintProjection::ProjectConfiguration, [q]) => robot.project_configuration(q),
+        (ConstraintProjection::ProjectVelocity, [q, v]) => robot.project_velocity(q, v),
+        (ConstraintProjection::CompleteVelocity, [q, v, held]) => {
             robot.complete_velocity(q, v, &nonzero_indices(held))
         }
-        _ => Err(Error::Internal("the arguments of a function of constraints".to_string())),
+        _ => Err(Error::InternalFunction("the arguments of a function of constraints".to_string())),
     }?;
     out.copy_from_slice(found.as_slice());
     Ok(())
@@ -115,7 +117,7 @@ fn step(stepper: &mut Stepper, jacobians: bool, arguments: &[&[f64]], out: &mut 
         rest => (0.0, rest),
     };
     let [q, v, u, h] = rest else {
-        return Err(Error::Internal("the arguments of a step".to_string()));
+        return Err(Error::InternalFunction("the arguments of a step".to_string()));
     };
     let (end_q, rest) = out.split_at_mut(q.len());
     let (end_v, rest) = rest.split_at_mut(v.len());

@@ -1,6 +1,6 @@
 //! Names, arguments and results of the functions of a robot.
 
-use super::{Argument, Function, Kind, OnConstraints, Output, Signature};
+use super::{Argument, ConstraintProjection, Function, Kind, Output, Signature};
 use linkwork_jit::{Error, Stepper};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -79,13 +79,20 @@ impl Function {
                 Function::new(f.name(), f.documentation(), arguments, results, Kind::Generated(f.clone()))
             })
             .collect();
-        all.extend(FRAMES.iter().filter_map(|(name, documentation)| of_frames(robot, name, documentation)));
+        all.extend(
+            FRAMES
+                .iter()
+                .filter_map(|(name, documentation)| function_of_frame_name(robot, name, documentation)),
+        );
         let has_function = |name: &str| robot.function(name).is_ok();
         if Stepper::new(robot).is_ok_or_missing() {
-            all.extend(steps(robot, has_function("linearize") && has_function("tangent_rate")));
+            all.extend(runge_kutta_step_functions(
+                robot,
+                has_function("linearize") && has_function("tangent_rate"),
+            ));
         }
         if robot.constraints() > 0 {
-            all.extend(on_constraints(robot));
+            all.extend(constraint_solver_functions(robot));
         }
         if has_function("tangent_rate") {
             let n = robot.nv();
@@ -120,7 +127,7 @@ impl<T> OkOrMissing for Result<T, Error> {
 }
 
 /// Returns the function that takes the name of a frame, if the mechanism has frames.
-fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Option<Function> {
+fn function_of_frame_name(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Option<Function> {
     let names = robot.frames();
     let own = names.iter().map(|frame| robot.function(&format!("{name}({frame})")).ok());
     let own = own.collect::<Option<Vec<_>>>()?;
@@ -141,7 +148,7 @@ fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Op
 }
 
 /// Returns the functions that compute steps of the classical Runge–Kutta method.
-fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
+fn runge_kutta_step_functions(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
     let [nq, nv, nu] = [robot.nq(), robot.nv(), robot.nu()];
     let scalar_argument = |name: &str| Argument { name: name.to_string(), length: None };
     let time = robot.depends_on_time().then(|| scalar_argument("t"));
@@ -163,7 +170,7 @@ fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
         state,
         Kind::Step,
     );
-    let transition_function = || {
+    let transition_function_signature = || {
         Function::new(
             "transition",
             "One step of the classical Runge–Kutta method with its Jacobians: derivatives of configuration \
@@ -174,48 +181,48 @@ fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
             Kind::Transition,
         )
     };
-    if with_jacobians { vec![step, transition_function()] } else { vec![step] }
+    if with_jacobians { vec![step, transition_function_signature()] } else { vec![step] }
 }
 
 /// Returns the functions that find states which satisfy the constraints.
-fn on_constraints(robot: &linkwork_jit::Robot) -> [Function; 4] {
+fn constraint_solver_functions(robot: &linkwork_jit::Robot) -> [Function; 4] {
     let [nq, nv] = [robot.nq(), robot.nv()];
     let (q, v, held) = (vector("q", nq), vector("v", nv), vector(HELD, nv));
     let number = Argument { name: "t".to_string(), length: None };
     let time_argument = || robot.depends_on_time().then(|| number.clone());
     let with_time_argument =
         |rest: &[&Argument]| time_argument().into_iter().chain(rest.iter().map(|a| (*a).clone())).collect();
-    let result_vector = |n: usize| vec![Output { name: "result".to_string(), shape: vec![n] }];
+    let single_vector_output = |n: usize| vec![Output { name: "result".to_string(), shape: vec![n] }];
     [
         Function::new(
             "assemble",
             "Configuration near `q` that satisfies the constraints. Coordinates of the velocities `held` do \
              not change.",
             with_time_argument(&[&q, &held]),
-            result_vector(nq),
-            Kind::Constraint(OnConstraints::Assemble),
+            single_vector_output(nq),
+            Kind::Constraint(ConstraintProjection::Assemble),
         ),
         Function::new(
             "project_configuration",
             "Configuration nearest to `q` that satisfies the constraints, in the metric of the kinetic \
              energy.",
             with_time_argument(&[&q]),
-            result_vector(nq),
-            Kind::Constraint(OnConstraints::ProjectConfiguration),
+            single_vector_output(nq),
+            Kind::Constraint(ConstraintProjection::ProjectConfiguration),
         ),
         Function::new(
             "project_velocity",
             "Velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic energy.",
             with_time_argument(&[&q, &v]),
-            result_vector(nv),
-            Kind::Constraint(OnConstraints::ProjectVelocity),
+            single_vector_output(nv),
+            Kind::Constraint(ConstraintProjection::ProjectVelocity),
         ),
         Function::new(
             "complete_velocity",
             "Velocity with the entries `held` of `v` that satisfies the constraints.",
             with_time_argument(&[&q, &v, &held]),
-            result_vector(nv),
-            Kind::Constraint(OnConstraints::CompleteVelocity),
+            single_vector_output(nv),
+            Kind::Constraint(ConstraintProjection::CompleteVelocity),
         ),
     ]
 }

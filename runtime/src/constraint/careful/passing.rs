@@ -1,7 +1,8 @@
 //! Accelerations in singular configurations, from the motion that passes through them.
 
 use super::{
-    DependentRows, DynamicsEquations, Structure, TriangularFactor, safe_distance, well_conditioned_threshold,
+    DependentRowTreatment, DynamicsEquations, Structure, TriangularFactor, safe_distance_from_singularity,
+    well_conditioned_threshold,
 };
 use crate::Real;
 use crate::constraint::Constrained;
@@ -16,7 +17,7 @@ const MOST_STEPS: usize = 12;
 type AccelerationAndJerk<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
 /// Path along the branch of the constraints on which a state is.
-struct BranchPath<T, const NQ: usize, const NV: usize> {
+struct AssemblyModePath<T, const NQ: usize, const NV: usize> {
     t: T,
     q: SVector<T, NQ>,
     v: SVector<T, NV>,
@@ -63,30 +64,33 @@ where
     // do not indicate the direction of motion.
     let driven = largest_magnitude(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
     let clear = speed > epsilon::<T>().cbrt();
-    let moves = clear && (!driven || speed * speed > rate * safe_distance::<T>() * constant(0.03));
-    let way = BranchPath { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
-    let (clear, within) =
-        (safe_distance::<T>() * constant(0.4), well_conditioned_threshold::<T>() * constant(0.5));
-    let acceleration_past_singularity = |way: &BranchPath<T, NQ, NV>, parts: &[f64], clear: T| {
-        let pace = safe_distance::<T>() / largest_magnitude(&way.heading);
+    let moves =
+        clear && (!driven || speed * speed > rate * safe_distance_from_singularity::<T>() * constant(0.03));
+    let way = AssemblyModePath { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
+    let (clear, within) = (
+        safe_distance_from_singularity::<T>() * constant(0.4),
+        well_conditioned_threshold::<T>() * constant(0.5),
+    );
+    let acceleration_past_singularity = |way: &AssemblyModePath<T, NQ, NV>, parts: &[f64], clear: T| {
+        let pace = safe_distance_from_singularity::<T>() / largest_magnitude(&way.heading);
         let goes = pace > T::zero() && pace.is_finite();
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
-        steps
-            .into_iter()
-            .find_map(|step| way.points_on_path(step, clear).interpolate_at_state(mechanism, structure))
+        steps.into_iter().find_map(|step| {
+            way.points_on_path(step, clear).interpolated_accelerations_at_state(mechanism, structure)
+        })
     };
     // Other paths and step lengths are tried if the interpolation fails on the first ones.
     acceleration_past_singularity(&way, &[1.0, 2.0], clear)
         .or_else(|| {
             acceleration_past_singularity(
-                &way.deviating_path(mechanism, structure)?,
+                &way.path_of_slow_departure(mechanism, structure)?,
                 &[1.0, 2.0, 4.0, 8.0, 0.5],
                 clear,
             )
         })
         .or_else(|| {
             acceleration_past_singularity(
-                &way.deviating_path(mechanism, structure)?.component_across_path(&way),
+                &way.path_of_slow_departure(mechanism, structure)?.orthogonalised_path(&way),
                 &[1.0, 2.0, 4.0, 8.0, 0.5],
                 clear,
             )
@@ -96,7 +100,7 @@ where
         .permitted_acceleration(structure, system)
 }
 
-impl<T: Real, const NQ: usize, const NV: usize> BranchPath<T, NQ, NV> {
+impl<T: Real, const NQ: usize, const NV: usize> AssemblyModePath<T, NQ, NV> {
     fn points_on_path(&self, step: T, clear: T) -> PathPoints<'_, T, NQ, NV> {
         PathPoints { way: self, step, clear }
     }
@@ -104,7 +108,7 @@ impl<T: Real, const NQ: usize, const NV: usize> BranchPath<T, NQ, NV> {
     /// Returns another path along the branch of the constraints, for states with velocities that leave the
     /// singular configuration slowly in comparison with other coordinates. Its direction has components along
     /// all motions that are free shortly before and after.
-    fn deviating_path<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn path_of_slow_departure<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -112,9 +116,9 @@ impl<T: Real, const NQ: usize, const NV: usize> BranchPath<T, NQ, NV> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        let own = safe_distance::<T>() / largest_magnitude(&self.heading);
+        let own = safe_distance_from_singularity::<T>() / largest_magnitude(&self.heading);
         let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
-        let still = BranchPath { v: SVector::zeros(), moves: false, ..*self };
+        let still = AssemblyModePath { v: SVector::zeros(), moves: false, ..*self };
         let heading = [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().find_map(|part| {
             let points = still.points_on_path(own * constant(part), epsilon::<T>().cbrt());
             let course = (SVector::zeros(), SVector::zeros());
@@ -123,13 +127,13 @@ impl<T: Real, const NQ: usize, const NV: usize> BranchPath<T, NQ, NV> {
             Some((free_acceleration_at(-points.step)?.free + free_acceleration_at(points.step)?.free) * any)
         })?;
         let size = largest_magnitude(&heading);
-        (size > T::zero()).then(|| BranchPath { heading: heading / size, moves: false, ..*self })
+        (size > T::zero()).then(|| AssemblyModePath { heading: heading / size, moves: false, ..*self })
     }
 
     /// Returns the path with its component along another path removed from the direction.
-    fn component_across_path(&self, other: &Self) -> Self {
+    fn orthogonalised_path(&self, other: &Self) -> Self {
         let part = self.heading.dot(&other.heading) / other.heading.norm_squared();
-        BranchPath { heading: self.heading - other.heading * part, ..*self }
+        AssemblyModePath { heading: self.heading - other.heading * part, ..*self }
     }
 
     /// Returns time and state at distance `h` along the path, projected on the constraints. The projection
@@ -184,7 +188,7 @@ impl<T: Real, const NQ: usize, const NV: usize> BranchPath<T, NQ, NV> {
 /// Equally spaced points on a path along a branch of the constraints, at multiples of `step`. Constraint rows
 /// above the relative magnitude `clear` count as well-conditioned.
 struct PathPoints<'a, T, const NQ: usize, const NV: usize> {
-    way: &'a BranchPath<T, NQ, NV>,
+    way: &'a AssemblyModePath<T, NQ, NV>,
     step: T,
     clear: T,
 }
@@ -210,7 +214,7 @@ impl<T: Real, const NQ: usize, const NV: usize> PathPoints<'_, T, NQ, NV> {
 
     /// Returns the permitted accelerations at the state itself, interpolated by the polynomial of degree five
     /// through six points of the path.
-    fn interpolate_at_state<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn interpolated_accelerations_at_state<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -323,7 +327,7 @@ impl<T: Real, const NV: usize> PermittedAccelerations<T, NV> {
             jacobian.data.0.iter_mut().zip(&normal).for_each(|(column, n)| column[row] = *n);
             bias[row] = -super::dot(&normal, &self.bend.data.0[0]);
         }
-        let (mass, force) = system.loaded_mass_and_forces(structure);
+        let (mass, force) = system.weighted_mass_and_forces(structure);
         let groups = core::array::from_fn(|k| k);
         let open = Structure { groups, determining: &[], rank: structure.rank };
         let system = DynamicsEquations {
@@ -332,8 +336,11 @@ impl<T: Real, const NV: usize> PermittedAccelerations<T, NV> {
             force,
             bias,
         };
-        let ((a, _), regular) =
-            system.solve_above_magnitude(&open, rounding_threshold(), DependentRows::Dropped);
+        let ((a, _), regular) = system.solve_with_rows_above_magnitude(
+            &open,
+            rounding_threshold(),
+            DependentRowTreatment::Dropped,
+        );
         (regular && a.iter().all(|a| a.is_finite())).then_some(a)
     }
 }

@@ -10,7 +10,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 struct DoubleDouble(f64, f64);
 
 impl DoubleDouble {
-    fn sum_of_doubles(a: f64, b: f64) -> DoubleDouble {
+    fn exact_sum_of_doubles(a: f64, b: f64) -> DoubleDouble {
         let s = a + b;
         let part = s - a;
         DoubleDouble(s, (a - (s - part)) + (b - part))
@@ -20,10 +20,12 @@ impl DoubleDouble {
 impl Add for DoubleDouble {
     type Output = DoubleDouble;
     fn add(self, o: DoubleDouble) -> DoubleDouble {
-        let (high, low) =
-            (DoubleDouble::sum_of_doubles(self.0, o.0), DoubleDouble::sum_of_doubles(self.1, o.1));
-        let middle = DoubleDouble::sum_of_doubles(high.0, high.1 + low.0);
-        DoubleDouble::sum_of_doubles(middle.0, middle.1 + low.1)
+        let (high, low) = (
+            DoubleDouble::exact_sum_of_doubles(self.0, o.0),
+            DoubleDouble::exact_sum_of_doubles(self.1, o.1),
+        );
+        let middle = DoubleDouble::exact_sum_of_doubles(high.0, high.1 + low.0);
+        DoubleDouble::exact_sum_of_doubles(middle.0, middle.1 + low.1)
     }
 }
 
@@ -45,7 +47,7 @@ impl Mul for DoubleDouble {
     type Output = DoubleDouble;
     fn mul(self, o: DoubleDouble) -> DoubleDouble {
         let p = self.0 * o.0;
-        DoubleDouble::sum_of_doubles(p, self.0.mul_add(o.0, -p) + (self.0 * o.1 + self.1 * o.0))
+        DoubleDouble::exact_sum_of_doubles(p, self.0.mul_add(o.0, -p) + (self.0 * o.1 + self.1 * o.0))
     }
 }
 
@@ -56,7 +58,7 @@ impl Div for DoubleDouble {
         let rest = self - o * DoubleDouble(first, 0.0);
         let second = rest.0 / o.0;
         let rest = rest - o * DoubleDouble(second, 0.0);
-        DoubleDouble::sum_of_doubles(first, second) + DoubleDouble(rest.0 / o.0, 0.0)
+        DoubleDouble::exact_sum_of_doubles(first, second) + DoubleDouble(rest.0 / o.0, 0.0)
     }
 }
 
@@ -87,7 +89,7 @@ impl<const NV: usize, const NC: usize> RandomSystem<NV, NC> {
     /// Returns a random system of point masses on a chain of coordinates; masses differ by up to a factor of
     /// `10^(2 spread)`. Half of the systems have a constraint that differs from another one by at least
     /// `10^-near`.
-    fn generate_system(random: &mut SplitMix64, spread: f64, near: f64) -> Self {
+    fn random_constrained_system(random: &mut SplitMix64, spread: f64, near: f64) -> Self {
         let mut mass = SMatrix::<f64, NV, NV>::zeros();
         for link in 0..NV {
             let weight = 10_f64.powf(spread * random.next_number());
@@ -111,7 +113,7 @@ impl<const NV: usize, const NC: usize> RandomSystem<NV, NC> {
     }
 
     /// Returns the system with a random rounding error in every number.
-    fn rounded_system(&self, random: &mut SplitMix64, epsilon: f64) -> Self {
+    fn system_with_rounding_errors(&self, random: &mut SplitMix64, epsilon: f64) -> Self {
         let mut other = *self;
         for i in 0..NV {
             for j in 0..=i {
@@ -128,7 +130,7 @@ impl<const NV: usize, const NC: usize> RandomSystem<NV, NC> {
     }
 
     /// Returns accelerations and multipliers from elimination with complete pivoting.
-    fn exact_solution(&self) -> (SVector<f64, NV>, SVector<f64, NC>) {
+    fn double_double_elimination_solution(&self) -> (SVector<f64, NV>, SVector<f64, NC>) {
         let n = NV + NC;
         let mut rows: Vec<Vec<DoubleDouble>> = (0..n)
             .map(|i| {
@@ -177,7 +179,11 @@ impl<const NV: usize, const NC: usize> RandomSystem<NV, NC> {
             force: self.force.map(convert_number),
             bias: self.bias.map(convert_number),
         }
-        .solve_above_magnitude(&structure, well_conditioned_threshold(), DependentRows::Taken)
+        .solve_with_rows_above_magnitude(
+            &structure,
+            well_conditioned_threshold(),
+            DependentRowTreatment::Taken,
+        )
         .0;
         (a.map(crate::private::to_f64), lambda.map(crate::private::to_f64))
     }
@@ -185,23 +191,28 @@ impl<const NV: usize, const NC: usize> RandomSystem<NV, NC> {
 
 /// Checks that the solution of a random constrained system is as close to the exact solution as rounding
 /// errors of the system permit.
-fn check_against_exact<T: Real, const NV: usize, const NC: usize>(seed: u64, spread: f64, near: f64) {
+fn check_against_exact_solution<T: Real, const NV: usize, const NC: usize>(
+    seed: u64,
+    spread: f64,
+    near: f64,
+) {
     let mut random = SplitMix64(seed);
     let epsilon = crate::private::to_f64(epsilon::<T>());
     for case in 0..300 {
-        let all = RandomSystem::<NV, NC>::generate_system(&mut random, spread, near);
+        let all = RandomSystem::<NV, NC>::random_constrained_system(&mut random, spread, near);
         // Numbers rounded to `T`.
-        let round_to_scalar = |x: f64| crate::private::to_f64(constant::<T>(x));
+        let round_to_scalar_type = |x: f64| crate::private::to_f64(constant::<T>(x));
         let system = RandomSystem {
-            mass: all.mass.map(round_to_scalar),
-            jacobian: all.jacobian.map(round_to_scalar),
-            force: all.force.map(round_to_scalar),
-            bias: all.bias.map(round_to_scalar),
+            mass: all.mass.map(round_to_scalar_type),
+            jacobian: all.jacobian.map(round_to_scalar_type),
+            force: all.force.map(round_to_scalar_type),
+            bias: all.bias.map(round_to_scalar_type),
         };
-        let (a, lambda) = system.exact_solution();
+        let (a, lambda) = system.double_double_elimination_solution();
         let (mut a_error, mut lambda_error) = (10.0 * epsilon * a.amax(), 10.0 * epsilon * lambda.amax());
         for _ in 0..4 {
-            let (b, mu) = system.rounded_system(&mut random, epsilon).exact_solution();
+            let (b, mu) =
+                system.system_with_rounding_errors(&mut random, epsilon).double_double_elimination_solution();
             a_error = a_error.max((a - b).amax());
             lambda_error = lambda_error.max((lambda - mu).amax());
         }
@@ -219,20 +230,20 @@ fn check_against_exact<T: Real, const NV: usize, const NC: usize>(seed: u64, spr
 
 #[test]
 fn light_and_heavy_bodies_lose_no_digits() {
-    check_against_exact::<f64, 3, 1>(1, 6.0, 0.0);
-    check_against_exact::<f64, 5, 3>(2, 6.0, 0.0);
-    check_against_exact::<f64, 8, 6>(3, 6.0, 0.0);
-    check_against_exact::<f64, 9, 4>(4, 3.0, 0.0);
-    check_against_exact::<f32, 3, 1>(5, 3.0, 0.0);
-    check_against_exact::<f32, 5, 3>(6, 3.0, 0.0);
+    check_against_exact_solution::<f64, 3, 1>(1, 6.0, 0.0);
+    check_against_exact_solution::<f64, 5, 3>(2, 6.0, 0.0);
+    check_against_exact_solution::<f64, 8, 6>(3, 6.0, 0.0);
+    check_against_exact_solution::<f64, 9, 4>(4, 3.0, 0.0);
+    check_against_exact_solution::<f32, 3, 1>(5, 3.0, 0.0);
+    check_against_exact_solution::<f32, 5, 3>(6, 3.0, 0.0);
 }
 
 #[test]
 fn nearly_dependent_constraints_are_satisfied() {
-    check_against_exact::<f64, 5, 3>(7, 0.5, 12.0);
-    check_against_exact::<f64, 8, 6>(8, 2.0, 12.0);
-    check_against_exact::<f64, 8, 6>(9, 6.0, 10.0);
-    check_against_exact::<f32, 5, 3>(10, 0.5, 4.0);
+    check_against_exact_solution::<f64, 5, 3>(7, 0.5, 12.0);
+    check_against_exact_solution::<f64, 8, 6>(8, 2.0, 12.0);
+    check_against_exact_solution::<f64, 8, 6>(9, 6.0, 10.0);
+    check_against_exact_solution::<f32, 5, 3>(10, 0.5, 4.0);
 }
 
 /// Compares a system with an exactly redundant constraint with the system without it: the motions are equal,
@@ -241,12 +252,21 @@ fn nearly_dependent_constraints_are_satisfied() {
 fn dependent_constraint_preserves_the_motion() {
     let mut random = SplitMix64(11);
     for case in 0..300 {
-        let less =
-            RandomSystem::<6, 3>::generate_system(&mut random, if case % 2 == 0 { 6.0 } else { 0.5 }, 0.0);
-        let (a, _) = less.exact_solution();
+        let less = RandomSystem::<6, 3>::random_constrained_system(
+            &mut random,
+            if case % 2 == 0 { 6.0 } else { 0.5 },
+            0.0,
+        );
+        let (a, _) = less.double_double_elimination_solution();
         let mut error = 1e-15 * a.amax();
         for _ in 0..4 {
-            error = error.max((a - less.rounded_system(&mut random, 1e-16).exact_solution().0).amax());
+            error = error.max(
+                (a - less
+                    .system_with_rounding_errors(&mut random, 1e-16)
+                    .double_double_elimination_solution()
+                    .0)
+                    .amax(),
+            );
         }
         let combination = [0.5, -2.0, 1.0, -1.0];
         let mut all = RandomSystem::<6, 4> {
@@ -270,7 +290,7 @@ fn dependent_constraint_preserves_the_motion() {
             bias: [all.bias[0], all.bias[1], all.bias[2]],
             ..less
         };
-        let (a, lambda) = short.exact_solution();
+        let (a, lambda) = short.double_double_elimination_solution();
         let (found, mu) = all.rank_revealing_solution::<f64>(3);
         assert!(
             (found - a).amax() < 1e4 * error.max(1e-15 * a.amax()),
@@ -307,7 +327,11 @@ fn coordinates_without_inertia_are_determined() {
     let mass = SMatrix::<f64, 2, 2>::new(4.0, 0.0, 0.0, 0.0);
     let jacobian = SMatrix::<f64, 1, 2>::new(-2.0, 1.0);
     let (a, lambda) = DynamicsEquations { mass, jacobian, force: [1.0, 3.0], bias: [0.5] }
-        .solve_above_magnitude(&structure, well_conditioned_threshold(), DependentRows::Taken)
+        .solve_with_rows_above_magnitude(
+            &structure,
+            well_conditioned_threshold(),
+            DependentRowTreatment::Taken,
+        )
         .0;
     assert!((a - SVector::from([1.75, 3.0])).norm() < 1e-14, "{a}");
     assert!((lambda[0] + 3.0).abs() < 1e-14, "{lambda}");

@@ -98,7 +98,7 @@ pub(super) fn best_face_axis<T: Real>(
 ) -> Option<FaceAxis<T>> {
     let [of_first, of_second] =
         [(first, second, false), (second, first, true)].map(|(own, other, is_second)| {
-            let best = best_face_of((own, other), is_second, tolerance, bounds);
+            let best = best_separating_face((own, other), is_second, tolerance, bounds);
             best.map(|(distance, face)| FaceAxis { distance, face, is_second })
         });
     let (a, b) = match (of_first, of_second) {
@@ -112,7 +112,7 @@ pub(super) fn best_face_axis<T: Real>(
 }
 
 /// Returns the largest separation along a face normal of one polytope, and the index of the face.
-fn best_face_of<T: Real>(
+fn best_separating_face<T: Real>(
     (own, other): (&Placed<'_, T>, &Placed<'_, T>),
     is_second: bool,
     tolerance: T,

@@ -16,7 +16,7 @@ pub(super) enum PointOrigin {
     /// Edge of the clipped face between two vertices, cut off by a side of the clipping face.
     Edge { ends: [u8; 2], side: usize },
     /// Vertex of the clipping face.
-    Corner(u8),
+    BoxInCorner(u8),
 }
 
 /// Point of a clipped face.
@@ -171,7 +171,9 @@ fn clip_polygon<T: Real>(
         let place = point.place + (next.place - point.place) * (here / (here - there));
         let (origin, last) = match point.next {
             Line::Edge(ends, end) => (PointOrigin::Edge { ends, side }, end),
-            Line::Side(other) => (PointOrigin::Corner(corner_between(corners, other, side)), count + other),
+            Line::Side(other) => {
+                (PointOrigin::BoxInCorner(corner_between(corners, other, side)), count + other)
+            }
         };
         let (number, next) = if is_inside { (last, Line::Side(side)) } else { (count + side, point.next) };
         clipped.push(ClippedPoint { place, height: T::zero(), origin, number, next });

@@ -1,12 +1,12 @@
 //! Linear equations of the velocity change: `(1 + Bᵀ H B) Δw = Bᵀ c`.
 
 use super::basis::{add_multiple, dot};
-use super::{RowList, RowMatrix};
+use super::{ContactRowMatrix, RowList};
 use crate::Real;
 
 /// Makes the first `size` rows those of the unit matrix, and returns the index behind the last entry of each.
 pub(super) fn set_unit_rows<T: Real, const NR: usize>(
-    system: &mut RowMatrix<T, NR>,
+    system: &mut ContactRowMatrix<T, NR>,
     size: usize,
 ) -> RowList<usize, NR> {
     let mut ends = RowList::repeat_entry(0);
@@ -19,8 +19,8 @@ pub(super) fn set_unit_rows<T: Real, const NR: usize>(
 
 /// Solves a system of `size` equations in place by Gaussian elimination with pivots of the columns. The
 /// matrix has its entries at symmetric places, in each row up to its end. Unknowns without a pivot are zero.
-pub(super) fn eliminate_banded<T: Real, const NR: usize>(
-    system: &mut RowMatrix<T, NR>,
+pub(super) fn solve_banded_system<T: Real, const NR: usize>(
+    system: &mut ContactRowMatrix<T, NR>,
     (right, ends): (&mut RowList<T, NR>, &mut RowList<usize, NR>),
     size: usize,
 ) {

@@ -1,6 +1,6 @@
 //! Rows of `B` in `W = B Bᵀ`.
 
-use super::{ContactProblem, RowList, RowMatrix};
+use super::{ContactProblem, ContactRowMatrix, RowList};
 use crate::Real;
 use crate::contact::total::TotalArray;
 use crate::private::{constant, epsilon};
@@ -13,8 +13,8 @@ const ROUNDINGS: f64 = 64.0;
 /// `B`, row by row: the effect of each impulse on `w`, the velocity in the metric of the kinetic energy. A
 /// contact has entries in the columns of its bodies.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct BasisRows<T, const NR: usize> {
-    rows: RowMatrix<T, NR>,
+pub(in super::super) struct ImpulseBasisRows<T, const NR: usize> {
+    rows: ContactRowMatrix<T, NR>,
     /// Columns of the first entry of each row that is not zero, and behind the last.
     reach: TotalArray<(usize, usize), NR>,
     /// Number of rows.
@@ -37,7 +37,7 @@ pub(in super::super) struct UsedColumns<const N: usize> {
 
 impl<const N: usize> UsedColumns<N> {
     /// Returns the columns for the used entries.
-    pub(in super::super) fn of_used_entries(is_used: [bool; N]) -> Self {
+    pub(in super::super) fn columns_for_used_entries(is_used: [bool; N]) -> Self {
         let (mut index, mut count) = ([0; N], 0);
         for (index, is_used) in index.iter_mut().zip(&is_used) {
             *index = count;
@@ -54,13 +54,13 @@ const AT_ONCE: usize = 3;
 
 /// Derivatives of the impulses of a contact and its friction moments with respect to their contact
 /// velocities.
-pub(super) struct ContactBlock<T> {
+pub(super) struct ImpulseDerivativeBlock<T> {
     rows: [usize; ROWS],
     count: usize,
     entries: [[T; ROWS]; ROWS],
 }
 
-impl<T: Real> ContactBlock<T> {
+impl<T: Real> ImpulseDerivativeBlock<T> {
     /// Returns zeros for one row.
     pub(super) fn new(row: usize) -> Self {
         Self { rows: [row; ROWS], count: 1, entries: [[T::zero(); ROWS]; ROWS] }
@@ -94,16 +94,16 @@ impl<T: Real> ContactBlock<T> {
     }
 }
 
-impl<T: Real, const NR: usize> BasisRows<T, NR> {
+impl<T: Real, const NR: usize> ImpulseBasisRows<T, NR> {
     /// Returns `B` without columns, which is not computed yet.
-    pub(in super::super) fn without_columns() -> Self {
-        let rows = RowMatrix::repeat_entry(RowList::repeat_entry(T::zero()));
+    pub(in super::super) fn uncomputed_basis() -> Self {
+        let rows = ContactRowMatrix::repeat_entry(RowList::repeat_entry(T::zero()));
         let (reach, columns) = (TotalArray::repeat_entry((0, 0)), TotalArray::repeat_entry(0));
         Self { rows, reach, size: 0, columns, rank: 0, is_exact: false }
     }
 
     /// Begins `B` with columns, and without rows; false if the columns are more than the arrays have.
-    pub(in super::super) fn begin_columns<const N: usize>(&mut self, columns: &UsedColumns<N>) -> bool {
+    pub(in super::super) fn set_basis_columns<const N: usize>(&mut self, columns: &UsedColumns<N>) -> bool {
         (self.size, self.rank, self.is_exact) = (0, 0, false);
         if columns.count == 0 || columns.count > NR {
             return false;
@@ -135,7 +135,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     }
 
     /// Sets the rows to `chosen` ones of another matrix `B`.
-    pub(super) fn select_rows<const N: usize>(&mut self, from: &BasisRows<T, N>, chosen: &[usize]) {
+    pub(super) fn select_rows<const N: usize>(&mut self, from: &ImpulseBasisRows<T, N>, chosen: &[usize]) {
         if from.rank == 0 {
             return;
         }
@@ -144,8 +144,8 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
             let entries = is_used.iter_mut().skip(first).zip(row);
             entries.for_each(|(is_used, entry)| *is_used |= *entry != T::zero());
         }
-        let columns = UsedColumns::of_used_entries(is_used);
-        if self.begin_columns(&columns) {
+        let columns = UsedColumns::columns_for_used_entries(is_used);
+        if self.set_basis_columns(&columns) {
             chosen
                 .iter()
                 .map(|i| from.nonzero_part_of_row(*i))
@@ -156,7 +156,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     }
 
     /// Finds the entries of the first `size` rows that are not zero.
-    fn find_reach(&mut self, size: usize) {
+    fn find_nonzero_ranges(&mut self, size: usize) {
         self.size = size;
         for (row, reach) in self.rows.iter().zip(self.reach.iter_mut()).take(size) {
             let row = row.get(..self.rank).unwrap_or_default();
@@ -183,13 +183,13 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     }
 
     /// Adds `Bᵀ H B` for a block `H` to a matrix. `ends` has the index behind the last entry of each row.
-    pub(super) fn add_block(
+    pub(super) fn add_projected_block(
         &self,
-        block: &ContactBlock<T>,
-        matrix: &mut RowMatrix<T, NR>,
+        block: &ImpulseDerivativeBlock<T>,
+        matrix: &mut ContactRowMatrix<T, NR>,
         ends: &mut RowList<usize, NR>,
     ) {
-        let ContactBlock { rows, count, entries } = block;
+        let ImpulseDerivativeBlock { rows, count, entries } = block;
         let (mut first, mut last) = (NR, 0);
         for i in rows.iter().take(*count) {
             let (start, row) = self.nonzero_part_of_row(*i);
@@ -252,7 +252,11 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     }
 
     /// Writes the entries of `w` that impulses change.
-    pub(in super::super) fn write_velocity<const N: usize>(&self, impulses: &SVector<T, NR>, w: &mut [T; N]) {
+    pub(in super::super) fn write_changed_velocity_entries<const N: usize>(
+        &self,
+        impulses: &SVector<T, NR>,
+        w: &mut [T; N],
+    ) {
         self.write_all_velocities(
             &self.velocity_of_impulses(&RowList::new(impulses.data.0[0], T::zero())),
             w,
@@ -269,7 +273,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     }
 
     /// Returns the values of `w` for all columns.
-    pub(super) fn velocities_of_columns<const N: usize>(&self, w: &[T; N]) -> RowList<T, NR> {
+    pub(super) fn entries_at_basis_columns<const N: usize>(&self, w: &[T; N]) -> RowList<T, NR> {
         let mut own = RowList::repeat_entry(T::zero());
         for (value, column) in own.iter_mut().zip(self.columns.iter()).take(self.rank) {
             *value = w.get(*column).copied().unwrap_or(T::zero());
@@ -289,13 +293,13 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     /// on.
     pub(super) fn largest_magnitude(&self, free: &RowList<T, NR>, impulses: &RowList<T, NR>) -> T {
         let mut w = RowList::<T, NR>::repeat_entry(T::zero());
-        let stored_rows = || (0..self.size).map(|i| self.nonzero_part_of_row(i));
-        for ((first, row), impulse) in stored_rows().zip(impulses.iter()) {
+        let nonzero_parts_of_rows = || (0..self.size).map(|i| self.nonzero_part_of_row(i));
+        for ((first, row), impulse) in nonzero_parts_of_rows().zip(impulses.iter()) {
             if *impulse != T::zero() {
                 w.iter_mut().skip(first).zip(row).for_each(|(w, entry)| *w += (*impulse * *entry).abs());
             }
         }
-        stored_rows().zip(free.iter()).fold(T::zero(), |most, ((first, row), free)| {
+        nonzero_parts_of_rows().zip(free.iter()).fold(T::zero(), |most, ((first, row), free)| {
             let terms = row.iter().zip(w.iter().skip(first));
             most.max(terms.fold(free.abs(), |sum, (entry, w)| sum + entry.abs() * *w))
         })
@@ -304,15 +308,15 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
 
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Computes `B` from `W` (Cholesky with pivots), unless it is known.
-    pub(super) fn prepare_basis(&mut self) {
+    pub(super) fn compute_basis_if_needed(&mut self) {
         let size = self.size;
         if self.basis.rank > 0 || size == 0 {
             return;
         }
         // Columns first, one after another.
-        let mut columns = RowMatrix::<T, NR>::repeat_entry(RowList::repeat_entry(T::zero()));
+        let mut columns = ContactRowMatrix::<T, NR>::repeat_entry(RowList::repeat_entry(T::zero()));
         let mut left = RowList::<T, NR>::repeat_entry(T::zero());
-        (0..size).for_each(|i| left[i] = self.weight_entry(i, i));
+        (0..size).for_each(|i| left[i] = self.delassus_matrix_entry(i, i));
         let reach = left.iter().take(size).fold(T::zero(), |most, x| most.max(*x));
         let mut rank = 0;
         while rank < size {
@@ -330,7 +334,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let reciprocal = T::one() / pivot.sqrt();
             let (done, rest) = columns.split_at_mut_checked(rank).unwrap_or_default();
             let Some(column) = rest.first_mut().and_then(|column| column.get_mut(..size)) else { break };
-            column.iter_mut().enumerate().for_each(|(i, to)| *to = self.weight_entry(best, i));
+            column.iter_mut().enumerate().for_each(|(i, to)| *to = self.delassus_matrix_entry(best, i));
             for before in done.iter() {
                 let factor = before[best];
                 if factor != T::zero() {
@@ -348,7 +352,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             (0..rank).for_each(|j| self.basis.rows[i][j] = columns[j][i]);
         }
         self.basis.rank = rank;
-        self.basis.find_reach(size);
+        self.basis.find_nonzero_ranges(size);
     }
 }
 

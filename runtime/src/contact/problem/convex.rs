@@ -19,9 +19,9 @@
 
 use super::super::total::TotalArray;
 use super::banded::set_unit_rows;
-use super::basis::{ContactBlock, ROWS, add_multiple, dot};
+use super::basis::{ImpulseDerivativeBlock, ROWS, add_multiple, dot};
 use super::trial::ImpulseTrial;
-use super::{ContactProblem, RowList, RowMatrix};
+use super::{ContactProblem, ContactRowMatrix, RowList};
 use crate::Real;
 use crate::private::{constant, epsilon};
 
@@ -47,7 +47,7 @@ pub(super) const PARTS: usize = 3;
 
 /// Friction of a contact, or one of its moments.
 #[derive(Clone, Copy)]
-struct TangentRows<T> {
+struct FrictionRows<T> {
     first: usize,
     count: usize,
     friction: T,
@@ -57,7 +57,7 @@ struct TangentRows<T> {
 #[derive(Clone, Copy)]
 struct FrictionCone<T> {
     normal: usize,
-    parts: [TangentRows<T>; PARTS],
+    parts: [FrictionRows<T>; PARTS],
     /// Normal impulse that acts in addition and bounds friction as well.
     floor: T,
     /// Smallest permitted normal velocity of the contact after the impulses.
@@ -70,7 +70,7 @@ struct FrictionCone<T> {
 #[derive(Clone, Copy)]
 struct ConeProjection<T> {
     normal: T,
-    is_pressed: bool,
+    has_positive_normal_impulse: bool,
     /// Regularisation of the impulse along the cone.
     along: T,
     /// Magnitudes before the projection, and whether they are bounded by friction.
@@ -80,13 +80,13 @@ struct ConeProjection<T> {
 
 impl<T: Real> FrictionCone<T> {
     /// Returns the kinds of friction that exist, with their indices.
-    fn friction_parts(&self) -> impl Iterator<Item = (usize, TangentRows<T>)> {
+    fn existing_friction_kinds(&self) -> impl Iterator<Item = (usize, FrictionRows<T>)> {
         self.parts.into_iter().enumerate().filter(|(_, part)| part.count > 0)
     }
 
     /// Returns the sum of the slip speeds times their coefficients of friction.
-    fn weighted_slip<const NR: usize>(&self, rates: &RowList<T, NR>) -> T {
-        self.friction_parts().fold(T::zero(), |sum, (_, part)| {
+    fn friction_weighted_slip_speed<const NR: usize>(&self, rates: &RowList<T, NR>) -> T {
+        self.existing_friction_kinds().fold(T::zero(), |sum, (_, part)| {
             let rows = part.first..part.first + part.count;
             sum + part.friction * rows.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]).sqrt()
         })
@@ -112,7 +112,7 @@ impl<T: Real> FrictionCone<T> {
         // Each bounded part raises the normal impulse. The part that needs the largest one is bounded first.
         for _ in 0..PARTS {
             let mut most: Option<(T, usize)> = None;
-            for (k, part) in self.friction_parts() {
+            for (k, part) in self.existing_friction_kinds() {
                 let (Some(size), Some(false)) = (sizes.get(k), bounded.get(k)) else { continue };
                 let needed = *size / part.friction - self.floor;
                 let exceeds = *size > part.friction * (normal + self.floor);
@@ -132,27 +132,27 @@ impl<T: Real> FrictionCone<T> {
             normal = pull / along;
             *bounded = true;
         }
-        let is_pressed = normal > none;
-        if !is_pressed {
+        let has_positive_normal_impulse = normal > none;
+        if !has_positive_normal_impulse {
             normal = none;
-            for (k, part) in self.friction_parts() {
+            for (k, part) in self.existing_friction_kinds() {
                 if let (Some(bounded), Some(size)) = (bounded.get_mut(k), sizes.get(k)) {
                     *bounded = *size > part.friction * self.floor;
                 }
             }
         }
-        ConeProjection { normal, is_pressed, along, sizes, bounded }
+        ConeProjection { normal, has_positive_normal_impulse, along, sizes, bounded }
     }
 
     /// Writes the impulses of a projection.
-    fn write_impulses<const NR: usize>(
+    fn write_projected_impulses<const NR: usize>(
         &self,
         found: &ConeProjection<T>,
         wanted: &RowList<T, NR>,
         impulses: &mut RowList<T, NR>,
     ) {
         impulses[self.normal] = found.normal;
-        for (k, part) in self.friction_parts() {
+        for (k, part) in self.existing_friction_kinds() {
             let (Some(size), Some(bounded)) = (found.sizes.get(k), found.bounded.get(k)) else { continue };
             let bound = part.friction * (found.normal + self.floor);
             let factor = if *bounded { bound / *size } else { T::one() };
@@ -163,7 +163,7 @@ impl<T: Real> FrictionCone<T> {
 
 /// Factorises a symmetric positive definite matrix of `size` rows in place, of which the lower half is read:
 /// `L` with the reciprocals of its diagonal.
-pub(super) fn cholesky_in_place<T: Real, const NR: usize>(matrix: &mut RowMatrix<T, NR>, size: usize) {
+pub(super) fn cholesky_in_place<T: Real, const NR: usize>(matrix: &mut ContactRowMatrix<T, NR>, size: usize) {
     for i in 0..size {
         let (done, rest) = matrix.split_at_mut_checked(i).unwrap_or_default();
         let Some(own) = rest.first_mut() else { return };
@@ -179,8 +179,8 @@ pub(super) fn cholesky_in_place<T: Real, const NR: usize>(matrix: &mut RowMatrix
 }
 
 /// Solves for `x` with the factor of [`cholesky`].
-pub(super) fn substitute_factor<T: Real, const NR: usize>(
-    factor: &RowMatrix<T, NR>,
+pub(super) fn solve_by_cholesky_factor<T: Real, const NR: usize>(
+    factor: &ContactRowMatrix<T, NR>,
     size: usize,
     x: &mut RowList<T, NR>,
 ) {
@@ -213,7 +213,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
     fn new(problem: &'a ContactProblem<T, NK, NR>) -> Self {
         let zeros = RowList::repeat_entry(T::zero());
         let (cones, count) = problem.list_friction_cones();
-        let weights = problem.cone_weights(&cones, count);
+        let weights = problem.diagonal_weights_of_impulses(&cones, count);
         Self { problem, cones, count, weights, center: zeros, w: zeros, rates: zeros, impulses: zeros }
     }
 
@@ -222,21 +222,30 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
     }
 
     /// Writes the impulses before their projection for contact velocities `rates`.
-    fn predict_impulses(&self, cone: &FrictionCone<T>, rates: &RowList<T, NR>, wanted: &mut RowList<T, NR>) {
+    fn write_unprojected_impulses(
+        &self,
+        cone: &FrictionCone<T>,
+        rates: &RowList<T, NR>,
+        wanted: &mut RowList<T, NR>,
+    ) {
         let predicted_impulse = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
         let n = cone.normal;
         wanted[n] = predicted_impulse(n, rates[n] + cone.raised - cone.least);
-        for (_, part) in cone.friction_parts() {
+        for (_, part) in cone.existing_friction_kinds() {
             (part.first..part.first + part.count).for_each(|i| wanted[i] = predicted_impulse(i, rates[i]));
         }
     }
 
     /// Returns the impulses for contact velocities `rates`.
-    fn impulses_at(&self, rates: &RowList<T, NR>) -> RowList<T, NR> {
+    fn impulses_for_velocities(&self, rates: &RowList<T, NR>) -> RowList<T, NR> {
         let (mut wanted, mut impulses) = (RowList::repeat_entry(T::zero()), RowList::repeat_entry(T::zero()));
         for cone in self.friction_cones() {
-            self.predict_impulses(cone, rates, &mut wanted);
-            cone.write_impulses(&cone.project_impulse(&wanted, &self.weights), &wanted, &mut impulses);
+            self.write_unprojected_impulses(cone, rates, &mut wanted);
+            cone.write_projected_impulses(
+                &cone.project_impulse(&wanted, &self.weights),
+                &wanted,
+                &mut impulses,
+            );
         }
         impulses
     }
@@ -247,44 +256,49 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
     }
 
     /// Sets the increases of the normal rates to those for contact velocities `rates`.
-    fn raise_normal_rates(&mut self, rates: &RowList<T, NR>) {
-        (0..self.count).for_each(|k| self.cones[k].raised = self.cones[k].weighted_slip(rates));
+    fn set_normal_velocity_increases(&mut self, rates: &RowList<T, NR>) {
+        (0..self.count)
+            .for_each(|k| self.cones[k].raised = self.cones[k].friction_weighted_slip_speed(rates));
     }
 
     /// Evaluates contact velocities and impulses at `w`.
-    fn evaluate_at_velocity(&mut self) {
+    fn evaluate_rates_and_impulses(&mut self) {
         self.rates = self.problem.basis.rates_of_velocity(&self.w);
         for i in 0..self.problem.size {
             self.rates[i] += self.problem.free[i];
         }
-        self.impulses = self.impulses_at(&self.rates);
+        self.impulses = self.impulses_for_velocities(&self.rates);
     }
 
     /// Writes `1 + Bᵀ H B` to `matrix`, the derivative of the gradient with respect to `w`.
-    fn write_curvature(&self, matrix: &mut RowMatrix<T, NR>) {
+    fn write_objective_hessian(&self, matrix: &mut ContactRowMatrix<T, NR>) {
         let mut ends = set_unit_rows(matrix, self.problem.basis.column_count());
         let mut wanted = RowList::repeat_entry(T::zero());
         for cone in self.friction_cones() {
-            self.predict_impulses(cone, &self.rates, &mut wanted);
-            let block = self.cone_block(cone, &wanted);
-            self.problem.basis.add_block(&block, matrix, &mut ends);
+            self.write_unprojected_impulses(cone, &self.rates, &mut wanted);
+            let block = self.hessian_block_of_cone(cone, &wanted);
+            self.problem.basis.add_projected_block(&block, matrix, &mut ends);
         }
     }
 
     /// Returns the block of the matrix `H` that belongs to one friction cone. `wanted` are the impulses
     /// before their projection onto the cone.
-    fn cone_block(&self, cone: &FrictionCone<T>, wanted: &RowList<T, NR>) -> ContactBlock<T> {
+    fn hessian_block_of_cone(
+        &self,
+        cone: &FrictionCone<T>,
+        wanted: &RowList<T, NR>,
+    ) -> ImpulseDerivativeBlock<T> {
         let (found, one, none) = (cone.project_impulse(wanted, &self.weights), T::one(), T::zero());
-        let mut block = ContactBlock::new(cone.normal);
+        let mut block = ImpulseDerivativeBlock::new(cone.normal);
         // Along the cone: the normal rate, and the rates of friction at its bound.
         let mut along = [none; ROWS];
         along[0] = one;
-        for (k, part) in cone.friction_parts() {
+        for (k, part) in cone.existing_friction_kinds() {
             let (Some(size), Some(bounded)) = (found.sizes.get(k), found.bounded.get(k)) else { continue };
             let weight = self.weights[part.first];
             let first = block.push_friction_rows(part.first..part.first + part.count);
             if !bounded {
-                if found.is_pressed || cone.floor > none {
+                if found.has_positive_normal_impulse || cone.floor > none {
                     (first..first + part.count).for_each(|i| block.add_entry(i, i, one / weight));
                 }
                 continue;
@@ -299,7 +313,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
                 block.add_product(first, bound / (*size * weight), [-y, x]);
             }
         }
-        if found.is_pressed {
+        if found.has_positive_normal_impulse {
             for (i, row) in along.iter().enumerate() {
                 along
                     .iter()
@@ -319,7 +333,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
 
     /// Takes steps of Newton's method, at most this number, until the gradient is below a part of `w`;
     /// returns their number.
-    fn minimise_by_newton(&mut self, matrix: &mut RowMatrix<T, NR>, most: usize, enough: T) -> usize {
+    fn minimise_by_newton(&mut self, matrix: &mut ContactRowMatrix<T, NR>, most: usize, enough: T) -> usize {
         let (rank, size) = (self.problem.basis.column_count(), self.problem.size);
         let little = epsilon::<T>().powf(constant(0.72));
         let largest_magnitude = |x: &RowList<T, NR>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
@@ -331,29 +345,29 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
             }
             self.problem.count_iteration();
             let mut change = gradient;
-            self.write_curvature(matrix);
+            self.write_objective_hessian(matrix);
             cholesky_in_place(matrix, rank);
-            substitute_factor(matrix, rank, &mut change);
+            solve_by_cholesky_factor(matrix, rank, &mut change);
             let rates = self.problem.basis.rates_of_velocity(&change);
             let slope_at = |part: T| {
                 let mut at = self.rates;
                 (0..size).for_each(|i| at[i] += rates[i] * part);
-                let impulses = self.impulses_at(&at);
+                let impulses = self.impulses_for_velocities(&at);
                 let kinetic =
                     (0..rank).fold(T::zero(), |sum, i| sum + (self.w[i] + change[i] * part) * change[i]);
                 (0..size).fold(kinetic, |sum, i| sum - impulses[i] * rates[i])
             };
             let start = -(0..rank).fold(T::zero(), |sum, i| sum + gradient[i] * change[i]);
-            let part = step_by_slope(start, slope_at);
+            let part = line_search_step_length(start, slope_at);
             (0..rank).for_each(|i| self.w[i] += change[i] * part);
-            self.evaluate_at_velocity();
+            self.evaluate_rates_and_impulses();
         }
         most
     }
 }
 
 /// Returns a step length, at most one, at which the slope along a convex function is small.
-fn step_by_slope<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
+fn line_search_step_length<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
     let (mut low, mut high) = ((T::zero(), start), (T::one(), slope(T::one())));
     let little = start.abs() * constant(0.25);
     if high.1 <= little {
@@ -381,7 +395,7 @@ fn step_by_slope<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the friction cones, and their number.
     fn list_friction_cones(&self) -> (TotalArray<FrictionCone<T>, NK>, usize) {
-        let none = TangentRows { first: 0, count: 0, friction: T::zero() };
+        let none = FrictionRows { first: 0, count: 0, friction: T::zero() };
         let cone = FrictionCone {
             normal: 0,
             parts: [none; PARTS],
@@ -390,12 +404,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             raised: T::zero(),
         };
         let (mut cones, mut count) = (TotalArray::<_, NK>::repeat_entry(cone), 0);
-        for k in (0..self.count).filter(|k| self.is_gap(*k)) {
+        for k in (0..self.count).filter(|k| self.has_gap_function(*k)) {
             let mut parts = [none; PARTS];
             let others = (k..self.count).filter(|other| self.pressed_by[*other] == k);
             for (part, other) in parts.iter_mut().zip(others) {
                 let tangents = self.rows_of_contact(other).1;
-                *part = TangentRows {
+                *part = FrictionRows {
                     first: tangents.start,
                     count: tangents.len(),
                     friction: self.friction[other],
@@ -409,15 +423,19 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns the diagonal entry of `W` for each impulse, the largest one for all of a contact's friction.
-    fn cone_weights(&self, cones: &TotalArray<FrictionCone<T>, NK>, count: usize) -> RowList<T, NR> {
-        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
+    fn diagonal_weights_of_impulses(
+        &self,
+        cones: &TotalArray<FrictionCone<T>, NK>,
+        count: usize,
+    ) -> RowList<T, NR> {
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.delassus_matrix_entry(i, i)));
         let least = reach * epsilon::<T>().sqrt() + epsilon();
         let mut weights = RowList::repeat_entry(T::one());
         for cone in cones.iter().take(count) {
-            weights[cone.normal] = self.weight_entry(cone.normal, cone.normal).max(least);
-            for (_, part) in cone.friction_parts() {
+            weights[cone.normal] = self.delassus_matrix_entry(cone.normal, cone.normal).max(least);
+            for (_, part) in cone.existing_friction_kinds() {
                 let rows = part.first..part.first + part.count;
-                let most = rows.clone().fold(least, |most, i| most.max(self.weight_entry(i, i)));
+                let most = rows.clone().fold(least, |most, i| most.max(self.delassus_matrix_entry(i, i)));
                 rows.for_each(|i| weights[i] = most);
             }
         }
@@ -430,26 +448,26 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(super) fn solve_convex_sequence(
         &self,
         start: &RowList<T, NR>,
-        matrix: &mut RowMatrix<T, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
         let mut convex = ConvexProblem::new(self);
         let weights = convex.weights;
-        let mut best = self.tried_impulses(*start);
+        let mut best = self.evaluate_impulse_trial(*start);
         convex.begin_at_impulses(start);
         if (0..self.size).any(|i| start[i] != T::zero()) {
-            convex.raise_normal_rates(&best.rates);
+            convex.set_normal_velocity_increases(&best.rates);
         }
-        let speed = self.largest_rate();
+        let speed = self.largest_free_contact_velocity();
         let mut near = NEAR.into_iter().map(|part| speed * constant(part)).peekable();
         let (mut steps, mut left) = (0, speed);
         let [first, factor, last, smallest] = REGULARISATIONS.map(constant::<T>);
         let mut regularisation = first;
         for _ in 0..PROBLEMS {
             convex.weights = weights.map_entries(|weight| weight * regularisation);
-            convex.evaluate_at_velocity();
+            convex.evaluate_rates_and_impulses();
             let enough = (left / speed).min(T::one()) * constant(1e-2);
             steps += 1 + convex.minimise_by_newton(matrix, STEPS_OF_ONE, enough);
-            let found = self.tried_impulses(convex.impulses);
+            let found = self.evaluate_impulse_trial(convex.impulses);
             let is_slow = found.worst.0 > left * constant(0.5);
             left = found.worst.0;
             // Comparisons with a violation that is not a number are false.
@@ -471,7 +489,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             {
                 break;
             }
-            convex.raise_normal_rates(&found.rates);
+            convex.set_normal_velocity_increases(&found.rates);
             convex.center = convex.impulses;
             // Impulses that hardly affect the motion converge slowly with a large regularisation.
             regularisation = match is_slow && regularisation <= last {

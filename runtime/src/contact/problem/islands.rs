@@ -13,7 +13,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the group of each contact, and the number of groups.
     pub(super) fn contact_groups(&self) -> (TotalArray<usize, NK>, usize) {
         if self.basis.is_exact() {
-            return self.groups_by_columns();
+            return self.contact_groups_by_columns();
         }
         let (mut group, mut count) = (TotalArray::repeat_entry(usize::MAX), 0);
         let mut reached = TotalArray::<usize, NK>::repeat_entry(0);
@@ -40,7 +40,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the group of each contact, and the number of groups: contacts with entries in common columns
     /// of `B` are in one group.
-    fn groups_by_columns(&self) -> (TotalArray<usize, NK>, usize) {
+    fn contact_groups_by_columns(&self) -> (TotalArray<usize, NK>, usize) {
         // Each column refers to an earlier one of its group, the first one to itself.
         let mut earlier = RowList::<usize, NR>::repeat_entry(0);
         earlier.iter_mut().enumerate().for_each(|(column, earlier)| *earlier = column);
@@ -52,8 +52,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         };
         let mut own = TotalArray::<usize, NK>::repeat_entry(0);
         for k in 0..self.count {
-            let mut known = if self.is_gap(k) { None } else { Some(own[self.pressed_by[k]]) };
-            for i in self.all_rows_of(k) {
+            let mut known = if self.has_gap_function(k) { None } else { Some(own[self.pressed_by[k]]) };
+            for i in self.all_rows_of_contact(k) {
                 let (start, row) = self.basis.nonzero_part_of_row(i);
                 for (column, _) in (start..).zip(row).filter(|(_, entry)| **entry != T::zero()) {
                     let known = known.get_or_insert(column);
@@ -84,9 +84,9 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Whether impulses at one contact change contact velocities of the other, or press its friction.
     fn are_coupled(&self, k: usize, other: usize) -> bool {
         self.pressed_by[k] == self.pressed_by[other]
-            || self
-                .all_rows_of(k)
-                .any(|i| self.all_rows_of(other).any(|j| self.weight_entry(i, j) != T::zero()))
+            || self.all_rows_of_contact(k).any(|i| {
+                self.all_rows_of_contact(other).any(|j| self.delassus_matrix_entry(i, j) != T::zero())
+            })
     }
 
     /// Returns the impulses that are found for each group of contacts alone; the search begins at the
@@ -101,8 +101,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let members = (0..self.count).filter(|k| group[*k] == g);
             let rows = members.fold(0, |rows, k| rows + self.rows[k].count);
             match rows <= SMALL {
-                true => self.solve_group::<SMALL, SMALL>((group, g), start, &mut impulses),
-                false => self.solve_group::<NK, NR>((group, g), start, &mut impulses),
+                true => self.solve_island_impulses::<SMALL, SMALL>((group, g), start, &mut impulses),
+                false => self.solve_island_impulses::<NK, NR>((group, g), start, &mut impulses),
             }
         }
         impulses
@@ -110,7 +110,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Finds the impulses of one group, in arrays for up to `GK` contacts with `GR` rows.
     #[inline(never)]
-    fn solve_group<const GK: usize, const GR: usize>(
+    fn solve_island_impulses<const GK: usize, const GR: usize>(
         &self,
         (group, g): (&TotalArray<usize, NK>, usize),
         start: Option<&RowList<T, NR>>,
@@ -127,7 +127,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             (own.least[c], own.floor[c]) = (self.least[k], self.floor[k]);
             (own.friction[c], own.kinetic[c], own.step[c]) =
                 (self.friction[k], self.kinetic[k], self.step[k]);
-            for (i, row) in self.all_rows_of(k).enumerate() {
+            for (i, row) in self.all_rows_of_contact(k).enumerate() {
                 own.places[first + i] = row;
                 own.free[first + i] = self.free[row];
                 own.given[first + i] = self.given[row];

@@ -3,8 +3,8 @@
 use super::super::Touch;
 use super::super::total::TotalArray;
 use super::banded::set_unit_rows;
-use super::basis::ContactBlock;
-use super::{ContactProblem, ROUNDINGS, RowList, RowMatrix, entry_or_zero};
+use super::basis::ImpulseDerivativeBlock;
+use super::{ContactProblem, ContactRowMatrix, ROUNDINGS, RowList, entry_or_zero};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
@@ -24,7 +24,7 @@ const PASSES: usize = 3;
 #[derive(Clone, Copy)]
 pub(in super::super) struct ImpulseEquations<T, const NR: usize> {
     /// Matrix or its factors; `None` before the first use.
-    matrix: Option<RowMatrix<T, NR>>,
+    matrix: Option<ContactRowMatrix<T, NR>>,
     content: MatrixContent,
 }
 
@@ -44,7 +44,7 @@ impl<T: Real, const NR: usize> ImpulseEquations<T, NR> {
     }
 
     /// Returns the matrix as workspace; its content is lost.
-    pub(super) fn take_workspace(&mut self) -> &mut RowMatrix<T, NR> {
+    pub(super) fn take_workspace(&mut self) -> &mut ContactRowMatrix<T, NR> {
         self.content = MatrixContent::Other;
         self.matrix.get_or_insert_with(zero_matrix)
     }
@@ -53,47 +53,56 @@ impl<T: Real, const NR: usize> ImpulseEquations<T, NR> {
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the impulses after which the chosen contacts have their demanded normal velocities and no
     /// slip; of least norm if they are not unique.
-    pub(in super::super) fn impulses_closing(&self, kept: &TotalArray<bool, NK>) -> RowList<T, NR> {
-        self.impulses_closing_with(kept, &mut ImpulseEquations::new())
+    pub(in super::super) fn impulses_enforcing_contacts(
+        &self,
+        kept: &TotalArray<bool, NK>,
+    ) -> RowList<T, NR> {
+        self.impulses_closing_with_workspace(kept, &mut ImpulseEquations::new())
     }
 
-    /// Computes the impulses of [`impulses_closing`](Self::impulses_closing) with a given workspace.
-    pub(super) fn impulses_closing_with(
+    /// Computes the impulses of [`impulses_enforcing_contacts`](Self::impulses_enforcing_contacts) with a
+    /// given workspace.
+    pub(super) fn impulses_closing_with_workspace(
         &self,
         kept: &TotalArray<bool, NK>,
         equations: &mut ImpulseEquations<T, NR>,
     ) -> RowList<T, NR> {
-        let (held, size) = self.held_rows(kept);
+        let (held, size) = self.rows_with_possible_impulses(kept);
         let mut wanted = RowList::repeat_entry(T::zero());
-        for k in (0..self.count).filter(|k| kept[*k] && self.is_gap(*k)) {
+        for k in (0..self.count).filter(|k| kept[*k] && self.has_gap_function(*k)) {
             wanted[self.rows_of_contact(k).0] = self.least[k];
         }
-        self.impulses_reaching((&held, size), (&self.free, &wanted), equations, PASSES).0
+        self.impulses_for_contact_velocities((&held, size), (&self.free, &wanted), equations, PASSES).0
     }
 
     /// Returns impulses that change the contact velocities of all contacts by `changes`, and true if they are
     /// unique; otherwise they have the least norm and are less exact.
-    pub(in super::super) fn impulses_for(
+    pub(in super::super) fn impulses_for_contact_changes(
         &self,
         changes: &SVector<T, NR>,
         equations: &mut ImpulseEquations<T, NR>,
     ) -> (RowList<T, NR>, bool) {
-        let (held, size) = self.held_rows(&TotalArray::repeat_entry(true));
+        let (held, size) = self.rows_with_possible_impulses(&TotalArray::repeat_entry(true));
         let mut wanted = RowList::repeat_entry(T::zero());
         for (wanted, place) in wanted.iter_mut().zip(self.places.iter()).take(self.size) {
             *wanted = entry_or_zero(changes, *place);
         }
-        self.impulses_reaching((&held, size), (&RowList::repeat_entry(T::zero()), &wanted), equations, 2)
+        self.impulses_for_contact_velocities(
+            (&held, size),
+            (&RowList::repeat_entry(T::zero()), &wanted),
+            equations,
+            2,
+        )
     }
 
     /// Returns the rows in which the chosen contacts may have impulses, and their number. Rows of friction
     /// are included only if the contact has friction.
-    fn held_rows(&self, kept: &TotalArray<bool, NK>) -> (RowList<usize, NR>, usize) {
+    fn rows_with_possible_impulses(&self, kept: &TotalArray<bool, NK>) -> (RowList<usize, NR>, usize) {
         let (mut held, mut size) = (RowList::repeat_entry(0), 0);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && kept[*k]) {
             let (n, _) = self.rows_of_contact(k);
             let holds = self.friction[k] > T::zero();
-            for i in self.all_rows_of(k).filter(|i| *i == n || holds) {
+            for i in self.all_rows_of_contact(k).filter(|i| *i == n || holds) {
                 held[size] = i;
                 size += 1;
             }
@@ -103,7 +112,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns impulses in the first `size` rows `held` that change the contact velocities of these rows from
     /// `free` to `wanted`, and true if they are unique. Otherwise they are refined in `passes` passes.
-    fn impulses_reaching(
+    fn impulses_for_contact_velocities(
         &self,
         (held, size): (&RowList<usize, NR>, usize),
         (free, wanted): (&RowList<T, NR>, &RowList<T, NR>),
@@ -136,10 +145,10 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             _ => 0,
         };
         for pass in 0..passes {
-            let rates = if pass == 0 { *free } else { self.add_velocity_changes(*free, &impulses) };
+            let rates = if pass == 0 { *free } else { self.velocities_after_impulses(*free, &impulses) };
             let mut right = RowList::repeat_entry(T::zero());
             right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = wanted[*i] - rates[*i]);
-            substitute_factors(matrix, size, &mut right);
+            solve_with_stored_factors(matrix, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
         }
         (impulses, known == MatrixContent::Factors)
@@ -147,7 +156,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Whether the contact forces in these modes are not unique. For sliding contacts only normal forces
     /// count.
-    pub(in super::super) fn is_redundant(&self, touches: &[Touch; NK]) -> bool {
+    pub(in super::super) fn has_nonunique_contact_forces(&self, touches: &[Touch; NK]) -> bool {
         let touches = TotalArray::new(*touches, Touch::Open);
         let (mut held, mut size) = (RowList::<_, NR>::repeat_entry(0), 0);
         for k in (0..self.count).filter(|k| touches[self.contacts[*k].0] != Touch::Open) {
@@ -156,7 +165,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             }
             let (n, _) = self.rows_of_contact(k);
             let slips = touches[self.contacts[k].0] == Touch::Slips || self.friction[k] == T::zero();
-            for i in self.all_rows_of(k).filter(|i| *i == n || !slips) {
+            for i in self.all_rows_of_contact(k).filter(|i| *i == n || !slips) {
                 held[size] = i;
                 size += 1;
             }
@@ -167,7 +176,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Writes the rows and columns of `W` that belong to the first `size` rows `held` into `system`.
-    fn copy_submatrix(&self, held: &RowList<usize, NR>, size: usize, system: &mut RowMatrix<T, NR>) {
+    fn copy_submatrix(&self, held: &RowList<usize, NR>, size: usize, system: &mut ContactRowMatrix<T, NR>) {
         if let Some(weights) = self.weights.as_ref().filter(|_| size == self.size) {
             // All of them.
             *system = *weights;
@@ -175,7 +184,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
         for (k, i) in held.iter().enumerate().take(size) {
             for (other, j) in held.iter().enumerate().take(k + 1) {
-                let weight = self.weight_entry(*i, *j);
+                let weight = self.delassus_matrix_entry(*i, *j);
                 (system[k][other], system[other][k]) = (weight, weight);
             }
         }
@@ -183,7 +192,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the forces that enforce the contact modes `touches`, where impulses are forces and contact
     /// velocities are contact accelerations. `rates` holds the contact velocities of all contacts, whose
-    /// direction friction opposes. Sets `loses_digits` if nothing slips and `W` determines the forces badly.
+    /// direction friction opposes. Sets `has_ill_conditioned_factors` if nothing slips and `W` determines the
+    /// forces badly.
     ///
     /// # Errors
     ///
@@ -192,27 +202,28 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         &self,
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
-        loses_digits: &mut bool,
+        has_ill_conditioned_factors: &mut bool,
     ) -> Result<RowList<T, NR>, usize> {
-        let slips = self.slipping_contacts(touches);
+        let slips = self.slip_flags_of_contacts(touches);
         let mut forces = RowList::repeat_entry(T::zero());
         if !slips.contains(&true) {
             let mut equations = ImpulseEquations::new();
-            forces = self.impulses_closing_with(&TotalArray::repeat_entry(true), &mut equations);
-            *loses_digits = self.loses_digits(&equations, &forces);
-            let (accelerations, most) = (self.rates_after(&forces), self.rate_rounding(&forces));
+            forces = self.impulses_closing_with_workspace(&TotalArray::repeat_entry(true), &mut equations);
+            *has_ill_conditioned_factors = self.has_ill_conditioned_factors(&equations, &forces);
+            let (accelerations, most) =
+                (self.contact_velocities_after(&forces), self.contact_velocity_rounding_error(&forces));
             if accelerations.iter().take(self.size).all(|left| left.abs() <= most) {
                 return Ok(forces);
             }
         }
-        let system = self.held_system(&slips, rates);
+        let system = self.contact_mode_system_matrix(&slips, rates);
         // What is left of the equations.
-        let remaining_accelerations = |forces: &RowList<T, NR>| {
-            let accelerations = self.rates_after(forces);
+        let residual_accelerations = |forces: &RowList<T, NR>| {
+            let accelerations = self.contact_velocities_after(forces);
             let mut left = RowList::repeat_entry(T::zero());
             for k in 0..self.count {
                 let (n, _) = self.rows_of_contact(k);
-                for i in self.all_rows_of(k) {
+                for i in self.all_rows_of_contact(k) {
                     left[i] = match i != n && slips[k] {
                         true => -(forces[i] + system[i][n] * forces[n]),
                         false => -accelerations[i],
@@ -221,10 +232,10 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             }
             left
         };
-        let refine_forces = |forces: &mut RowList<T, NR>, system: &RowMatrix<T, NR>| {
+        let refine_forces = |forces: &mut RowList<T, NR>, system: &ContactRowMatrix<T, NR>| {
             for _ in 0..PASSES {
-                let right = remaining_accelerations(forces);
-                let most = self.rate_rounding(forces);
+                let right = residual_accelerations(forces);
+                let most = self.contact_velocity_rounding_error(forces);
                 if right.iter().take(self.size).all(|left| left.abs() <= most) {
                     break;
                 }
@@ -233,21 +244,23 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 forces.iter_mut().zip(*right).for_each(|(force, [change])| *force += change);
             }
         };
-        let lost_accuracy = |forces: &RowList<T, NR>| {
-            let left = remaining_accelerations(forces);
-            let most = self.rate_rounding(forces).max(self.largest_rate() * self.regularisation_of_row());
-            (0..self.count).filter(|k| self.is_gap(*k)).find(|k| {
+        let contact_with_lost_accuracy = |forces: &RowList<T, NR>| {
+            let left = residual_accelerations(forces);
+            let most = self
+                .contact_velocity_rounding_error(forces)
+                .max(self.largest_free_contact_velocity() * self.regularisation_of_row());
+            (0..self.count).filter(|k| self.has_gap_function(*k)).find(|k| {
                 // It is where it is no number, too.
                 let is_held = left[self.rows[*k].first].abs() <= most;
                 !is_held
             })
         };
         refine_forces(&mut forces, &self.regularised_system(&system, &slips));
-        if lost_accuracy(&forces).is_some() && !self.is_redundant(touches) {
+        if contact_with_lost_accuracy(&forces).is_some() && !self.has_nonunique_contact_forces(touches) {
             // What tells rows apart is more than what the motion does, and is not needed.
             refine_forces(&mut forces, &system);
         }
-        match lost_accuracy(&forces) {
+        match contact_with_lost_accuracy(&forces) {
             Some(k) => Err(self.contacts[k].0),
             None => Ok(forces),
         }
@@ -255,19 +268,23 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Whether a pivot of the factors of `W` is small compared with its diagonal entry, or the factors are
     /// those of a regularised matrix.
-    fn loses_digits(&self, equations: &ImpulseEquations<T, NR>, forces: &RowList<T, NR>) -> bool {
+    fn has_ill_conditioned_factors(
+        &self,
+        equations: &ImpulseEquations<T, NR>,
+        forces: &RowList<T, NR>,
+    ) -> bool {
         let ImpulseEquations { matrix, content } = equations;
         let least = epsilon::<T>().sqrt().sqrt();
         let pivot_at = |i: usize| matrix.as_ref().map_or(T::zero(), |matrix| matrix[i][i]);
-        let is_small_pivot = |i: usize| pivot_at(i) * self.weight_entry(i, i) * least > T::one();
+        let is_small_pivot = |i: usize| pivot_at(i) * self.delassus_matrix_entry(i, i) * least > T::one();
         // Forces that move light bodies far cancel each other.
-        let cancels =
-            self.rate_rounding(forces) * least > self.largest_rate() * epsilon() * constant(ROUNDINGS);
+        let cancels = self.contact_velocity_rounding_error(forces) * least
+            > self.largest_free_contact_velocity() * epsilon() * constant(ROUNDINGS);
         *content != MatrixContent::Factors || cancels || (0..self.size).any(is_small_pivot)
     }
 
     /// Returns true for contacts that slide or have no friction.
-    fn slipping_contacts(&self, touches: &[Touch; NK]) -> TotalArray<bool, NK> {
+    fn slip_flags_of_contacts(&self, touches: &[Touch; NK]) -> TotalArray<bool, NK> {
         let touches = TotalArray::new(*touches, Touch::Open);
         let mut slips = TotalArray::repeat_entry(false);
         for k in 0..self.count {
@@ -278,38 +295,45 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the matrix of the equations that enforce the contact modes: zero accelerations of sticking
     /// rows, and friction opposite to the slip velocities `rates`.
-    fn held_system(&self, slips: &TotalArray<bool, NK>, rates: &SVector<T, NR>) -> RowMatrix<T, NR> {
+    fn contact_mode_system_matrix(
+        &self,
+        slips: &TotalArray<bool, NK>,
+        rates: &SVector<T, NR>,
+    ) -> ContactRowMatrix<T, NR> {
         let places = self.places;
         let mut system = zero_matrix();
         let _ = set_unit_rows(&mut system, self.size);
         for k in 0..self.count {
             let (n, tangents) = self.rows_of_contact(k);
-            let slip_at = |i: usize| entry_or_zero(rates, places[i]);
-            let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip_at(i) * slip_at(i)).sqrt();
-            for i in self.all_rows_of(k) {
+            let slip_component_at_row = |i: usize| entry_or_zero(rates, places[i]);
+            let speed = tangents
+                .clone()
+                .fold(T::zero(), |sum, i| sum + slip_component_at_row(i) * slip_component_at_row(i))
+                .sqrt();
+            for i in self.all_rows_of_contact(k) {
                 if i == n || !slips[k] {
-                    (0..self.size).for_each(|j| system[i][j] = self.weight_entry(i, j));
+                    (0..self.size).for_each(|j| system[i][j] = self.delassus_matrix_entry(i, j));
                 } else if speed > T::zero() {
-                    system[i][n] = self.friction[k] * slip_at(i) / speed;
+                    system[i][n] = self.friction[k] * slip_component_at_row(i) / speed;
                 }
             }
         }
         system
     }
 
-    /// Returns the matrix of [`held_system`](Self::held_system) with a small regularisation of nearly
-    /// dependent rows.
+    /// Returns the matrix of [`contact_mode_system_matrix`](Self::contact_mode_system_matrix) with a small
+    /// regularisation of nearly dependent rows.
     fn regularised_system(
         &self,
-        system: &RowMatrix<T, NR>,
+        system: &ContactRowMatrix<T, NR>,
         slips: &TotalArray<bool, NK>,
-    ) -> RowMatrix<T, NR> {
-        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
+    ) -> ContactRowMatrix<T, NR> {
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.delassus_matrix_entry(i, i)));
         let mut system = *system;
         for k in 0..self.count {
             let (n, _) = self.rows_of_contact(k);
-            for i in self.all_rows_of(k).filter(|i| *i == n || !slips[k]) {
-                system[i][i] += row_regularisation(self.weight_entry(i, i), reach);
+            for i in self.all_rows_of_contact(k).filter(|i| *i == n || !slips[k]) {
+                system[i][i] += row_regularisation(self.delassus_matrix_entry(i, i), reach);
             }
         }
         system
@@ -322,22 +346,22 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
     ) -> SMatrix<T, NR, NR> {
-        let (slips, places) = (self.slipping_contacts(touches), self.places);
-        if let Some(found) = self.independent_force_derivatives(&slips) {
+        let (slips, places) = (self.slip_flags_of_contacts(touches), self.places);
+        if let Some(found) = self.sticking_force_derivatives(&slips) {
             return found;
         }
-        let mut system = self.held_system(&slips, rates);
+        let mut system = self.contact_mode_system_matrix(&slips, rates);
         let mut wanted = TotalArray::repeat_entry([T::zero(); NR]);
         for k in 0..self.count {
             let (n, _) = self.rows_of_contact(k);
-            for i in self.all_rows_of(k).filter(|i| *i == n || !slips[k]) {
+            for i in self.all_rows_of_contact(k).filter(|i| *i == n || !slips[k]) {
                 if let Some(wanted) = wanted[i].get_mut(places[i]) {
                     *wanted = -T::one();
                 }
             }
         }
         let mut changes = wanted;
-        if self.is_redundant(touches) {
+        if self.has_nonunique_contact_forces(touches) {
             changes = TotalArray::repeat_entry([T::zero(); NR]);
             for _ in 0..PASSES {
                 let mut right = wanted;
@@ -365,7 +389,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the derivatives of [`force_derivatives`](Self::force_derivatives) if no contact slides and the
     /// rows are independent: `−W⁻¹`; otherwise `None`.
-    fn independent_force_derivatives(&self, slips: &TotalArray<bool, NK>) -> Option<SMatrix<T, NR, NR>> {
+    fn sticking_force_derivatives(&self, slips: &TotalArray<bool, NK>) -> Option<SMatrix<T, NR, NR>> {
         let is_regular_sticking = |k: usize| !slips[k] && self.step[k] > T::zero();
         let mut system = zero_matrix();
         self.copy_submatrix(&RowList::new(core::array::from_fn(|i| i), 0), self.size, &mut system);
@@ -404,20 +428,20 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Writes `1 + Bᵀ R⁻¹ B` into `matrix`, with the regularisation `R` of nearly dependent rows.
-    pub(super) fn fill_regularised(&self, matrix: &mut RowMatrix<T, NR>) {
+    pub(super) fn fill_regularised_matrix(&self, matrix: &mut ContactRowMatrix<T, NR>) {
         let mut ends = set_unit_rows(matrix, self.basis.column_count());
-        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.delassus_matrix_entry(i, i)));
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, _) = self.rows_of_contact(k);
             let holds = self.friction[k] > T::zero();
-            let mut rows = self.all_rows_of(k).filter(|i| *i == n || holds);
+            let mut rows = self.all_rows_of_contact(k).filter(|i| *i == n || holds);
             let Some(first) = rows.next() else { continue };
-            let mut block = ContactBlock::new(first);
+            let mut block = ImpulseDerivativeBlock::new(first);
             rows.for_each(|i| _ = block.push_friction_rows(i..i + 1));
-            for (j, i) in self.all_rows_of(k).filter(|i| *i == n || holds).enumerate() {
-                block.add_entry(j, j, T::one() / row_regularisation(self.weight_entry(i, i), reach));
+            for (j, i) in self.all_rows_of_contact(k).filter(|i| *i == n || holds).enumerate() {
+                block.add_entry(j, j, T::one() / row_regularisation(self.delassus_matrix_entry(i, i), reach));
             }
-            self.basis.add_block(&block, matrix, &mut ends);
+            self.basis.add_projected_block(&block, matrix, &mut ends);
         }
     }
 
@@ -428,7 +452,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Solves equations among all rows in place, as [`eliminate_with_pivots`] does.
     fn eliminate_all_rows<const N: usize>(
         &self,
-        system: &mut RowMatrix<T, NR>,
+        system: &mut ContactRowMatrix<T, NR>,
         right: &mut TotalArray<[T; N], NR>,
     ) {
         eliminate_with_pivots(system, right, self.size);
@@ -438,7 +462,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 /// Solves a system of `size` equations in place by Gaussian elimination with pivots of the columns, for
 /// several right-hand sides. Unknowns without a pivot are zero.
 pub(super) fn eliminate_with_pivots<T: Real, const N: usize, const NR: usize>(
-    system: &mut RowMatrix<T, NR>,
+    system: &mut ContactRowMatrix<T, NR>,
     right: &mut TotalArray<[T; N], NR>,
     size: usize,
 ) {
@@ -496,7 +520,7 @@ fn row_regularisation<T: Real>(weight: T, reach: T) -> T {
 /// their entries of `D`, with the reciprocals of `D` on the diagonal. Returns false if rows are dependent and
 /// no regularisation is chosen (`is_lifted`).
 fn factorise_symmetric<T: Real, const NR: usize>(
-    u: &mut RowMatrix<T, NR>,
+    u: &mut ContactRowMatrix<T, NR>,
     size: usize,
     is_lifted: bool,
 ) -> bool {
@@ -528,7 +552,11 @@ fn factorise_symmetric<T: Real, const NR: usize>(
 }
 
 /// Replaces `p` by the solution `x` of `Uᵀ D U x = p`, with the factors of [`factorise_symmetric`].
-fn substitute_factors<T: Real, const NR: usize>(u: &RowMatrix<T, NR>, size: usize, x: &mut RowList<T, NR>) {
+fn solve_with_stored_factors<T: Real, const NR: usize>(
+    u: &ContactRowMatrix<T, NR>,
+    size: usize,
+    x: &mut RowList<T, NR>,
+) {
     for j in 0..size {
         let value = x[j] * u[j][j];
         subtract_row_range(x, value, &u[j], j + 1..size);
@@ -577,6 +605,6 @@ fn subtract_multiple<T: Real, const N: usize>(from: &mut [T; N], factor: T, row:
 }
 
 /// Returns a square matrix of zeros.
-pub(super) fn zero_matrix<T: Real, const NR: usize>() -> RowMatrix<T, NR> {
-    RowMatrix::repeat_entry(RowList::repeat_entry(T::zero()))
+pub(super) fn zero_matrix<T: Real, const NR: usize>() -> ContactRowMatrix<T, NR> {
+    ContactRowMatrix::repeat_entry(RowList::repeat_entry(T::zero()))
 }

@@ -7,13 +7,13 @@
 //! motion depends on then stay the same.
 
 use super::super::total::TotalArray;
-use super::banded::{eliminate_banded, set_unit_rows};
-use super::basis::ContactBlock;
+use super::banded::{set_unit_rows, solve_banded_system};
+use super::basis::ImpulseDerivativeBlock;
 use super::convex::PARTS;
 use super::linear::zero_matrix;
 use super::search::PATIENCE;
 use super::trial::{ContactMode, ImpulseTrial};
-use super::{ContactProblem, RowList, RowMatrix};
+use super::{ContactProblem, ContactRowMatrix, RowList};
 use crate::Real;
 use crate::private::{constant, epsilon};
 
@@ -32,42 +32,42 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(super) fn newton_impulses(
         &self,
         start: ImpulseTrial<T, NK, NR>,
-        matrix: &mut RowMatrix<T, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
-        self.newton_within(STEPS, start, matrix)
+        self.limited_newton_impulses(STEPS, start, matrix)
     }
 
     /// Returns the result of [`newton_impulses`](Self::newton_impulses) after a given number of iterations at most.
-    pub(super) fn newton_within(
+    pub(super) fn limited_newton_impulses(
         &self,
         steps: usize,
         start: ImpulseTrial<T, NK, NR>,
-        matrix: &mut RowMatrix<T, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
         let (mut best, mut rises) = ((start.left, start.impulses), 0);
         let mut trial = start;
         for _ in 0..steps {
             if self.is_solved_by(&trial) {
                 // Sums of changes accumulate rounding errors.
-                trial = self.tried_impulses(trial.impulses);
+                trial = self.evaluate_impulse_trial(trial.impulses);
                 if self.is_solved_by(&trial) {
                     return trial;
                 }
             }
             self.count_iteration();
             let change = self.newton_step(&trial, matrix);
-            let rates = self.velocity_changes(&change);
-            let trial_after = |part: T| {
-                let impulses = moved_by_part(&trial.impulses, &change, part);
-                self.tried_with(impulses, moved_by_part(&trial.rates, &rates, part))
+            let rates = self.contact_velocity_changes(&change);
+            let trial_after_partial_change = |part: T| {
+                let impulses = values_after_partial_change(&trial.impulses, &change, part);
+                self.trial_with_residuals(impulses, values_after_partial_change(&trial.rates, &rates, part))
             };
-            let mut next = trial_after(T::one());
+            let mut next = trial_after_partial_change(T::one());
             let is_smaller_residual = |next: &ImpulseTrial<T, NK, NR>| next.left < trial.left;
             if !is_smaller_residual(&next) {
                 let (whole, mut part) = (next, T::one());
                 while next.left >= trial.left && part > constant(SHORTEST) {
                     part *= constant(0.5);
-                    next = trial_after(part);
+                    next = trial_after_partial_change(part);
                 }
                 if !is_smaller_residual(&next) {
                     rises += 1;
@@ -86,22 +86,25 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 break;
             }
         }
-        self.tried_impulses(best.1)
+        self.evaluate_impulse_trial(best.1)
     }
 
     /// Returns the result of [`newton_impulses`](Self::newton_impulses) from impulses that satisfy the
     /// contact conditions for the coefficients of friction `before`: the first step assumes the contact modes
     /// of these impulses.
-    pub(super) fn follow_modes(
+    pub(super) fn newton_from_previous_modes(
         &self,
         start: RowList<T, NR>,
         before: &TotalArray<T, NK>,
     ) -> ImpulseTrial<T, NK, NR> {
-        let mut trial = self.tried_impulses(start);
+        let mut trial = self.evaluate_impulse_trial(start);
         trial.modes = self.natural_map_modes(before, &start, &trial.rates);
         let mut matrix = zero_matrix();
         let change = self.newton_step(&trial, &mut matrix);
-        self.newton_impulses(self.tried_impulses(moved_by_part(&start, &change, T::one())), &mut matrix)
+        self.newton_impulses(
+            self.evaluate_impulse_trial(values_after_partial_change(&start, &change, T::one())),
+            &mut matrix,
+        )
     }
 
     /// Returns the impulses after one more step, if the smallest normal velocities of pressed contacts are
@@ -109,49 +112,53 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(super) fn refined_trial(
         &self,
         trial: ImpulseTrial<T, NK, NR>,
-        matrix: &mut RowMatrix<T, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
         let ImpulseTrial { impulses, left, worst, .. } = &trial;
         let half = epsilon::<T>().sqrt();
         let little = half * half.sqrt();
-        let pressed =
-            (0..self.count).filter(|k| self.is_gap(*k) && impulses[self.rows_of_contact(*k).0] > T::zero());
+        let pressed = (0..self.count)
+            .filter(|k| self.has_gap_function(*k) && impulses[self.rows_of_contact(*k).0] > T::zero());
         if pressed.map(|k| self.free[self.rows_of_contact(k).0].abs() * little).all(|most| worst.0 <= most) {
             return trial;
         }
         let change = self.newton_step(&trial, matrix);
-        let next = self.tried_impulses(moved_by_part(impulses, &change, T::one()));
+        let next = self.evaluate_impulse_trial(values_after_partial_change(impulses, &change, T::one()));
         if next.left < *left { next } else { trial }
     }
 
     /// Returns the change of the impulses in a step; `matrix` is workspace.
-    fn newton_step(&self, trial: &ImpulseTrial<T, NK, NR>, matrix: &mut RowMatrix<T, NR>) -> RowList<T, NR> {
+    fn newton_step(
+        &self,
+        trial: &ImpulseTrial<T, NK, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
+    ) -> RowList<T, NR> {
         let constant_part = self.impulse_changes(trial, &RowList::repeat_entry(T::zero()));
         let mut change = self.basis.velocity_of_impulses(&constant_part);
-        let mut ends = self.fill_derivative(trial, matrix);
-        eliminate_banded(matrix, (&mut change, &mut ends), self.basis.column_count());
+        let mut ends = self.fill_newton_matrix(trial, matrix);
+        solve_banded_system(matrix, (&mut change, &mut ends), self.basis.column_count());
         self.impulse_changes(trial, &self.basis.rates_of_velocity(&change))
     }
 
     /// Writes `1 + Bᵀ H B` to `matrix`, and returns the index behind the last entry of each row.
-    fn fill_derivative(
+    fn fill_newton_matrix(
         &self,
         trial: &ImpulseTrial<T, NK, NR>,
-        matrix: &mut RowMatrix<T, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
     ) -> RowList<usize, NR> {
         let mut ends = set_unit_rows(matrix, self.basis.column_count());
-        for k in (0..self.count).filter(|k| self.is_gap(*k)) {
-            self.basis.add_block(&self.derivative_block(trial, k), matrix, &mut ends);
+        for k in (0..self.count).filter(|k| self.has_gap_function(*k)) {
+            self.basis.add_projected_block(&self.derivative_block(trial, k), matrix, &mut ends);
         }
         ends
     }
 
     /// Returns one contact's block of the matrix `H` in `ΔΛ = c − H B Δw`: changes of its impulses by changes
     /// of its contact velocities.
-    fn derivative_block(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> ContactBlock<T> {
-        let presses = self.is_pressed(trial, k);
+    fn derivative_block(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> ImpulseDerivativeBlock<T> {
+        let presses = self.has_positive_normal_impulse(trial, k);
         let pressed = if presses { self.impulse_stiffness(k) } else { T::zero() };
-        let mut block = ContactBlock::new(self.rows_of_contact(k).0);
+        let mut block = ImpulseDerivativeBlock::new(self.rows_of_contact(k).0);
         block.add_entry(0, 0, pressed);
         // Friction moments follow their contact.
         for part in (k..self.count.min(k + PARTS)).filter(|part| self.pressed_by[*part] == k) {
@@ -186,8 +193,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut changes = RowList::repeat_entry(T::zero());
         for k in 0..self.count {
             let (n, tangents) = self.rows_of_contact(k);
-            if self.is_gap(k) {
-                changes[n] = match self.is_pressed(trial, k) {
+            if self.has_gap_function(k) {
+                changes[n] = match self.has_positive_normal_impulse(trial, k) {
                     true => -(now[n] - self.least[k] + rates[n]) * self.impulse_stiffness(k),
                     false => -impulses[n],
                 };
@@ -218,7 +225,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Whether the normal impulse of the natural map is positive.
-    fn is_pressed(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> bool {
+    fn has_positive_normal_impulse(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> bool {
         trial.modes[k].0 > T::zero() && self.step[k] > T::zero()
     }
 
@@ -231,7 +238,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the friction bound of a sliding contact, whose tangential impulse before the projection has
     /// the magnitude `size`, and the factor of the slip velocity across its direction.
     fn sliding_bound_and_factor(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize, size: T) -> (T, T) {
-        let bound = self.friction[k] * self.bearing_impulse(k, trial.modes[k].0);
+        let bound = self.friction[k] * self.friction_bounding_impulse(k, trial.modes[k].0);
         (bound, self.step[k] * self.scale / (T::one() - bound / size + self.impulse_regularisation()))
     }
 
@@ -245,7 +252,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 }
 
 /// Returns values after a part of a change.
-fn moved_by_part<T: Real, const NR: usize>(
+fn values_after_partial_change<T: Real, const NR: usize>(
     from: &RowList<T, NR>,
     change: &RowList<T, NR>,
     part: T,

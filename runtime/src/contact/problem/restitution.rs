@@ -13,18 +13,18 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// # Errors
     ///
     /// As [`solve`](Self::solve).
-    pub(in super::super) fn find_compression(
+    pub(in super::super) fn compute_compression_impulses(
         &mut self,
         laws: &[Law<T>; NK],
         before: &SVector<T, NR>,
     ) -> Result<(), usize> {
-        let bounces_by_impulse = |k: usize| {
+        let has_poisson_restitution = |k: usize| {
             let (contact, Rows { first, .. }) = self.contacts[k];
             let poisson =
                 |law: &Law<T>| law.hypothesis == Restitution::Poisson && law.restitution > T::zero();
             laws.get(contact).is_some_and(poisson) && entry_or_zero(before, first) < T::zero()
         };
-        if !(0..self.count).any(|k| self.is_gap(k) && bounces_by_impulse(k)) {
+        if !(0..self.count).any(|k| self.has_gap_function(k) && has_poisson_restitution(k)) {
             return Ok(());
         }
         let places = self.places;
@@ -33,8 +33,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
         let found = self.solve_impulses();
         self.free = self.given;
-        self.compression = self.accept_if_relaxed(found)?;
-        self.is_compressed = true;
+        self.compression = self.accept_best_if_relaxed(found)?;
+        self.is_contact_compressed = true;
         Ok(())
     }
 
@@ -61,15 +61,15 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             };
             self.base[n] += self.floor[k];
         }
-        if self.is_compressed {
+        if self.is_contact_compressed {
             self.free = self.given;
-            self.free = self.rates_after(&self.base);
+            self.free = self.contact_velocities_after(&self.base);
         }
     }
 
     /// Returns the total normal impulse that bounds friction: the positive part of `normal`, and the impulse
     /// of restitution that acts in addition.
-    pub(super) fn bearing_impulse(&self, k: usize, normal: T) -> T {
+    pub(super) fn friction_bounding_impulse(&self, k: usize, normal: T) -> T {
         positive_part(normal) + self.floor[self.pressed_by[k]]
     }
 
@@ -85,7 +85,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         if !self.demands_restitution() {
             return false;
         }
-        let rates = self.rates_after(impulses);
+        let rates = self.contact_velocities_after(impulses);
         let (mut work, mut size) = (T::zero(), T::zero());
         for i in 0..self.size {
             let impulse = self.base[i] + impulses[i];

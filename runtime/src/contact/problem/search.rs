@@ -4,7 +4,7 @@ use super::super::total::TotalArray;
 use super::linear::{ImpulseEquations, zero_matrix};
 use super::newton::STEPS;
 use super::trial::ImpulseTrial;
-use super::{ContactProblem, RowList, RowMatrix};
+use super::{ContactProblem, ContactRowMatrix, RowList};
 use crate::Real;
 use crate::private::{constant, epsilon, positive_part};
 use core::ops::Range;
@@ -83,25 +83,28 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         if const { NR > DENSE } && self.size > DENSE {
             let groups = self.contact_groups();
             if groups.1 > 1 {
-                let found = self.tried_impulses(self.solve_groups(&groups, start));
+                let found = self.evaluate_impulse_trial(self.solve_groups(&groups, start));
                 self.violation = found.worst.0;
-                if found.worst.0 <= self.largest_rate() * epsilon::<T>().sqrt() || self.is_solved_by(&found) {
+                if found.worst.0 <= self.largest_free_contact_velocity() * epsilon::<T>().sqrt()
+                    || self.is_solved_by(&found)
+                {
                     return Ok(found.impulses);
                 }
                 self.closest = found.impulses;
                 return Err(self.contacts[found.worst.1].0);
             }
         }
-        let mut found = self.search_impulses(start, equations);
+        let mut found = self.least_violating_impulses(start, equations);
         let is_solution = |problem: &Self, found: &ImpulseTrial<T, NK, NR>| {
-            found.worst.0 <= problem.largest_rate() * epsilon::<T>().sqrt() || problem.is_solved_by(found)
+            found.worst.0 <= problem.largest_free_contact_velocity() * epsilon::<T>().sqrt()
+                || problem.is_solved_by(found)
         };
         if self.is_exhaustive_search()
             && !(self.is_relaxed && is_solution(self, &found))
             && !self.is_solved_by(&found)
         {
-            let other = self.search_exhaustively(found.impulses);
-            let other = self.tried_impulses(other);
+            let other = self.search_with_all_methods(found.impulses);
+            let other = self.evaluate_impulse_trial(other);
             // The rates of the map are dominated by rounding errors if masses differ by many powers of ten.
             let is_better = self.is_frictionless() && is_solution(self, &other);
             if is_better || other.worst.0 < found.worst.0 {
@@ -123,7 +126,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         for k in 0..self.count {
             let (n, tangents) = self.rows_of_contact(k);
             impulses[n] = positive_part(impulses[n]);
-            let most = self.friction[k] * self.bearing_impulse(k, impulses[n]);
+            let most = self.friction[k] * self.friction_bounding_impulse(k, impulses[n]);
             let size = tangents.clone().fold(T::zero(), |sum, i| sum + impulses[i] * impulses[i]).sqrt();
             if size > most {
                 tangents.for_each(|i| impulses[i] *= most / size);
@@ -133,7 +136,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns the impulses that violate the contact conditions least.
-    fn search_impulses(
+    fn least_violating_impulses(
         &mut self,
         start: Option<&RowList<T, NR>>,
         equations: &mut ImpulseEquations<T, NR>,
@@ -141,10 +144,11 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let start = start.map(|start| {
             let mut impulses = *start;
             impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
-            self.tried_impulses(impulses)
+            self.evaluate_impulse_trial(impulses)
         });
-        let near =
-            start.filter(|start| self.size > FEW && start.worst.0 <= self.largest_rate() * constant(NEAR));
+        let near = start.filter(|start| {
+            self.size > FEW && start.worst.0 <= self.largest_free_contact_velocity() * constant(NEAR)
+        });
         // In most steps few contacts slip or separate, or all keep their modes.
         let start = match near {
             Some(near) => near,
@@ -153,7 +157,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         if self.is_solved_by(&start) {
             return start;
         }
-        self.prepare_basis();
+        self.compute_basis_if_needed();
         let matrix = equations.take_workspace();
         let found = self.newton_with_all_scales(start, matrix);
         if self.is_solved_by(&found) || self.is_small_violation(&found) {
@@ -178,11 +182,11 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     fn newton_with_all_scales(
         &mut self,
         start: ImpulseTrial<T, NK, NR>,
-        matrix: &mut RowMatrix<T, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
-        let mut best = self.newton_within(STEPS_OF_SCALE, start, matrix);
+        let mut best = self.limited_newton_impulses(STEPS_OF_SCALE, start, matrix);
         if self.size <= FEW && self.is_frictionless() && !self.is_solved_by(&best) {
-            let pressed = self.tried_impulses(self.active_set_impulses());
+            let pressed = self.evaluate_impulse_trial(self.active_set_impulses());
             if pressed.worst.0 < best.worst.0 {
                 best = pressed;
             }
@@ -191,7 +195,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             if self.is_solved_by(&best) || self.is_small_violation(&best) {
                 break;
             }
-            let next = self.newton_scaled(STEPS_OF_SCALE, best.impulses, scale, matrix);
+            let next = self.newton_with_step_scale(STEPS_OF_SCALE, best.impulses, scale, matrix);
             if next.worst.0 < best.worst.0 {
                 best = next;
             }
@@ -206,13 +210,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         start: Option<ImpulseTrial<T, NK, NR>>,
         equations: &mut ImpulseEquations<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
-        let approach =
-            self.contacts_where(|k| self.free[self.rows_of_contact(k).0] < self.least[self.pressed_by[k]]);
-        let stuck = self.tried_impulses(self.impulses_closing_with(&approach, equations));
+        let approach = self.contact_mask_of_condition(|k| {
+            self.free[self.rows_of_contact(k).0] < self.least[self.pressed_by[k]]
+        });
+        let stuck = self.evaluate_impulse_trial(self.impulses_closing_with_workspace(&approach, equations));
         // Nearly dependent rows may have impulses that are worse than none.
-        let stuck = match stuck.worst.0 <= self.largest_rate() * constant(NONSENSE) {
+        let stuck = match stuck.worst.0 <= self.largest_free_contact_velocity() * constant(NONSENSE) {
             true => stuck,
-            false => self.tried_impulses(RowList::repeat_entry(T::zero())),
+            false => self.evaluate_impulse_trial(RowList::repeat_entry(T::zero())),
         };
         match start.filter(|start| !self.is_solved_by(&stuck) && start.worst.0 < stuck.worst.0) {
             Some(start) => start,
@@ -228,11 +233,11 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let iterations = self.iterations.get().saturating_sub(PATIENCE);
         let decades = iterations.div_ceil(PER_DECADE).min(MAX_DECADES);
         let enough = (0..decades).fold(constant::<T>(ENOUGH), |enough, _| enough * constant(10.0));
-        self.is_relaxed && self.size > FEW && trial.worst.0 <= self.largest_rate() * enough
+        self.is_relaxed && self.size > FEW && trial.worst.0 <= self.largest_free_contact_velocity() * enough
     }
 
     /// Returns the contacts that satisfy a condition.
-    fn contacts_where(&self, is_so: impl Fn(usize) -> bool) -> TotalArray<bool, NK> {
+    fn contact_mask_of_condition(&self, is_so: impl Fn(usize) -> bool) -> TotalArray<bool, NK> {
         let mut those = TotalArray::repeat_entry(false);
         for k in 0..self.count {
             those[k] = is_so(k);
@@ -252,7 +257,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Searches impulses by all further methods.
-    fn search_exhaustively(&mut self, start: RowList<T, NR>) -> RowList<T, NR> {
+    fn search_with_all_methods(&mut self, start: RowList<T, NR>) -> RowList<T, NR> {
         let mut impulses = start;
         if self.is_frictionless() {
             impulses = self.active_set_impulses();
@@ -264,13 +269,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let rounds = if is_short { ROUNDS_OF_STEP } else { ROUNDS };
         for round in 0..rounds {
             self.relax_by_gradient(&mut impulses, SWEEPS + round);
-            let relaxed = self.tried_impulses(impulses);
+            let relaxed = self.evaluate_impulse_trial(impulses);
             if self.is_solved_by(&relaxed) {
                 return impulses;
             }
             // The step of the map that leads to the solution differs between problems.
             let scale = SCALES[round % SCALES.len()];
-            let found = self.newton_scaled(STEPS, impulses, scale, &mut zero_matrix());
+            let found = self.newton_with_step_scale(STEPS, impulses, scale, &mut zero_matrix());
             if self.is_solved_by(&found) {
                 return found.impulses;
             }
@@ -287,13 +292,15 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
         // With strong friction, only the set of closed contacts is unknown.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
-            let start = self.impulses_closing(&self.contacts_where(|k| k >= GUESSED || kept >> k & 1 == 1));
-            let guess = self.newton_impulses(self.tried_impulses(start), &mut zero_matrix());
+            let start = self.impulses_enforcing_contacts(
+                &self.contact_mask_of_condition(|k| k >= GUESSED || kept >> k & 1 == 1),
+            );
+            let guess = self.newton_impulses(self.evaluate_impulse_trial(start), &mut zero_matrix());
             if self.is_solved_by(&guess) {
                 return guess.impulses;
             }
         }
-        self.impulses_by_pairs().unwrap_or(impulses)
+        self.impulses_from_sticking_guesses().unwrap_or(impulses)
     }
 
     /// Whether no contact has friction.
@@ -308,9 +315,11 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut impulses = RowList::repeat_entry(T::zero());
         let mut is_in = TotalArray::<bool, NK>::repeat_entry(false);
         for _ in 0..3 * self.count {
-            let rates = self.rates_after(&impulses);
-            let mut entering = (-self.rate_rounding(&impulses), None);
-            for k in (0..self.count).filter(|k| self.is_gap(*k) && self.step[*k] > T::zero() && !is_in[*k]) {
+            let rates = self.contact_velocities_after(&impulses);
+            let mut entering = (-self.contact_velocity_rounding_error(&impulses), None);
+            for k in (0..self.count)
+                .filter(|k| self.has_gap_function(*k) && self.step[*k] > T::zero() && !is_in[*k])
+            {
                 let short = rates[self.rows_of_contact(k).0] - self.least[k];
                 if short < entering.0 {
                     entering = (short, Some(k));
@@ -319,7 +328,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let Some(entering) = entering.1 else { break };
             is_in[entering] = true;
             for _ in 0..self.count {
-                let wanted = self.impulses_closing(&is_in);
+                let wanted = self.impulses_enforcing_contacts(&is_in);
                 // How far the way there leads until the first would pull.
                 let mut part = T::one();
                 for k in (0..self.count).filter(|k| is_in[*k]) {
@@ -351,22 +360,23 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     fn is_solved(&self, impulses: &RowList<T, NR>) -> bool {
-        self.is_solved_by(&self.tried_impulses(*impulses))
+        self.is_solved_by(&self.evaluate_impulse_trial(*impulses))
     }
 
     /// Returns the result of Newton's method after a given number of iterations at most, with a factor of the
     /// steps of the natural map; `matrix` is workspace.
-    fn newton_scaled(
+    fn newton_with_step_scale(
         &mut self,
         steps: usize,
         impulses: RowList<T, NR>,
         scale: f64,
-        matrix: &mut RowMatrix<T, NR>,
+        matrix: &mut ContactRowMatrix<T, NR>,
     ) -> ImpulseTrial<T, NK, NR> {
         self.scale = constant(scale);
-        let found = self.newton_within(steps, self.tried_impulses(impulses), matrix).impulses;
+        let found =
+            self.limited_newton_impulses(steps, self.evaluate_impulse_trial(impulses), matrix).impulses;
         self.scale = T::one();
-        self.tried_impulses(found)
+        self.evaluate_impulse_trial(found)
     }
 
     /// Returns impulses by continuation in the coefficients of friction: from zero in increments to their
@@ -383,15 +393,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 friction
             };
             // What is near already is not left for gradients of strong friction.
-            let near = self.follow_modes(impulses, if part > 1 { &before } else { &self.friction });
+            let near =
+                self.newton_from_previous_modes(impulses, if part > 1 { &before } else { &self.friction });
             if self.is_solved_by(&near) {
                 impulses = near.impulses;
                 continue;
             }
             self.relax_by_gradient(&mut impulses, SWEEPS);
-            let mut best = self.tried_impulses(impulses);
+            let mut best = self.evaluate_impulse_trial(impulses);
             for scale in SCALES {
-                let found = self.newton_scaled(STEPS, best.impulses, scale, &mut zero_matrix());
+                let found = self.newton_with_step_scale(STEPS, best.impulses, scale, &mut zero_matrix());
                 if found.worst.0 < best.worst.0 {
                     best = found;
                 }
@@ -407,15 +418,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns impulses by Newton's method from each guess in which one or two contacts stick, as a body with
     /// many contact points and strong friction rotates about few of them. Of the solutions, the one with the
     /// least energy is returned, so that the result does not depend on the order of the contacts.
-    fn impulses_by_pairs(&self) -> Option<RowList<T, NR>> {
+    fn impulses_from_sticking_guesses(&self) -> Option<RowList<T, NR>> {
         if self.count > PAIRED {
             return None;
         }
         let mut best: Option<(T, RowList<T, NR>)> = None;
         for one in 0..self.count {
             for other in one..self.count {
-                let start = self.impulses_closing(&self.contacts_where(|k| k == one || k == other));
-                let found = self.newton_impulses(self.tried_impulses(start), &mut zero_matrix());
+                let start = self
+                    .impulses_enforcing_contacts(&self.contact_mask_of_condition(|k| k == one || k == other));
+                let found = self.newton_impulses(self.evaluate_impulse_trial(start), &mut zero_matrix());
                 if !self.is_solved_by(&found) {
                     continue;
                 }
@@ -433,7 +445,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns steps for the impulses that are short enough for all contacts to be updated simultaneously:
     /// inverses of sums of block norms of `W`, which do not depend on the directions of the tangents.
-    fn short_steps(&self) -> RowList<T, NR> {
+    fn steps_for_simultaneous_updates(&self) -> RowList<T, NR> {
         let mut steps = RowList::<T, NR>::repeat_entry(T::zero());
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, tangents) = self.rows_of_contact(k);
@@ -441,19 +453,20 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 (0..self.count).fold(T::zero(), |sum, other| {
                     let block_norm = |columns: Range<usize>| {
                         let square = rows.clone().fold(T::zero(), |sum, i| {
-                            columns
-                                .clone()
-                                .fold(sum, |sum, j| sum + self.weight_entry(i, j) * self.weight_entry(i, j))
+                            columns.clone().fold(sum, |sum, j| {
+                                sum + self.delassus_matrix_entry(i, j) * self.delassus_matrix_entry(i, j)
+                            })
                         });
                         square.sqrt()
                     };
                     let (normal, along) = self.rows_of_contact(other);
-                    let pressed = if self.is_gap(other) { block_norm(normal..normal + 1) } else { T::zero() };
+                    let pressed =
+                        if self.has_gap_function(other) { block_norm(normal..normal + 1) } else { T::zero() };
                     sum + pressed + block_norm(along)
                 })
             };
             let inverse_or_zero = |sum: T| if sum > T::zero() { T::one() / sum } else { T::zero() };
-            if self.is_gap(k) {
+            if self.has_gap_function(k) {
                 steps[n] = inverse_or_zero(block_row_norm(n..n + 1));
             }
             let along = inverse_or_zero(block_row_norm(tangents.clone()));
@@ -465,20 +478,20 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Improves impulses by sweeps of projected gradient steps with momentum (Nesterov). All contacts are
     /// updated simultaneously, so that their order has no effect.
     fn relax_by_gradient(&self, impulses: &mut RowList<T, NR>, sweeps: usize) {
-        let steps = self.short_steps();
+        let steps = self.steps_for_simultaneous_updates();
         let (mut ahead, mut pace) = (*impulses, T::one());
         for _ in 0..sweeps {
-            let rates = self.rates_after(&ahead);
+            let rates = self.contact_velocities_after(&ahead);
             let mut next = RowList::repeat_entry(T::zero());
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
                 let (n, _) = self.rows_of_contact(k);
-                if self.is_gap(k) {
+                if self.has_gap_function(k) {
                     next[n] = positive_part(ahead[n] - steps[n] * (rates[n] - self.least[k]));
                 }
             }
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
                 let (n, tangents) = self.rows_of_contact(k);
-                let most = self.friction[k] * self.bearing_impulse(k, next[n]);
+                let most = self.friction[k] * self.friction_bounding_impulse(k, next[n]);
                 let mut wanted = [T::zero(); 2];
                 for (w, i) in wanted.iter_mut().zip(tangents.clone()) {
                     *w = ahead[i] - steps[i] * rates[i];

@@ -8,7 +8,7 @@ use super::super::total::TotalArray;
 use super::banded::set_unit_rows;
 use super::linear::{independence_threshold, zero_matrix};
 use super::trial::ContactMode;
-use super::{ContactProblem, RowList, RowMatrix, entry_or_zero};
+use super::{ContactProblem, ContactRowMatrix, RowList, entry_or_zero};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -24,11 +24,11 @@ const VIOLATED: f64 = 1e-6;
 const LARGEST: f64 = 0.125;
 
 /// Rows of contact velocities.
-pub(in super::super) type ChosenRows<const NR: usize> = TotalArray<bool, NR>;
+pub(in super::super) type ContactRowMask<const NR: usize> = TotalArray<bool, NR>;
 
 /// Friction impulses that a rotation of the slip direction adds, with their derivatives with respect to the
 /// impulses at the start and to the slip velocities.
-pub(in super::super) struct RotatedFriction<T, const NR: usize> {
+pub(in super::super) struct SlipRotationImpulses<T, const NR: usize> {
     /// Half of the difference of the friction impulses from those against the slip velocities, for contacts
     /// that slide throughout the step; zero in the other rows.
     pub(in super::super) impulses: SVector<T, NR>,
@@ -40,11 +40,11 @@ pub(in super::super) struct RotatedFriction<T, const NR: usize> {
 
 /// Linear equations `system δΛ = wanted δE` of the impulses, with the contact velocities `E` without them.
 pub(in super::super) struct LinearisedImpulses<T, const NR: usize> {
-    system: RowMatrix<T, NR>,
-    wanted: RowMatrix<T, NR>,
+    system: ContactRowMatrix<T, NR>,
+    wanted: ContactRowMatrix<T, NR>,
     /// Triangular factors of the system, with a small addition to the diagonal if rows depend on each other,
     /// and the row of each pivot.
-    factors: RowMatrix<T, NR>,
+    factors: ContactRowMatrix<T, NR>,
     pivots: RowList<usize, NR>,
     is_dependent: bool,
     places: RowList<usize, NR>,
@@ -101,7 +101,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
     }
 
     /// Solves for right-hand sides in place, with the factors.
-    fn substitute_factors<const C: usize>(&self, right: &mut TotalArray<[T; C], NR>) {
+    fn solve_with_stored_factors<const C: usize>(&self, right: &mut TotalArray<[T; C], NR>) {
         let subtract_multiple = |from: &mut [T; C], factor: T, row: &[T; C]| {
             from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
         };
@@ -143,7 +143,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
             }
         }
         let mut changes = right;
-        self.substitute_factors(&mut changes);
+        self.solve_with_stored_factors(&mut changes);
         for _ in 1..if self.is_dependent { PASSES } else { 1 } {
             let mut left = right;
             for (left, row) in left.iter_mut().zip(self.system.iter()).take(self.size) {
@@ -151,7 +151,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
                     left.iter_mut().zip(change).for_each(|(left, change)| *left -= *factor * *change);
                 }
             }
-            self.substitute_factors(&mut left);
+            self.solve_with_stored_factors(&mut left);
             for (change, more) in changes.iter_mut().zip(left.iter()) {
                 change.iter_mut().zip(more).for_each(|(change, more)| *change += *more);
             }
@@ -174,12 +174,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// The contact with Poisson's restitution, or the one that violates the contact conditions most if the
     /// violation is larger than the errors of the search.
     pub(in super::super) fn check_derivatives(&self, impulses: &RowList<T, NR>) -> Result<(), usize> {
-        if self.is_compressed {
-            let is_compressed = |k: &usize| self.compression[self.rows[*k].first] > T::zero();
-            return Err(self.contacts[(0..self.count).find(is_compressed).unwrap_or_default()].0);
+        if self.is_contact_compressed {
+            let is_contact_compressed = |k: &usize| self.compression[self.rows[*k].first] > T::zero();
+            return Err(self.contacts[(0..self.count).find(is_contact_compressed).unwrap_or_default()].0);
         }
-        let is_solved = self.violation <= self.largest_rate() * constant(VIOLATED);
-        if is_solved { Ok(()) } else { Err(self.contacts[self.tried_impulses(*impulses).worst.1].0) }
+        let is_solved = self.violation <= self.largest_free_contact_velocity() * constant(VIOLATED);
+        if is_solved { Ok(()) } else { Err(self.contacts[self.evaluate_impulse_trial(*impulses).worst.1].0) }
     }
 
     /// Returns the linearised equations of impulses, and true if no contact slides or separates. A contact
@@ -188,14 +188,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         &self,
         impulses: &RowList<T, NR>,
     ) -> (LinearisedImpulses<T, NR>, bool) {
-        let rates = self.rates_after(impulses);
+        let rates = self.contact_velocities_after(impulses);
         let modes = self.natural_map_modes(&self.friction, impulses, &rates);
-        let still = self.rate_rounding(impulses);
+        let still = self.contact_velocity_rounding_error(impulses);
         let mut equations = LinearisedImpulses::new(self.places, self.size);
-        let (mut held, mut is_whole) = (ChosenRows::repeat_entry(false), true);
+        let (mut held, mut is_whole) = (ContactRowMask::repeat_entry(false), true);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, tangents) = self.rows_of_contact(k);
-            if self.is_gap(k) {
+            if self.has_gap_function(k) {
                 held[n] = modes[k].0 > T::zero();
                 is_whole &= held[n];
             }
@@ -206,14 +206,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             match modes[k].1 {
                 ContactMode::Open => is_whole = false,
                 ContactMode::Slip { direction, .. } if speed > still => {
-                    let largest = self.friction[k] * self.bearing_impulse(k, impulses[n]);
+                    let largest = self.friction[k] * self.friction_bounding_impulse(k, impulses[n]);
                     self.write_sliding_equations(k, (direction, largest / speed), &mut equations);
                     is_whole = false;
                 }
                 _ => tangents.for_each(|i| held[i] = true),
             }
         }
-        self.add_held_rows(&held, &mut equations);
+        self.factorise_held_row_equations(&held, &mut equations);
         (equations, is_whole)
     }
 
@@ -233,31 +233,35 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             for (j, other) in others.zip(direction) {
                 let across = (if i == j { T::one() } else { T::zero() } - d * other) * ratio;
                 wanted[i][j] -= across;
-                (0..self.size).for_each(|column| system[i][column] += across * self.weight_entry(j, column));
+                (0..self.size)
+                    .for_each(|column| system[i][column] += across * self.delassus_matrix_entry(j, column));
             }
         }
     }
 
     /// Returns the equations of impulses that keep the contact velocities of chosen rows constant; of least
     /// norm if these rows depend on each other.
-    pub(in super::super) fn constant_rates(&self, held: &ChosenRows<NR>) -> LinearisedImpulses<T, NR> {
+    pub(in super::super) fn velocity_preserving_equations(
+        &self,
+        held: &ContactRowMask<NR>,
+    ) -> LinearisedImpulses<T, NR> {
         let mut equations = LinearisedImpulses::new(self.places, self.size);
-        self.add_held_rows(held, &mut equations);
+        self.factorise_held_row_equations(held, &mut equations);
         equations
     }
 
     /// Returns all rows in which contacts can have impulses.
-    pub(in super::super) fn all_rows(&self) -> ChosenRows<NR> {
-        let mut rows = ChosenRows::repeat_entry(false);
+    pub(in super::super) fn chosen_rows_with_impulses(&self) -> ContactRowMask<NR> {
+        let mut rows = ContactRowMask::repeat_entry(false);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, _) = self.rows_of_contact(k);
-            self.all_rows_of(k).for_each(|i| rows[i] = i == n || self.friction[k] > T::zero());
+            self.all_rows_of_contact(k).for_each(|i| rows[i] = i == n || self.friction[k] > T::zero());
         }
         rows
     }
 
     /// Returns the diagonal matrix that is one at chosen rows.
-    pub(in super::super) fn diagonal_of_rows(&self, held: &ChosenRows<NR>) -> SMatrix<T, NR, NR> {
+    pub(in super::super) fn indicator_matrix_of_rows(&self, held: &ContactRowMask<NR>) -> SMatrix<T, NR, NR> {
         let mut chosen = SVector::<T, NR>::zeros();
         for i in (0..self.size).filter(|i| held[*i]) {
             super::set_entry(&mut chosen, self.places[i], T::one());
@@ -266,15 +270,19 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns impulses, without those of compression, at the rows of the mechanism.
-    pub(in super::super) fn spread_without_compression(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
-        self.spread_to_mechanism_rows(impulses)
+    pub(in super::super) fn impulses_without_compression(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
+        self.values_at_mechanism_rows(impulses)
     }
 
     /// Adds the equations `W δΛ = −δE` at the rows `held`, and factorises the system.
-    fn add_held_rows(&self, held: &ChosenRows<NR>, equations: &mut LinearisedImpulses<T, NR>) {
+    fn factorise_held_row_equations(
+        &self,
+        held: &ContactRowMask<NR>,
+        equations: &mut LinearisedImpulses<T, NR>,
+    ) {
         let mut count = 0;
         for i in (0..self.size).filter(|i| held[*i]) {
-            (0..self.size).for_each(|j| equations.system[i][j] = self.weight_entry(i, j));
+            (0..self.size).for_each(|j| equations.system[i][j] = self.delassus_matrix_entry(i, j));
             equations.wanted[i][i] = -T::one();
             count += 1;
         }
@@ -282,7 +290,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         equations.is_dependent = count > self.velocities || !equations.factorise_with_pivots();
         if equations.is_dependent {
             equations.factors = equations.system;
-            let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
+            let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.delassus_matrix_entry(i, i)));
             for i in (0..self.size).filter(|i| held[*i]) {
                 equations.factors[i][i] += reach * constant(LIFT);
             }
@@ -292,13 +300,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns half of the difference of friction impulses from those against the slip velocities `slip`, for
     /// contacts that slide throughout a step, with its derivatives; as `transport` determines it.
-    pub(in super::super) fn rotated_friction(
+    pub(in super::super) fn friction_correction_for_rotation(
         &self,
         impulses: &SVector<T, NR>,
         slip: &SVector<T, NR>,
-    ) -> RotatedFriction<T, NR> {
+    ) -> SlipRotationImpulses<T, NR> {
         let (impulses, slip) = (self.gather_closed_rows(impulses), self.gather_closed_rows(slip));
-        let mut found = RotatedFriction {
+        let mut found = SlipRotationImpulses {
             impulses: SVector::zeros(),
             by_impulses: SMatrix::zeros(),
             by_slip: SMatrix::zeros(),
@@ -308,28 +316,42 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let (n, tangents) = self.rows_of_contact(k);
             let largest = self.friction[k] * impulses[n];
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip[i] * slip[i]).sqrt();
-            let difference_across = |i: usize| impulses[i] + largest * slip[i] / speed;
+            let deviation_from_sliding_friction = |i: usize| impulses[i] + largest * slip[i] / speed;
             let size = tangents
                 .clone()
-                .fold(T::zero(), |sum, i| sum + difference_across(i) * difference_across(i))
+                .fold(T::zero(), |sum, i| {
+                    sum + deviation_from_sliding_friction(i) * deviation_from_sliding_friction(i)
+                })
                 .sqrt();
             let slides = largest > T::zero() && speed * self.step[k] > largest;
             if !slides || size > largest * constant(LARGEST) {
                 continue;
             }
-            let mechanism_place = |i: usize, j: usize| (self.places[i], self.places[j]);
+            let mechanism_row_and_column = |i: usize, j: usize| (self.places[i], self.places[j]);
             for i in tangents.clone() {
                 let along = slip[i] / speed;
-                put_entry(&mut found.by_impulses, mechanism_place(i, i), half);
-                put_entry(&mut found.by_impulses, mechanism_place(i, n), half * self.friction[k] * along);
+                set_matrix_entry(&mut found.by_impulses, mechanism_row_and_column(i, i), half);
+                set_matrix_entry(
+                    &mut found.by_impulses,
+                    mechanism_row_and_column(i, n),
+                    half * self.friction[k] * along,
+                );
                 for j in tangents.clone() {
                     let delta = if i == j { T::one() } else { T::zero() };
                     let across = delta - along * slip[j] / speed;
-                    put_entry(&mut found.by_slip, mechanism_place(i, j), half * largest / speed * across);
+                    set_matrix_entry(
+                        &mut found.by_slip,
+                        mechanism_row_and_column(i, j),
+                        half * largest / speed * across,
+                    );
                 }
             }
             for i in tangents {
-                super::set_entry(&mut found.impulses, self.places[i], difference_across(i) * half);
+                super::set_entry(
+                    &mut found.impulses,
+                    self.places[i],
+                    deviation_from_sliding_friction(i) * half,
+                );
             }
         }
         found
@@ -337,9 +359,9 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns, for each contact whose restitution demands a normal velocity, the row of the mechanism and
     /// the derivative of that velocity with respect to the normal velocity before.
-    pub(in super::super) fn rebound_factors(&self, before: &SVector<T, NR>) -> SVector<T, NR> {
+    pub(in super::super) fn restitution_derivatives(&self, before: &SVector<T, NR>) -> SVector<T, NR> {
         let mut factors = SVector::zeros();
-        for k in (0..self.count).filter(|k| self.is_gap(*k) && self.least[*k] > T::zero()) {
+        for k in (0..self.count).filter(|k| self.has_gap_function(*k) && self.least[*k] > T::zero()) {
             let row = self.places[self.rows[k].first];
             super::set_entry(&mut factors, row, self.least[k] / entry_or_zero(before, row));
         }
@@ -353,14 +375,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         impulses: &RowList<T, NR>,
         (gaps, near, reach): (&SVector<T, NK>, T, T),
         pushes: Option<&SVector<T, NR>>,
-    ) -> (ChosenRows<NR>, ChosenRows<NR>) {
-        let rates = self.rates_after(impulses);
-        let rest = self.rate_rounding(impulses).max(self.violation) * constant(super::ROUNDINGS);
+    ) -> (ContactRowMask<NR>, ContactRowMask<NR>) {
+        let rates = self.contact_velocities_after(impulses);
+        let rest =
+            self.contact_velocity_rounding_error(impulses).max(self.violation) * constant(super::ROUNDINGS);
         let enough = (near * constant(1e-2)).max(epsilon::<T>() * constant(16.0));
         let pushes = pushes.map(|pushes| self.gather_closed_rows(pushes));
-        let moved = pushes.map(|pushes| self.velocity_changes(&pushes));
-        let (mut closed, mut kept) = (ChosenRows::repeat_entry(false), ChosenRows::repeat_entry(false));
-        for k in (0..self.count).filter(|k| self.is_gap(*k) && self.step[*k] > T::zero()) {
+        let moved = pushes.map(|pushes| self.contact_velocity_changes(&pushes));
+        let (mut closed, mut kept) =
+            (ContactRowMask::repeat_entry(false), ContactRowMask::repeat_entry(false));
+        for k in (0..self.count).filter(|k| self.has_gap_function(*k) && self.step[*k] > T::zero()) {
             let (n, gap) = (self.rows[k].first, entry_or_zero(gaps, self.contacts[k].0));
             let push = pushes.map_or(T::zero(), |pushes| pushes[n]);
             let left = gap + moved.map_or(T::zero(), |moved| moved[n]);
@@ -374,7 +398,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 }
 
 /// Sets an entry of a matrix; past the end it does nothing.
-fn put_entry<T: Real, const N: usize>(matrix: &mut SMatrix<T, N, N>, place: (usize, usize), value: T) {
+fn set_matrix_entry<T: Real, const N: usize>(matrix: &mut SMatrix<T, N, N>, place: (usize, usize), value: T) {
     if let Some(entry) = matrix.get_mut(place) {
         *entry = value;
     }

@@ -1,7 +1,7 @@
 //! Contact forces that rotate in a step: corrections that make the impulses of a step of second order.
 
 use super::super::response::{CholeskyFactor, ImpulseEffects};
-use super::convex::{cholesky_in_place, substitute_factor};
+use super::convex::{cholesky_in_place, solve_by_cholesky_factor};
 use super::linear::{ImpulseEquations, zero_matrix};
 use super::{ContactProblem, RowList, entry_or_zero};
 use crate::Real;
@@ -26,7 +26,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ///
     /// Returns impulses at the end of the step that change the rates as much as `Λ₀`, and the correction. If
     /// the search has other impulses to begin at, they may be left out.
-    pub(in super::super) fn correct_for_rotation<const NV: usize>(
+    pub(in super::super) fn correct_velocity_for_rotation<const NV: usize>(
         &mut self,
         given: &SVector<T, NV>,
         (rates, recorded): (&SVector<T, NR>, Option<&RowList<T, NR>>),
@@ -35,32 +35,39 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ) -> (Option<RowList<T, NR>>, SVector<T, NV>) {
         let half = constant::<T>(0.5);
         let mut impulses = None;
-        let sliding = recorded.filter(|recorded| self.slip_correction(recorded, rates).is_some());
-        let is_redundant = self.size > self.basis.column_count();
+        let sliding =
+            recorded.filter(|recorded| self.friction_correction_for_slip_change(recorded, rates).is_some());
+        let has_nonunique_contact_forces = self.size > self.basis.column_count();
         let (mut correction, changes) = match effects {
-            ImpulseEffects::Factor(factor) if recorded.is_some() && sliding.is_none() && is_redundant => {
-                self.unreached_velocity(given, factor)
+            ImpulseEffects::Factor(factor)
+                if recorded.is_some() && sliding.is_none() && has_nonunique_contact_forces =>
+            {
+                self.velocity_unreachable_by_impulses(given, factor)
             }
             _ => {
-                let (found, is_regular) = self.impulses_for(rates, equations);
+                let (found, is_regular) = self.impulses_for_contact_changes(rates, equations);
                 impulses = Some(found);
                 let velocity_by_impulses =
-                    |impulses| effects.velocity_change(&self.basis, &self.spread_to_mechanism_rows(impulses));
+                    |impulses| effects.velocity_change(&self.basis, &self.values_at_mechanism_rows(impulses));
                 let mut correction = (given - velocity_by_impulses(&found)) * half;
                 let mut changes = RowList::<T, NR>::repeat_entry(T::zero());
                 if !is_regular {
-                    let changed = self.velocity_changes(&found);
+                    let changed = self.contact_velocity_changes(&found);
                     for i in 0..self.size {
                         changes[i] = (entry_or_zero(rates, self.places[i]) - changed[i]) * half;
                     }
                 }
                 let at_start = match is_regular {
                     true => Some(found),
-                    false => sliding.map(|recorded| self.nearest_impulses(recorded, rates, equations)),
+                    false => {
+                        sliding.map(|recorded| self.impulses_for_velocity_change(recorded, rates, equations))
+                    }
                 };
-                if let Some(turned) = at_start.and_then(|at_start| self.slip_correction(&at_start, rates)) {
+                if let Some(turned) =
+                    at_start.and_then(|at_start| self.friction_correction_for_slip_change(&at_start, rates))
+                {
                     correction += velocity_by_impulses(&turned);
-                    changes = self.add_velocity_changes(changes, &turned);
+                    changes = self.velocities_after_impulses(changes, &turned);
                 }
                 (correction, changes)
             }
@@ -82,19 +89,19 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ///
     /// With `w = Lᵀ v`, what two passes of a regularised least-squares problem leave of it is
     /// `(1 + Bᵀ R⁻¹ B)⁻² w`, with the small regularisation `R` of dependent rows.
-    fn unreached_velocity<const NV: usize>(
+    fn velocity_unreachable_by_impulses<const NV: usize>(
         &self,
         v: &SVector<T, NV>,
         factor: &CholeskyFactor<T, NV>,
     ) -> (SVector<T, NV>, RowList<T, NR>) {
         let (rank, half) = (self.basis.column_count(), constant::<T>(0.5));
         let mut matrix = zero_matrix();
-        self.fill_regularised(&mut matrix);
+        self.fill_regularised_matrix(&mut matrix);
         cholesky_in_place(&mut matrix, rank);
         let mut all = factor.multiply_upper(&v.data.0[0]);
-        let mut rest = self.basis.velocities_of_columns(&all);
-        substitute_factor(&matrix, rank, &mut rest);
-        substitute_factor(&matrix, rank, &mut rest);
+        let mut rest = self.basis.entries_at_basis_columns(&all);
+        solve_by_cholesky_factor(&matrix, rank, &mut rest);
+        solve_by_cholesky_factor(&matrix, rank, &mut rest);
         rest.iter_mut().take(rank).for_each(|x| *x *= half);
         all.iter_mut().for_each(|x| *x *= half);
         self.basis.write_all_velocities(&rest, &mut all);
@@ -102,14 +109,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     }
 
     /// Returns impulses near others that change the rates of the mechanism by `rates`.
-    fn nearest_impulses(
+    fn impulses_for_velocity_change(
         &self,
         others: &RowList<T, NR>,
         rates: &SVector<T, NR>,
         equations: &mut ImpulseEquations<T, NR>,
     ) -> RowList<T, NR> {
-        let missing = rates - self.spread_to_mechanism_rows(&self.velocity_changes(others));
-        let (mut all, _) = self.impulses_for(&missing, equations);
+        let missing = rates - self.values_at_mechanism_rows(&self.contact_velocity_changes(others));
+        let (mut all, _) = self.impulses_for_contact_changes(&missing, equations);
         all.iter_mut().zip(others.iter()).for_each(|(impulse, other)| *impulse += *other);
         all
     }
@@ -127,12 +134,18 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Impulses that change the rates of the mechanism by `changes`.
     pub(in super::super) fn impulses_for_changes(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
-        self.spread_to_mechanism_rows(&self.impulses_for(changes, &mut ImpulseEquations::new()).0)
+        self.values_at_mechanism_rows(
+            &self.impulses_for_contact_changes(changes, &mut ImpulseEquations::new()).0,
+        )
     }
 
     /// Half of the difference of friction impulses from those against the slip at the end of the step, for
     /// contacts that slip on throughout it; none if there are no such contacts.
-    fn slip_correction(&self, impulses: &RowList<T, NR>, rates: &SVector<T, NR>) -> Option<RowList<T, NR>> {
+    fn friction_correction_for_slip_change(
+        &self,
+        impulses: &RowList<T, NR>,
+        rates: &SVector<T, NR>,
+    ) -> Option<RowList<T, NR>> {
         let (mut turned, mut is_any) = (RowList::repeat_entry(T::zero()), false);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
             let (n, tangents) = self.rows_of_contact(k);
@@ -145,13 +158,15 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             if !slides {
                 continue;
             }
-            let difference_across = |i: usize| impulses[i] + largest * slip_at_end(i) / speed;
+            let deviation_from_sliding_friction = |i: usize| impulses[i] + largest * slip_at_end(i) / speed;
             let size = tangents
                 .clone()
-                .fold(T::zero(), |sum, i| sum + difference_across(i) * difference_across(i))
+                .fold(T::zero(), |sum, i| {
+                    sum + deviation_from_sliding_friction(i) * deviation_from_sliding_friction(i)
+                })
                 .sqrt();
             if size <= largest * constant(LARGEST) {
-                tangents.for_each(|i| turned[i] = difference_across(i) * constant(0.5));
+                tangents.for_each(|i| turned[i] = deviation_from_sliding_friction(i) * constant(0.5));
                 is_any = true;
             }
         }

@@ -35,12 +35,12 @@ pub(super) struct ImpulseTrial<T, const NK: usize, const NR: usize> {
 
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns impulses with the contact velocities after them, and their residuals.
-    pub(super) fn tried_impulses(&self, impulses: RowList<T, NR>) -> ImpulseTrial<T, NK, NR> {
-        self.tried_with(impulses, self.rates_after(&impulses))
+    pub(super) fn evaluate_impulse_trial(&self, impulses: RowList<T, NR>) -> ImpulseTrial<T, NK, NR> {
+        self.trial_with_residuals(impulses, self.contact_velocities_after(&impulses))
     }
 
     /// Returns impulses and given contact velocities after them, with their residuals.
-    pub(super) fn tried_with(
+    pub(super) fn trial_with_residuals(
         &self,
         impulses: RowList<T, NR>,
         rates: RowList<T, NR>,
@@ -51,7 +51,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let step = self.step[k] * self.scale;
             let left = if step == T::zero() {
                 // Nothing that impulses could do.
-                if self.is_gap(k) {
+                if self.has_gap_function(k) {
                     positive_part(self.least[k] - rates[self.rows[k].first])
                 } else {
                     T::zero()
@@ -74,7 +74,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// impulses never count as a solution.
     pub(super) fn is_solved_by(&self, trial: &ImpulseTrial<T, NK, NR>) -> bool {
         let left = trial.worst.0;
-        left <= self.largest_rate() * epsilon::<T>().sqrt() && left <= self.rate_rounding(&trial.impulses)
+        left <= self.largest_free_contact_velocity() * epsilon::<T>().sqrt()
+            && left <= self.contact_velocity_rounding_error(&trial.impulses)
     }
 
     /// Returns the contact modes in the natural map with these coefficients of friction.
@@ -100,8 +101,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ) -> (T, ContactMode<T>) {
         let (n, tangents) = self.rows_of_contact(k);
         let step = self.step[k] * self.scale;
-        let normal = impulses[n] - self.normal_step(k) * (rates[n] - self.least[self.pressed_by[k]]);
-        let bearing = self.bearing_impulse(k, normal);
+        let normal = impulses[n] - self.normal_impulse_step(k) * (rates[n] - self.least[self.pressed_by[k]]);
+        let bearing = self.friction_bounding_impulse(k, normal);
         if bearing <= T::zero() || step == T::zero() {
             return (normal, ContactMode::Open);
         }
@@ -128,7 +129,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         rates: &RowList<T, NR>,
     ) -> [T; 3] {
         let (n, tangents) = self.rows_of_contact(k);
-        let pressed = if self.is_gap(k) { impulses[n] - positive_part(normal) } else { T::zero() };
+        let pressed = if self.has_gap_function(k) { impulses[n] - positive_part(normal) } else { T::zero() };
         let mut map = [pressed, T::zero(), T::zero()];
         for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {
             *entry = match mode {
@@ -136,7 +137,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 ContactMode::Stick => self.step[k] * self.scale * rates[i],
                 ContactMode::Slip { direction, .. } => {
                     let friction = self.friction[k];
-                    let most = friction * self.bearing_impulse(k, normal);
+                    let most = friction * self.friction_bounding_impulse(k, normal);
                     (impulses[i] - direction_component(&direction, c) * most) / friction.max(T::one())
                 }
             };

@@ -8,7 +8,7 @@ use crate::private::constant;
 
 /// Returns one Dormand–Prince step of length `h` that ends at `t`, computed by seven stages (Hairer, Nørsett
 /// and Wanner, II, table 5.2 and (6.12)).
-pub(super) fn step_stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn dormand_prince_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &TrialStep<'_, T, NQ, NV>,
 ) -> StepTrial<T, NQ, NV> {

@@ -5,7 +5,7 @@ use super::avx512::{self, Avx512};
 use crate::Real;
 use crate::arithmetic::Compiled;
 use crate::lanes::registers::{Registers, VectorLoop};
-use crate::trigonometry::{self, LARGEST, same_type_reference};
+use crate::trigonometry::{self, LARGEST, reference_if_same_type};
 use core::any::TypeId;
 use core::arch::x86_64::*;
 use core::mem::transmute;
@@ -33,7 +33,7 @@ pub(crate) fn has_faster_instructions<T: Real>() -> bool {
 macro_rules! registers {
     ([$number:ident; $lanes:literal] as [$register:ident; $count:literal]: ($($a:ident)+) => $f:expr) => {
         if N == $lanes
-            && let ($(Some($a),)+) = ($(same_type_reference::<_, [$number; $lanes]>($a),)+)
+            && let ($(Some($a),)+) = ($(reference_if_same_type::<_, [$number; $lanes]>($a),)+)
         {
             // SAFETY: numbers and registers have the same bits; the processor has the instructions.
             let result: [$number; $lanes] = unsafe {
@@ -45,7 +45,7 @@ macro_rules! registers {
                 }
                 transmute(result)
             };
-            if let Some(result) = same_type_reference(&result) {
+            if let Some(result) = reference_if_same_type(&result) {
                 return *result;
             }
         }
@@ -123,9 +123,9 @@ mod with_features {
             ($lanes:literal in $count:literal) => {
                 if L == $lanes
                     && let (Some(s), Some(c), Some(shifted)) = (
-                        same_type_reference::<_, [f64; $lanes]>(s),
-                        same_type_reference::<_, [f64; $lanes]>(c),
-                        same_type_reference::<_, [f64; $lanes]>(shifted),
+                        reference_if_same_type::<_, [f64; $lanes]>(s),
+                        reference_if_same_type::<_, [f64; $lanes]>(c),
+                        reference_if_same_type::<_, [f64; $lanes]>(shifted),
                     )
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
@@ -135,13 +135,13 @@ mod with_features {
                         let shifted: [__m256i; $count] = transmute(*shifted);
                         let (mut sines, mut cosines) = (s, c);
                         for k in 0..$count {
-                            [sines[k], cosines[k]] = turned_register(s[k], c[k], shifted[k]);
+                            [sines[k], cosines[k]] = rotate_quadrant_in_register(s[k], c[k], shifted[k]);
                         }
                         let sines: [f64; $lanes] = transmute(sines);
                         let cosines: [f64; $lanes] = transmute(cosines);
                         [sines, cosines]
                     };
-                    if let Some(result) = same_type_reference(&result) {
+                    if let Some(result) = reference_if_same_type(&result) {
                         return *result;
                     }
                 }
@@ -160,11 +160,11 @@ mod with_features {
 
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+    pub(super) fn are_angles_in_fast_range<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
         macro_rules! case {
             ($lanes:literal in $count:literal) => {
                 if L == $lanes
-                    && let Some(x) = same_type_reference::<_, [[f64; $lanes]; N]>(x)
+                    && let Some(x) = reference_if_same_type::<_, [[f64; $lanes]; N]>(x)
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
                     return unsafe {
@@ -185,7 +185,7 @@ mod with_features {
         }
         case!(4 in 1);
         case!(8 in 2);
-        Compiled::are_small(x)
+        Compiled::are_angles_in_fast_range(x)
     }
 }
 
@@ -220,9 +220,9 @@ impl Registers for Avx2 {
     }
 
     #[inline(always)]
-    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+    fn are_angles_in_fast_range<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
         // SAFETY: the processor has the instructions.
-        unsafe { with_features::are_small(x) }
+        unsafe { with_features::are_angles_in_fast_range(x) }
     }
 
     #[inline(always)]
@@ -236,14 +236,14 @@ impl Registers for Avx2 {
 #[inline(never)]
 #[target_feature(enable = "avx2,fma")]
 fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
-    trigonometry::sin_cos_with_large_angles::<Avx2, N>(x)
+    trigonometry::sin_cos_with_library_fallback::<Avx2, N>(x)
 }
 
 /// Converts sine and cosine of the reduced angle to those of the angle by its quadrant. An odd quadrant
 /// exchanges sine and cosine, and bits of the quadrant determine their signs.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-fn turned_register(s: __m256d, c: __m256d, quadrant: __m256i) -> [__m256d; 2] {
+fn rotate_quadrant_in_register(s: __m256d, c: __m256d, quadrant: __m256i) -> [__m256d; 2] {
     let sign = _mm256_set1_pd(-0.0);
     // Only the first bit of each number is used.
     let odd = _mm256_castsi256_pd(_mm256_slli_epi64::<63>(quadrant));

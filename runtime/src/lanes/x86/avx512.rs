@@ -5,7 +5,7 @@
 use super::avx2::Avx2;
 use crate::Real;
 use crate::lanes::registers::{Registers, VectorLoop};
-use crate::trigonometry::same_type_reference;
+use crate::trigonometry::reference_if_same_type;
 use core::arch::x86_64::*;
 use core::mem::transmute;
 
@@ -32,13 +32,13 @@ mod with_features {
             #[inline]
             #[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
             pub(super) fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
-                if let ($(Some($a),)+) = ($(same_type_reference::<_, [f64; 8]>($a),)+) {
+                if let ($(Some($a),)+) = ($(reference_if_same_type::<_, [f64; 8]>($a),)+) {
                     // SAFETY: numbers and registers have the same bits.
                     let result: [f64; 8] = unsafe {
                         $(let $a: __m512d = transmute(*$a);)+
                         transmute($f)
                     };
-                    if let Some(result) = same_type_reference(&result) {
+                    if let Some(result) = reference_if_same_type(&result) {
                         return *result;
                     }
                 }
@@ -105,8 +105,8 @@ impl Registers for Avx512 {
     }
 
     #[inline(always)]
-    fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
-        Avx2::are_small(x)
+    fn are_angles_in_fast_range<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool {
+        Avx2::are_angles_in_fast_range(x)
     }
 
     #[inline(always)]

@@ -16,52 +16,60 @@ fn euler_sequences_match_reference_table() {
         let [m0, m1, m2] = row.matrix.map(nalgebra::RowVector3::from);
         let matrix = Matrix3::from_rows(&[m0, m1, m2]);
         let rotation = sequence.rotation(ANGLES);
-        assert_below(largest_entry_difference(rotation.matrix(), &matrix), 3e-16, name);
+        assert_error_below_bound(largest_entry_difference(rotation.matrix(), &matrix), 3e-16, name);
 
         let [w, x, y, z] = row.quaternion;
         let quaternion = shorter(&sequence.quaternion(ANGLES));
         let expected = Quaternion::new(w, x, y, z);
-        assert_below(largest_entry_difference(&quaternion.coords, &expected.coords), 3e-16, name);
-        assert_below(
+        assert_error_below_bound(largest_entry_difference(&quaternion.coords, &expected.coords), 3e-16, name);
+        assert_error_below_bound(
             largest_entry_difference(&quaternion_of_rotation(&rotation).coords, &expected.coords),
             3e-16,
             name,
         );
-        assert_below(
+        assert_error_below_bound(
             largest_entry_difference(quaternion.to_rotation_matrix().matrix(), &matrix),
             1e-15,
             name,
         );
 
         let vector = Vector3::from(row.rotation_vector);
-        assert_below(
+        assert_error_below_bound(
             largest_entry_difference(&RotationVector::from_rotation(&rotation).0, &vector),
             1e-15,
             name,
         );
-        assert_below(
+        assert_error_below_bound(
             largest_entry_difference(&RotationVector::from_quaternion(&quaternion).0, &vector),
             1e-15,
             name,
         );
-        assert_below(
+        assert_error_below_bound(
             largest_entry_difference(RotationVector(vector).rotation().matrix(), &matrix),
             1e-15,
             name,
         );
 
         let (body, space) = (Vector3::from(row.omega_body), Vector3::from(row.omega_space));
-        assert_below(largest_entry_difference(&sequence.omega_body(ANGLES, RATES), &body), 5e-16, name);
-        assert_below(largest_entry_difference(&sequence.omega_space(ANGLES, RATES), &space), 5e-16, name);
+        assert_error_below_bound(
+            largest_entry_difference(&sequence.omega_body(ANGLES, RATES), &body),
+            5e-16,
+            name,
+        );
+        assert_error_below_bound(
+            largest_entry_difference(&sequence.omega_space(ANGLES, RATES), &space),
+            5e-16,
+            name,
+        );
         for found in [sequence.rates_from_body(ANGLES, &body), sequence.rates_from_space(ANGLES, &space)] {
-            assert_below(angle_difference(found.unwrap(), RATES), 1e-15, name);
+            assert_error_below_bound(largest_euler_angle_difference(found.unwrap(), RATES), 1e-15, name);
         }
 
         let found = sequence.angles(&rotation);
         assert!(!found.singular);
         // The symmetric sequences have the negative middle angle in their second solution.
         let angles = if sequence.is_symmetric() { sequence.other_angles(found.angles) } else { found.angles };
-        assert_below(angle_difference(angles, ANGLES), 1e-15, name);
+        assert_error_below_bound(largest_euler_angle_difference(angles, ANGLES), 1e-15, name);
     }
 }
 
@@ -88,14 +96,18 @@ fn sequence_is_product_of_axis_rotations() {
                 FixedIn::Space => c_turn * b_turn * a_turn,
             };
             let rotation = sequence.rotation([a, b, c]);
-            assert_below(largest_entry_difference(rotation.matrix(), product.matrix()), 4e-16, sequence);
+            assert_error_below_bound(
+                largest_entry_difference(rotation.matrix(), product.matrix()),
+                4e-16,
+                sequence,
+            );
             let quaternion = sequence.quaternion([a, b, c]);
-            assert_below(
+            assert_error_below_bound(
                 largest_entry_difference(quaternion.to_rotation_matrix().matrix(), product.matrix()),
                 1e-15,
                 sequence,
             );
-            assert_below((quaternion.norm() - 1.0).abs(), 5e-16, sequence);
+            assert_error_below_bound((quaternion.norm() - 1.0).abs(), 5e-16, sequence);
         }
     }
 }
@@ -111,19 +123,23 @@ fn euler_angles_reproduce_random_rotations() {
             assert!(!found.singular && a.abs() <= PI && c.abs() <= PI);
             let range = if sequence.is_symmetric() { 0.0..=PI } else { -FRAC_PI_2..=FRAC_PI_2 };
             assert!(range.contains(&b), "{sequence} {b}");
-            assert_below(
+            assert_error_below_bound(
                 largest_entry_difference(sequence.rotation(found.angles).matrix(), rotation.matrix()),
                 1.5e-15,
                 sequence,
             );
             let other = sequence.other_angles(found.angles);
             assert!(other.iter().all(|t| t.abs() <= PI));
-            assert_below(
+            assert_error_below_bound(
                 largest_entry_difference(sequence.rotation(other).matrix(), rotation.matrix()),
                 2e-15,
                 sequence,
             );
-            assert_below(angle_difference(sequence.other_angles(other), found.angles), 1e-15, sequence);
+            assert_error_below_bound(
+                largest_euler_angle_difference(sequence.other_angles(other), found.angles),
+                1e-15,
+                sequence,
+            );
         }
     }
 }
@@ -145,7 +161,7 @@ fn angles_near_gimbal_lock_reproduce_rotation() {
                 let rotation = sequence.rotation([a, middle, c]);
                 let found = sequence.angles(&rotation);
                 let back = sequence.rotation(found.angles);
-                assert_below(
+                assert_error_below_bound(
                     largest_entry_difference(back.matrix(), rotation.matrix()),
                     2.5e-15,
                     (sequence, middle, a, c, found),
@@ -153,13 +169,13 @@ fn angles_near_gimbal_lock_reproduce_rotation() {
 
                 let sine = if sequence.is_symmetric() { middle.sin() } else { middle.cos() };
                 let [_, b, third] = found.angles;
-                assert_below((b - middle).abs(), 1.5e-15, (sequence, middle));
+                assert_error_below_bound((b - middle).abs(), 1.5e-15, (sequence, middle));
                 assert_eq!(found.singular, sine.abs() <= 4.0 * f64::EPSILON, "{sequence} {middle}");
                 if found.singular {
                     assert_eq!(third, 0.0);
                 } else {
                     let off = [found.angles[0] - a, third - c].map(|x| x.sin().abs().max(1.0 - x.cos()));
-                    assert_below(off[0].max(off[1]) * sine, 1e-15, (sequence, middle));
+                    assert_error_below_bound(off[0].max(off[1]) * sine, 1e-15, (sequence, middle));
                 }
             }
         }
@@ -175,7 +191,7 @@ fn noisy_rotations_at_gimbal_lock_convert_back() {
             let turn = random.random_rotation();
             let noisy = turn.inverse() * (turn * rotation);
             let found = sequence.angles(&noisy);
-            assert_below(
+            assert_error_below_bound(
                 largest_entry_difference(sequence.rotation(found.angles).matrix(), noisy.matrix()),
                 4e-15,
                 (sequence, middle),
@@ -188,10 +204,14 @@ fn noisy_rotations_at_gimbal_lock_convert_back() {
 fn gimbal_lock_uses_first_angle_alone() {
     let found = EulerSequence::BODY_ZYX.angles(&EulerSequence::BODY_ZYX.rotation([0.3, FRAC_PI_2, 1.0]));
     assert!(found.singular);
-    assert_below(angle_difference(found.angles, [-0.7, FRAC_PI_2, 0.0]), 3e-16, found);
+    assert_error_below_bound(
+        largest_euler_angle_difference(found.angles, [-0.7, FRAC_PI_2, 0.0]),
+        3e-16,
+        found,
+    );
     let found = EulerSequence::SPACE_ZXZ.angles(&EulerSequence::SPACE_ZXZ.rotation([0.3, 0.0, 1.0]));
     assert!(found.singular);
-    assert_below(angle_difference(found.angles, [1.3, 0.0, 0.0]), 3e-16, found);
+    assert_error_below_bound(largest_euler_angle_difference(found.angles, [1.3, 0.0, 0.0]), 3e-16, found);
     for sequence in EulerSequence::ALL {
         let found = sequence.angles(&Rotation3::<f64>::identity());
         assert_eq!(found, Angles { angles: [0.0; 3], singular: sequence.is_symmetric() });

@@ -60,20 +60,20 @@ fn add(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     let sum = a.0 + b.0;
     let of_b = sum - a.0;
     let lost = (a.0 - (sum - of_b)) + (b.0 - of_b);
-    normalized_double(sum, lost + (a.1 + b.1))
+    normalised_double_double(sum, lost + (a.1 + b.1))
 }
 
 fn multiply(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     let product = a.0 * b.0;
-    normalized_double(product, a.0.mul_add(b.0, -product) + (a.0 * b.1 + a.1 * b.0))
+    normalised_double_double(product, a.0.mul_add(b.0, -product) + (a.0 * b.1 + a.1 * b.0))
 }
 
 fn divide_double(a: DoubleDouble, by: f64) -> DoubleDouble {
     let quotient = a.0 / by;
-    normalized_double(quotient, ((-quotient).mul_add(by, a.0) + a.1) / by)
+    normalised_double_double(quotient, ((-quotient).mul_add(by, a.0) + a.1) / by)
 }
 
-fn normalized_double(large: f64, small: f64) -> DoubleDouble {
+fn normalised_double_double(large: f64, small: f64) -> DoubleDouble {
     let sum = large + small;
     (sum, small - (sum - large))
 }

@@ -50,9 +50,9 @@ fn decode_base64(text: &str) -> Vec<u8> {
         _ => 63,
     };
     let digits: Vec<u32> = text.bytes().filter(|c| *c != b'=').map(|c| u32::from(base64_digit(c))).collect();
-    let bytes_of_group = |g: &[u32]| {
+    let bytes_of_base64_group = |g: &[u32]| {
         let word = g.iter().enumerate().fold(0, |word, (k, d)| word | d << (18 - 6 * k));
         word.to_be_bytes()[1..g.len()].to_vec()
     };
-    digits.chunks(4).flat_map(bytes_of_group).collect()
+    digits.chunks(4).flat_map(bytes_of_base64_group).collect()
 }

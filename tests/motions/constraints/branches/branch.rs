@@ -69,7 +69,7 @@ impl Jet {
 /// and rocker over this line is a root of `((l2 + l3)² − D²)(D² − (l2 − l3)²)`. One of the factors is a
 /// square: `4 base l1 cos²(θ/2)` or `4 base l1 sin²(θ/2)`. The assembly mode continues smoothly where the
 /// root of this square changes sign.
-pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: f64) -> [Jet; 3] {
+pub fn flat_branch_angles([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: f64) -> [Jet; 3] {
     let theta = Jet([theta, 1.0, 0.0]);
     let half = theta.scaled_jet(0.5);
     // Nearly equal lengths are subtracted first: the difference of their squares would lose digits.

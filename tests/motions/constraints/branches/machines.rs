@@ -69,7 +69,7 @@ four_bar!(Tilted, unit(x + 2 * y + 2 * z), (2 * x + y - 2 * z) / 3, (2 * x - 2 *
 /// Linkage of two stacked parallelogram windows, each with two posts of equal length.
 #[mechanism(gravity = down * y + aside * x)]
 #[derive(Clone, Copy, Debug)]
-pub struct Stacked {
+pub struct StackedWindows {
     pub down: f64,
     pub aside: f64,
     pub low: f64,

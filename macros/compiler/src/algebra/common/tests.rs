@@ -7,7 +7,7 @@ use crate::algebra::polynomial::{Atom, AtomRank, Polynomial, Ring, Term};
 use crate::expr::node::Symbol;
 
 /// Returns a ring with four parameters, two positions, two rates and an acceleration.
-fn test_ring() -> Ring {
+fn ring_with_nine_atoms() -> Ring {
     let mut ring = Ring::new(|s| match s.0 {
         0..4 => AtomRank::Parameter,
         4..6 => AtomRank::Position,
@@ -47,7 +47,7 @@ fn random_polynomial(r: &mut Random, most: u64) -> Polynomial {
 
 #[test]
 fn factored_sums_keep_their_values() {
-    let mut ring = test_ring();
+    let mut ring = ring_with_nine_atoms();
     let mut r = Random(77);
     let (mut shorter, atoms) = (0, [0.3, 1.7, -0.9, 2.2, 0.7, -1.3, 1.1, 0.6, -0.4]);
     for _ in 0..300 {
@@ -56,7 +56,7 @@ fn factored_sums_keep_their_values() {
         let product = product_of_polynomials(&mut ring, &[&a, &b]);
         let p = ring.add_within_limits(&product, &c).unwrap();
         let expected = ring.evaluate_polynomial(&p, &|s| atoms[s.0 as usize]);
-        let order = Order::new(&ring);
+        let order = PrintOrder::new(&ring);
         let plain: usize = p
             .terms
             .iter()
@@ -77,11 +77,11 @@ fn factored_sums_keep_their_values() {
 /// Expands `(a + b) (c + d)` and recovers the factors.
 #[test]
 fn factors_of_expanded_products_are_recovered() {
-    let mut ring = test_ring();
+    let mut ring = ring_with_nine_atoms();
     let sum_of_two_terms =
         |i, j, sign| Polynomial::sum_of_terms(vec![term_of_atom(i, 1.0), term_of_atom(j, sign)]);
     let p = product_of_polynomials(&mut ring, &[&sum_of_two_terms(0, 1, 1.0), &sum_of_two_terms(2, 3, -1.0)]);
-    let found = items_of_polynomial(&ring, &Order::new(&ring), &p, FactorScope::All);
+    let found = items_of_polynomial(&ring, &PrintOrder::new(&ring), &p, FactorScope::All);
     assert!(found.len() == 1 && found[0].sums.len() == 2, "{found:?}");
 }
 
@@ -92,12 +92,12 @@ fn term_of_atom(atom: usize, coefficient: f64) -> Term {
 /// Kinetic and potential energy have no common factors taken out, nor have the coefficients of a linear form.
 #[test]
 fn factor_scope_limits_common_factors() {
-    let mut ring = test_ring();
+    let mut ring = ring_with_nine_atoms();
     let [m, g, x, v] = [0, 1, 4, 6].map(|k| Polynomial::sum_of_terms(vec![term_of_atom(k, 1.0)]));
     let kinetic = product_of_polynomials(&mut ring, &[&m, &v, &v]);
     let potential = product_of_polynomials(&mut ring, &[&m, &g, &x]);
     let energy = kinetic.plus(&potential);
-    let order = Order::new(&ring);
+    let order = PrintOrder::new(&ring);
     assert_eq!(items_of_polynomial(&ring, &order, &energy, FactorScope::Kinds).len(), 2);
     assert_eq!(items_of_polynomial(&ring, &order, &energy, FactorScope::None).len(), 2);
     assert_eq!(items_of_polynomial(&ring, &order, &energy, FactorScope::All).len(), 1);

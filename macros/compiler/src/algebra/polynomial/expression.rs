@@ -24,12 +24,16 @@ pub fn polynomial_to_expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomia
                     polynomial_to_expression(graph, ring, a).pow(polynomial_to_expression(graph, ring, b))
                 }
                 Atom::Table(_, lookup, x) => {
-                    let argument_expression = |k: usize| {
+                    let function_argument_expression = |k: usize| {
                         x.get(k).map_or(graph.zero(), |x| polynomial_to_expression(graph, ring, x))
                     };
                     graph.table_lookup(
                         *lookup,
-                        [argument_expression(0), argument_expression(1), argument_expression(2)],
+                        [
+                            function_argument_expression(0),
+                            function_argument_expression(1),
+                            function_argument_expression(2),
+                        ],
                     )
                 }
                 Atom::Extreme(f, a, b) => polynomial_to_expression(graph, ring, a)

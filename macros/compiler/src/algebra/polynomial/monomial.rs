@@ -20,7 +20,7 @@ impl Monomial {
     /// Monomial one: the empty product.
     pub const ONE: Monomial = Monomial { high: 0, low: 0 };
 
-    fn power_bits(atom: usize, bits: u128) -> Monomial {
+    fn monomial_with_bits(atom: usize, bits: u128) -> Monomial {
         match atom {
             0..HALF => Monomial { high: 0, low: bits << (4 * atom) },
             HALF..ATOMS => Monomial { high: bits << (4 * (atom - HALF)), low: 0 },
@@ -30,17 +30,17 @@ impl Monomial {
 
     /// Returns the monomial that is the first power of an atom.
     pub fn first_power_of_atom(atom: usize) -> Monomial {
-        Monomial::power_bits(atom, 1)
+        Monomial::monomial_with_bits(atom, 1)
     }
 
     /// Returns a mask of all bits of the power of an atom.
-    pub fn all_of(atom: usize) -> Monomial {
-        Monomial::power_bits(atom, 15)
+    pub fn power_mask_of_atom(atom: usize) -> Monomial {
+        Monomial::monomial_with_bits(atom, 15)
     }
 
     /// Returns a mask of the bits that are set only in powers of the atom above one.
     pub fn bits_above_first_power(atom: usize) -> Monomial {
-        Monomial::power_bits(atom, 14)
+        Monomial::monomial_with_bits(atom, 14)
     }
 
     /// Returns the power of an atom in the monomial.
@@ -62,7 +62,7 @@ impl Monomial {
                 (low, _) => low.trailing_zeros() as usize / 4,
             };
             let power = rest.power_of_atom(atom);
-            rest = rest.clear_mask(Monomial::all_of(atom));
+            rest = rest.clear_mask(Monomial::power_mask_of_atom(atom));
             Some((atom, power))
         })
     }
@@ -90,7 +90,7 @@ impl Monomial {
     /// Returns the greatest common divisor of two monomials.
     pub fn greatest_common_divisor(self, other: Monomial) -> Monomial {
         let common_power_of_atom = |(atom, power): (usize, u8)| {
-            Monomial::power_bits(atom, power.min(other.power_of_atom(atom)).into())
+            Monomial::monomial_with_bits(atom, power.min(other.power_of_atom(atom)).into())
         };
         self.atoms_with_powers().map(common_power_of_atom).fold(Monomial::ONE, Monomial::union_of_bits)
     }

@@ -1,7 +1,7 @@
 //! Compares normal forms with the evaluated expressions, for selected and for random expressions.
 
 use super::*;
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::expr::eval::eval_one;
 use crate::expr::{Expr, Graph};
@@ -59,7 +59,7 @@ fn normal_forms_keep_values_of_random_expressions() {
         let graph = Graph::new();
         let e = random_expression(&graph, &mut r, 5, true);
         let expected = eval_one(e, &value_of_symbol);
-        let mut normal = Normal::new(&graph, rank_of_symbol);
+        let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
         let Some(p) = normal.normal_form(e) else { continue };
         assert_near(normal.ring.evaluate_polynomial(&p, &value_of_symbol), expected, &format!("{e:?}"));
         let Some(short) = simplify_trigonometry(&mut normal.ring, &p) else { continue };
@@ -77,7 +77,7 @@ fn normal_form_is_idempotent() {
     for _ in 0..200 {
         let graph = Graph::new();
         let e = random_expression(&graph, &mut r, 5, false);
-        let mut normal = Normal::new(&graph, rank_of_symbol);
+        let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
         let Some(p) = normal.normal_form(e) else { continue };
         let Some(short) = simplify_trigonometry(&mut normal.ring, &p) else { continue };
         let again = normal.normal_form(polynomial_to_expression(&graph, &normal.ring, &short)).unwrap();
@@ -116,7 +116,7 @@ fn algebraic_identities_reduce_to_zero() {
             (x.square() + y).sqrt().square() - x.square() - y,
             graph.num(0.1) * x + graph.num(0.2) * x - graph.num(0.3) * x,
         ];
-        let mut normal = Normal::new(graph, rank_of_symbol);
+        let mut normal = NormalFormCache::new(graph, rank_of_symbol);
         zeros.iter().map(|e| normal.normal_form(*e).unwrap().terms.len()).collect()
     });
 }
@@ -144,12 +144,12 @@ fn monomial_products_and_quotients_add_exponents() {
 fn polynomials_beyond_the_limits_are_abandoned() {
     let graph = Graph::new();
     let sum = (0..6).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
-    let mut normal = Normal::new(&graph, rank_of_symbol);
+    let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
     assert_eq!(normal.normal_form(sum).unwrap().terms.len(), 7);
     assert!(normal.normal_form(sum.pow(graph.num(7.0))).is_none());
     let atoms = (0..70).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
-    assert!(Normal::new(&graph, rank_of_symbol).normal_form(atoms).is_none());
+    assert!(NormalFormCache::new(&graph, rank_of_symbol).normal_form(atoms).is_none());
     let angles = (0..9).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)).sin());
-    assert!(Normal::new(&graph, rank_of_symbol).normal_form(angles).is_none());
-    assert!(Normal::new(&graph, rank_of_symbol).normal_form(graph.one() / graph.zero()).is_none());
+    assert!(NormalFormCache::new(&graph, rank_of_symbol).normal_form(angles).is_none());
+    assert!(NormalFormCache::new(&graph, rank_of_symbol).normal_form(graph.one() / graph.zero()).is_none());
 }

@@ -1,7 +1,7 @@
 //! Tests of each rule alone, and of several rules in sequence.
 
 use super::simplify_trigonometry;
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::tests::rank_of_symbol;
 use crate::equations::print::PolynomialWriter;
 use crate::expr::{Expr, Graph, Symbol};
@@ -10,7 +10,7 @@ use crate::expr::{Expr, Graph, Symbol};
 fn shortest_form_text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 3], Expr<'g>) -> Expr<'g>) -> String {
     let graph = Graph::new();
     let angles = [3, 4, 5].map(|k| graph.symbol(Symbol(k)));
-    let mut normal = Normal::new(&graph, rank_of_symbol);
+    let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
     for angle in angles {
         normal.normal_form(angle.sin()).unwrap();
     }

@@ -1,9 +1,9 @@
 //! Choice of the link frames in which the dynamics is derived.
 
 use super::variants::Variants;
-use crate::derive::specialisation::{Candidate, Specialisation};
+use crate::derive::specialisation::{Candidate, ParameterSpecialisation};
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
-use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanism::Model;
 use crate::passes::{self, Passes, Variant};
 use std::rc::Rc;
@@ -24,11 +24,11 @@ pub struct FrameChoice<'g> {
 
 impl<'g> FrameChoice<'g> {
     /// Returns all frame choices that may be the cheapest.
-    pub fn all_frame_choices(
+    pub fn candidate_frame_choices(
         model: &Model<'g>,
         passes: Passes,
-        specialisation: Specialisation,
-        speeds: Option<&Rc<InSpeeds<'g>>>,
+        specialisation: ParameterSpecialisation,
+        speeds: Option<&Rc<SpeedTransformation<'g>>>,
     ) -> Vec<FrameChoice<'g>> {
         let mut choices = vec![passes::model_variants(model, passes)];
         if passes.frames && model.nv() <= COMPARED_VELOCITIES {
@@ -36,7 +36,7 @@ impl<'g> FrameChoice<'g> {
         }
         if passes.parallel {
             let common: Vec<Vec<Variant<'g>>> =
-                choices.iter().map(|variants| passes::in_common_axes(variants)).collect();
+                choices.iter().map(|variants| passes::variants_in_common_axes(variants)).collect();
             choices.extend(common.into_iter().filter(|variants| !variants.is_empty()));
         }
         let mut found: Vec<FrameChoice<'g>> = Vec::new();
@@ -44,7 +44,7 @@ impl<'g> FrameChoice<'g> {
             .into_iter()
             .map(|variants| Variants::new(variants, passes, specialisation, speeds.cloned()))
         {
-            if found.first().is_none_or(|first| first.is_similar(&variants)) {
+            if found.first().is_none_or(|first| first.is_competitive(&variants)) {
                 found.push(FrameChoice::new(variants));
             }
         }
@@ -53,7 +53,7 @@ impl<'g> FrameChoice<'g> {
 
     /// Returns false for frames that cost more according to the first distribution of the masses. For a
     /// mechanism with few operations it returns true, since all distributions are compared later.
-    fn is_similar(&self, variants: &Variants<'g>) -> bool {
+    fn is_competitive(&self, variants: &Variants<'g>) -> bool {
         let size_of_first_candidates = |masses: &[Candidate<'_>], recursions: &[Candidate<'_>]| {
             Some(masses.first()?.size + recursions.first()?.size)
         };
@@ -72,13 +72,13 @@ impl<'g> FrameChoice<'g> {
     fn new(variants: Variants<'g>) -> FrameChoice<'g> {
         let masses: Vec<Candidate<'g>> = variants.mass_matrices().collect();
         let recursions: Vec<Candidate<'g>> = variants.inverse_dynamics_candidates(true).collect();
-        let size =
-            smallest_size(&masses).unwrap_or_default() + smallest_size(&recursions).unwrap_or_default();
+        let size = smallest_candidate_size(&masses).unwrap_or_default()
+            + smallest_candidate_size(&recursions).unwrap_or_default();
         FrameChoice { variants, masses, recursions, size }
     }
 }
 
 /// Returns the size of the candidate with the smallest outputs.
-pub fn smallest_size(all: &[Candidate<'_>]) -> Option<usize> {
+pub fn smallest_candidate_size(all: &[Candidate<'_>]) -> Option<usize> {
     all.iter().map(|list| list.size).min()
 }

@@ -1,36 +1,36 @@
 //! The algorithms of dynamics on variants of a model that have the same frames.
 
 use crate::derive::limb_lanes;
-use crate::derive::specialisation::{Candidate, Specialisation};
+use crate::derive::specialisation::{Candidate, ParameterSpecialisation};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::Program;
 use crate::mechanics::derivatives::Factor;
 use crate::mechanics::passive::passive_forces;
-use crate::mechanics::speeds::{InSpeeds, ResultKind};
+use crate::mechanics::speeds::{ResultKind, SpeedTransformation};
 use crate::mechanics::{self, aba, added_mass, constraints, crba, friction, ldl, massless, rnea};
 use crate::mechanism::Model;
 use crate::passes::{Passes, Variant};
-use crate::vectorise::{self, Limbs};
+use crate::vectorise::{self, VectorisedMechanism};
 use std::rc::Rc;
 
 /// Variants of a model that have the same link frames.
 pub struct Variants<'g> {
     all: Vec<Variant<'g>>,
     pub joints: Vec<Joint<'g>>,
-    specialisation: Specialisation,
+    specialisation: ParameterSpecialisation,
     /// Generalized speeds of the results; `None` if the results are in joint velocities.
-    speeds: Option<Rc<InSpeeds<'g>>>,
+    speeds: Option<Rc<SpeedTransformation<'g>>>,
     /// Variants with identical limbs in SIMD lanes, each with whether it serves inverse dynamics only. Empty
     /// if there are no identical limbs.
-    limbs: Vec<(Limbs<'g>, bool)>,
-    pub bias: Bias,
+    limbs: Vec<(VectorisedMechanism<'g>, bool)>,
+    pub bias: CheapestBias,
 }
 
 /// The bias `h`, and the variant in which it is cheapest. All variants have the same generalized forces, so
 /// each term of a function can come from the variant in which that term is cheapest.
 #[derive(Default)]
-pub struct Bias {
+pub struct CheapestBias {
     pub program: Program,
     variant: usize,
     /// Program with identical limbs in SIMD lanes, with the index of its variant; `None` without such limbs.
@@ -41,8 +41,8 @@ impl<'g> Variants<'g> {
     pub fn new(
         all: Vec<Variant<'g>>,
         passes: Passes,
-        specialisation: Specialisation,
-        speeds: Option<Rc<InSpeeds<'g>>>,
+        specialisation: ParameterSpecialisation,
+        speeds: Option<Rc<SpeedTransformation<'g>>>,
     ) -> Variants<'g> {
         // All variants have the same joints.
         let joints = match all.as_slice() {
@@ -50,32 +50,36 @@ impl<'g> Variants<'g> {
             [] => Vec::new(),
         };
         let groups = match all.as_slice() {
-            [any, ..] if passes.lanes && specialisation == Specialisation::None && speeds.is_none() => {
+            [any, ..]
+                if passes.lanes && specialisation == ParameterSpecialisation::None && speeds.is_none() =>
+            {
                 vectorise::find_limb_groups(&any.model, &joints)
             }
             _ => Vec::new(),
         };
-        let forces_of_variant = |variant: &Variant<'g>| {
+        let limbs_of_variant = |variant: &Variant<'g>| {
             let passive_forces_of_variant = || passive_forces(&variant.model, true);
             Some((
-                Limbs::new(&variant.model, &joints, &groups, passive_forces_of_variant)?,
+                VectorisedMechanism::new(&variant.model, &joints, &groups, passive_forces_of_variant)?,
                 variant.for_inverse_dynamics,
             ))
         };
-        let limbs = all.iter().filter_map(forces_of_variant).collect();
-        Variants { all, joints, specialisation, speeds, limbs, bias: Bias::default() }
+        let limbs = all.iter().filter_map(limbs_of_variant).collect();
+        Variants { all, joints, specialisation, speeds, limbs, bias: CheapestBias::default() }
     }
 
-    pub fn find_bias_forces(&mut self) {
+    pub fn find_cheapest_bias_program(&mut self) {
         let (variant, program) =
             self.specialisation.cheapest_candidate(self.inverse_dynamics_candidates(false));
-        let simd = self.recursions_in_lanes(false).map(|list| self.specialisation.candidate_with_size(list));
+        let simd = self
+            .inverse_dynamics_in_limb_lanes(false)
+            .map(|list| self.specialisation.candidate_with_size(list));
         let simd = self
             .specialisation
             .candidate_programs(simd)
             .into_iter()
             .min_by_key(|(_, program)| program.estimated_cost());
-        self.bias = Bias { program, variant, simd };
+        self.bias = CheapestBias { program, variant, simd };
     }
 
     /// Returns the variants of the model that serve all functions.
@@ -85,7 +89,7 @@ impl<'g> Variants<'g> {
 
     /// Returns the variants with identical limbs in SIMD lanes, except variants that serve inverse dynamics
     /// only.
-    pub fn plain_limbs(&self) -> impl Iterator<Item = &Limbs<'g>> {
+    pub fn limbs_for_all_functions(&self) -> impl Iterator<Item = &VectorisedMechanism<'g>> {
         self.limbs.iter().filter(|(_, for_inverse_dynamics)| !for_inverse_dynamics).map(|(limbs, _)| limbs)
     }
 
@@ -102,7 +106,9 @@ impl<'g> Variants<'g> {
     fn candidate_in_speeds(&self, role: ResultKind, list: Vec<Expr<'g>>) -> Candidate<'g> {
         match &self.speeds {
             None => self.specialisation.candidate_with_size(list),
-            Some(speeds) => self.specialisation.candidate_with_size(speeds.transform_results(role, &list)),
+            Some(speeds) => {
+                self.specialisation.candidate_with_size(speeds.results_in_generalized_speeds(role, &list))
+            }
         }
     }
 
@@ -148,7 +154,7 @@ impl<'g> Variants<'g> {
             };
             // At zero rates of the speeds, joint accelerations may be different from zero.
             let all = rnea::inverse_dynamics(&variant.model, &self.joints, &v, Some(&a));
-            let all = speeds.transform_results(ResultKind::Forces, &all);
+            let all = speeds.results_in_generalized_speeds(ResultKind::Forces, &all);
             self.specialisation.candidate_with_size(if accelerations {
                 all
             } else {
@@ -157,7 +163,7 @@ impl<'g> Variants<'g> {
         })
     }
 
-    pub fn recursions_in_lanes(&self, accelerations: bool) -> impl Iterator<Item = Vec<Expr<'g>>> {
+    pub fn inverse_dynamics_in_limb_lanes(&self, accelerations: bool) -> impl Iterator<Item = Vec<Expr<'g>>> {
         self.limbs.iter().map(move |(limbs, _)| limb_lanes::inverse_dynamics(limbs, accelerations))
     }
 
@@ -177,10 +183,10 @@ impl<'g> Variants<'g> {
     }
 
     /// Returns forward dynamics by articulated bodies, with identical limbs in SIMD lanes.
-    pub fn articulated_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
+    pub fn articulated_dynamics_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
         let bias = self.bias.simd.as_ref().and_then(|(k, _)| self.limbs.get(*k));
         let Some((bias, _)) = bias else { return Vec::new() };
-        self.plain_limbs().filter_map(|limbs| limb_lanes::forward_dynamics(limbs, bias)).collect()
+        self.limbs_for_all_functions().filter_map(|limbs| limb_lanes::forward_dynamics(limbs, bias)).collect()
     }
 
     /// Returns forward dynamics by factorisation of the mass matrix.
@@ -208,7 +214,7 @@ impl<'g> Variants<'g> {
 }
 
 /// Returns the number of multipliers whose individual accelerations are outputs.
-fn responding_multiplier_count(model: &Model<'_>) -> usize {
+fn multiplier_acceleration_count(model: &Model<'_>) -> usize {
     if model.is_overdetermined() { model.constraints.len() } else { 0 }
 }
 
@@ -218,24 +224,24 @@ impl<'g> Variants<'g> {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, biases) = (self.unbalanced_forces(), constraints::constraint_biases(&variant.model));
         if !friction::sliding_contact_constraints(&variant.model).is_empty() {
-            return self.slipping_contacts_program(ResultKind::Accelerations(0), &force, &biases);
+            return self.friction_solution_program(ResultKind::Accelerations(0), &force, &biases);
         }
         let Some(pivots) = &variant.model.dependent else {
-            let answers = responding_multiplier_count(&variant.model);
+            let answers = multiplier_acceleration_count(&variant.model);
             return self.multipliers_program(ResultKind::Accelerations(answers), &force, &biases);
         };
         self.cheapest_program(ResultKind::Accelerations(0), |model| {
             let mass = crba::mass_matrix(model, &self.joints);
-            constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots)
+            constraints::solve_by_independent_velocities(model, &mass, &force, biases.clone(), pivots)
         })
     }
 
     /// Returns the response of constraints to forces and biases that are arguments.
     pub fn constraint_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
-        let (force, bias) = constraints::argument_symbols(&variant.model);
+        let (force, bias) = constraints::force_and_bias_symbols(&variant.model);
         self.multipliers_program(
-            ResultKind::Answers(responding_multiplier_count(&variant.model)),
+            ResultKind::Answers(multiplier_acceleration_count(&variant.model)),
             &force,
             &bias,
         )
@@ -244,8 +250,8 @@ impl<'g> Variants<'g> {
     /// Returns the response of sliding contacts with friction to forces and biases that are arguments.
     pub fn slipping_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
-        let (force, bias) = constraints::argument_symbols(&variant.model);
-        self.slipping_contacts_program(ResultKind::Answers(0), &force, &bias)
+        let (force, bias) = constraints::force_and_bias_symbols(&variant.model);
+        self.friction_solution_program(ResultKind::Answers(0), &force, &bias)
     }
 
     fn multipliers_program(&self, role: ResultKind, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
@@ -256,11 +262,11 @@ impl<'g> Variants<'g> {
                 return constraints::minimum_norm_terms(&mass, &rows, force.to_vec(), bias, &self.joints);
             }
             let (mass, force) = self.mass_and_forces_with_massless_terms(model, force, bias);
-            constraints::solve_constrained(&mass, &rows, force, bias.to_vec())
+            constraints::solve_constrained_dynamics(&mass, &rows, force, bias.to_vec())
         })
     }
 
-    fn slipping_contacts_program(&self, role: ResultKind, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+    fn friction_solution_program(&self, role: ResultKind, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
         self.cheapest_program(role, |model| {
             let (mass, force) = self.mass_and_forces_with_massless_terms(model, force, bias);
             friction::solve_with_friction(model, &mass, force, bias.to_vec())
@@ -275,7 +281,7 @@ impl<'g> Variants<'g> {
         bias: &[Expr<'g>],
     ) -> (crba::Matrix<'g>, Vec<Expr<'g>>) {
         let mass = crba::mass_matrix(model, &self.joints);
-        let force = massless::augmented_force(model, &self.joints, force, bias);
-        (massless::augmented_mass(model, &self.joints, mass), force)
+        let force = massless::force_with_weighted_constraints(model, &self.joints, force, bias);
+        (massless::mass_with_weighted_constraints(model, &self.joints, mass), force)
     }
 }

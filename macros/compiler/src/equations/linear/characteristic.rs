@@ -1,10 +1,10 @@
 //! Characteristic polynomial of linear equations: the determinant of `M s² + C s + K`, bordered by the
 //! constraints, expanded by minors.
 
-use super::parts::{Coefficients, rank_of_symbol};
+use super::parts::{EquilibriumCoefficients, rank_of_symbol};
 use super::rest::vanishes_identically;
 use crate::algebra::factor::remove_noise;
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::expr::{Expr, Node, Symbol};
@@ -21,7 +21,7 @@ const DEGREE: usize = 7;
 const TERMS: usize = 120;
 
 /// A characteristic polynomial, with the properties of its parameters that the stability analysis uses.
-pub struct Characteristic {
+pub struct CharacteristicPolynomial {
     /// Ring of all polynomials.
     pub ring: Ring,
     /// Coefficients in ascending powers of the root; the last coefficient is not zero.
@@ -33,26 +33,30 @@ pub struct Characteristic {
 }
 
 /// A polynomial in the root: its coefficients in ascending powers.
-type OfRoot = Vec<Polynomial>;
+type RootPolynomial = Vec<Polynomial>;
 
 /// Returns the characteristic polynomial. `None` if the mechanism has too many velocities, or the polynomial
 /// is too long or its degree too high.
-pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristic> {
+pub fn characteristic_polynomial<'g>(
+    model: &Model<'g>,
+    all: &EquilibriumCoefficients<'g>,
+) -> Option<CharacteristicPolynomial> {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let rows = all.inputs.len();
     if nv > VELOCITIES || rows > ROWS {
         return None;
     }
-    let mut normal = Normal::new(model.graph, rank_of_symbol);
-    normal.ring.raise_limits();
-    let mut matrix: Vec<Vec<OfRoot>> = Vec::new();
+    let mut normal = NormalFormCache::new(model.graph, rank_of_symbol);
+    normal.ring.raise_term_limits();
+    let mut matrix: Vec<Vec<RootPolynomial>> = Vec::new();
     for k in 0..rows {
         let deviations = 0..rows - nc;
-        let entry_polynomials = |normal: &mut Normal<'g>, c: usize| -> Option<OfRoot> {
-            all.orders.iter().map(|order| normal.normal_form(order[k][c])).collect()
-        };
-        let mut row: Vec<OfRoot> =
-            deviations.map(|c| entry_polynomials(&mut normal, c)).collect::<Option<_>>()?;
+        let root_polynomial_of_entry =
+            |normal: &mut NormalFormCache<'g>, c: usize| -> Option<RootPolynomial> {
+                all.orders.iter().map(|order| normal.normal_form(order[k][c])).collect()
+            };
+        let mut row: Vec<RootPolynomial> =
+            deviations.map(|c| root_polynomial_of_entry(&mut normal, c)).collect::<Option<_>>()?;
         for multiplier in &all.multipliers[k] {
             row.push(vec![normal.normal_form(-*multiplier)?]);
         }
@@ -72,7 +76,7 @@ pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) 
     let terms: usize = coefficients.iter().map(|p| p.terms.len()).sum();
     let positive = positive_parameters(model);
     let degree = coefficients.len().checked_sub(1)?;
-    (terms <= TERMS && (1..=DEGREE).contains(&degree)).then_some(Characteristic {
+    (terms <= TERMS && (1..=DEGREE).contains(&degree)).then_some(CharacteristicPolynomial {
         ring: normal.ring,
         coefficients,
         conservative,
@@ -94,7 +98,11 @@ fn positive_parameters(model: &Model<'_>) -> Vec<Symbol> {
 }
 
 /// Returns true if there is no damping and the stiffness is symmetric. `None` beyond the limits of the ring.
-fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut Normal<'g>) -> Option<bool> {
+fn is_conservative<'g>(
+    model: &Model<'g>,
+    all: &EquilibriumCoefficients<'g>,
+    normal: &mut NormalFormCache<'g>,
+) -> Option<bool> {
     let nv = model.nv();
     let [stiffness, damping, _] = &all.orders;
     let holonomic = model.constraints.iter().all(|c| c.residual.is_some());
@@ -117,11 +125,11 @@ fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut N
 }
 
 /// Returns the determinant of a matrix of polynomials, built up from minors of its last rows.
-fn determinant_of_polynomials(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
+fn determinant_of_polynomials(matrix: &[Vec<RootPolynomial>], ring: &mut Ring) -> Option<RootPolynomial> {
     let n = matrix.len();
-    let mut minors: BTreeMap<u32, OfRoot> = BTreeMap::from([(0, vec![Polynomial::from_number(1.0)])]);
+    let mut minors: BTreeMap<u32, RootPolynomial> = BTreeMap::from([(0, vec![Polynomial::from_number(1.0)])]);
     for row in matrix.iter().rev() {
-        let mut next: BTreeMap<u32, OfRoot> = BTreeMap::new();
+        let mut next: BTreeMap<u32, RootPolynomial> = BTreeMap::new();
         for (columns, minor) in &minors {
             for (c, entry) in row.iter().enumerate().filter(|(c, _)| columns & (1 << c) == 0) {
                 if entry.iter().all(|p| p.terms.is_empty()) {
@@ -140,7 +148,13 @@ fn determinant_of_polynomials(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option
     Some(minors.remove(&((1 << n) - 1)).unwrap_or_default())
 }
 
-fn add_product(sum: &mut OfRoot, a: &OfRoot, b: &OfRoot, sign: f64, ring: &mut Ring) -> Option<()> {
+fn add_product(
+    sum: &mut RootPolynomial,
+    a: &RootPolynomial,
+    b: &RootPolynomial,
+    sign: f64,
+    ring: &mut Ring,
+) -> Option<()> {
     for (i, a) in a.iter().enumerate().filter(|(_, a)| !a.terms.is_empty()) {
         for (j, b) in b.iter().enumerate().filter(|(_, b)| !b.terms.is_empty()) {
             let product = ring.multiply_and_reduce(a, b)?.multiplied_by_number(sign);

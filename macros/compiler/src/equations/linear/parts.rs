@@ -20,7 +20,7 @@ pub fn multiplier_symbol(k: usize) -> Quantity {
 pub const ROOT: Quantity = Quantity::Laplace;
 
 /// Coefficients of the linear equations, evaluated at the equilibrium.
-pub struct Coefficients<'g> {
+pub struct EquilibriumCoefficients<'g> {
     /// Coefficients of the deviations, of their first and of their second derivatives, by row.
     pub orders: [Matrix<'g>; 3],
     /// Coefficients of the inputs, by row of the linear equations.
@@ -31,7 +31,7 @@ pub struct Coefficients<'g> {
 
 /// Returns the expression behind each row of the linear equations: force balances, residuals or rates of the
 /// constraints, and negative rates of the states.
-pub fn linear_equation_rows<'g>(
+pub fn linear_equation_expressions<'g>(
     model: &Model<'g>,
     balance: &[Expr<'g>],
     at: &Equilibrium<'g>,

@@ -2,9 +2,11 @@
 //! suitable multipliers the forces balance. Residuals are proven to be zero as polynomials, or tested
 //! numerically at random parameters.
 
-use super::parts::{Coefficients, deviation_symbol, linear_equation_rows as linear_rows, multiplier_symbol};
+use super::parts::{
+    EquilibriumCoefficients, deviation_symbol, linear_equation_expressions as linear_rows, multiplier_symbol,
+};
 use crate::algebra::factor::remove_noise;
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::diag::Diagnostics;
@@ -14,7 +16,7 @@ use crate::expr::eval::{Tape, nodes_in_order};
 use crate::expr::exact::replace_exactly;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
-use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity, Supplied};
+use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity, SuppliedQuantity};
 
 /// Maximum number of random parameter sets that are tried in the numeric check.
 const TRIALS: u64 = 400;
@@ -27,16 +29,16 @@ const ROUNDING: f64 = 1e-10;
 const MAX_FORCE_CHARACTERS: usize = 100;
 
 /// Values of coordinates, inputs, multipliers and states at a declared equilibrium.
-pub struct RestValues<'g> {
+pub struct EquilibriumValues<'g> {
     configuration: Vec<Expr<'g>>,
     inputs: Vec<Expr<'g>>,
     multipliers: Vec<Expr<'g>>,
     states: Vec<(usize, Expr<'g>)>,
 }
 
-impl<'g> RestValues<'g> {
-    fn new(at: &Equilibrium<'g>) -> RestValues<'g> {
-        RestValues {
+impl<'g> EquilibriumValues<'g> {
+    fn new(at: &Equilibrium<'g>) -> EquilibriumValues<'g> {
+        EquilibriumValues {
             configuration: at.configuration.clone(),
             inputs: at.inputs.clone(),
             multipliers: Vec::new(),
@@ -45,13 +47,13 @@ impl<'g> RestValues<'g> {
     }
 
     /// Evaluates expressions at the equilibrium.
-    pub fn evaluate_at_rest(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn evaluate_at_equilibrium(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero_like_expression = |e: &Expr<'g>| Some(e.zero());
         let first = e.first();
         let moved = replace_exactly(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.configuration.get(k).copied(),
             Quantity::Input(k) => self.inputs.get(k).copied(),
-            Quantity::Given(Supplied::Multiplier, k) => self.multipliers.get(k).copied(),
+            Quantity::Given(SuppliedQuantity::Multiplier, k) => self.multipliers.get(k).copied(),
             Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero_like_expression),
             _ => None,
         });
@@ -67,8 +69,9 @@ impl<'g> RestValues<'g> {
         let nv = model.nv();
         // Identity orientations are not printed.
         let lasts: Vec<usize> = quaternion_indices(model).map(|first| first + 3).collect();
-        let is_plain = |k: &usize| !lasts.contains(k) || self.configuration[*k].constant_value() != Some(1.0);
-        let all = (0..self.configuration.len()).filter(is_plain);
+        let is_printed_coordinate =
+            |k: &usize| !lasts.contains(k) || self.configuration[*k].constant_value() != Some(1.0);
+        let all = (0..self.configuration.len()).filter(is_printed_coordinate);
         let configuration = all.map(|k| (Quantity::Configuration(k), self.configuration[k]));
         let inputs = (0..).map(Quantity::Input).zip(self.inputs.iter().copied());
         let states = at.states.iter().enumerate().map(|(k, state)| (deviation_symbol(nv + k), state.value));
@@ -76,12 +79,12 @@ impl<'g> RestValues<'g> {
         let all: Vec<(Quantity, Expr<'g>)> =
             configuration.chain(inputs).chain(states).chain(multipliers).collect();
         let (what, values): (Vec<Quantity>, Vec<Expr<'g>>) = all.into_iter().unzip();
-        what.into_iter().zip(self.evaluate_at_rest(&values)).collect()
+        what.into_iter().zip(self.evaluate_at_equilibrium(&values)).collect()
     }
 }
 
 /// Error text with advice on how to correct the error.
-type Refusal = (String, &'static str);
+type ErrorTextWithHelp = (String, &'static str);
 
 /// Checks an equilibrium and determines its multipliers. Returns `None` with an error in `cx` if forces do
 /// not balance.
@@ -89,9 +92,9 @@ pub fn check_equilibrium<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
-    normal: &mut Normal<'g>,
+    normal: &mut NormalFormCache<'g>,
     cx: &mut Diagnostics,
-) -> Option<RestValues<'g>> {
+) -> Option<EquilibriumValues<'g>> {
     match find_rest_state(model, at, balance, normal) {
         Ok(rest) => Some(rest),
         Err((what, help)) => {
@@ -105,9 +108,9 @@ fn find_rest_state<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
-    normal: &mut Normal<'g>,
-) -> Result<RestValues<'g>, Refusal> {
-    let mut rest = RestValues::new(at);
+    normal: &mut NormalFormCache<'g>,
+) -> Result<EquilibriumValues<'g>, ErrorTextWithHelp> {
+    let mut rest = EquilibriumValues::new(at);
     let name = &at.name;
     if !model.frictions.is_empty() || model.constraints.iter().any(|c| !c.friction.is_empty()) {
         return Err((format!("dry friction cannot be linearised about `{name}`"), DRY_FRICTION));
@@ -121,14 +124,14 @@ fn find_rest_state<'g>(
     }
     let kept = linear_rows(model, balance, at).split_off(balance.len());
     let all: Vec<Expr<'g>> = balance.iter().chain(&kept).copied().collect();
-    if let Some(what) = singular_function_at_rest(&all, &rest) {
+    if let Some(what) = name_of_singular_function_at_rest(&all, &rest) {
         return Err((
             format!("a force has no derivative in `{name}`: `{what}` has a corner there"),
             "declare the equilibrium away from it, or round the corner off",
         ));
     }
     check_persistence(model, at, &rest, &kept, normal)?;
-    let mut left = rest.evaluate_at_rest(balance);
+    let mut left = rest.evaluate_at_equilibrium(balance);
     if !model.constraints.is_empty() {
         (rest.multipliers, left) = solve_for_multipliers(model, &rest, balance).ok_or_else(|| {
             (
@@ -154,12 +157,12 @@ fn find_rest_state<'g>(
 fn check_persistence<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
-    rest: &RestValues<'g>,
+    rest: &EquilibriumValues<'g>,
     kept: &[Expr<'g>],
-    normal: &mut Normal<'g>,
-) -> Result<(), Refusal> {
+    normal: &mut NormalFormCache<'g>,
+) -> Result<(), ErrorTextWithHelp> {
     let name = &at.name;
-    for (c, row) in model.constraints.iter().zip(rest.evaluate_at_rest(kept)) {
+    for (c, row) in model.constraints.iter().zip(rest.evaluate_at_equilibrium(kept)) {
         check_zero(row, normal, model).map_err(|left| {
             (
                 format!("`{name}` does not satisfy the constraint `{}`: the residual is {left}", c.name),
@@ -169,14 +172,14 @@ fn check_persistence<'g>(
         })?;
     }
     let rates: Vec<Expr<'g>> = model.constraints.iter().flat_map(|c| [c.rate, c.bias]).collect();
-    if rest.evaluate_at_rest(&rates).into_iter().any(|rate| check_zero(rate, normal, model).is_err()) {
+    if rest.evaluate_at_equilibrium(&rates).into_iter().any(|rate| check_zero(rate, normal, model).is_err()) {
         return Err((
             format!("constraints that are driven in time leave `{name}` no rest"),
             "linear equations with constant coefficients need constraints that stay the same",
         ));
     }
     let states: Vec<Expr<'g>> = at.states.iter().map(|state| state.rate).collect();
-    for (state, rate) in at.states.iter().zip(rest.evaluate_at_rest(&states)) {
+    for (state, rate) in at.states.iter().zip(rest.evaluate_at_equilibrium(&states)) {
         check_zero(rate, normal, model).map_err(|left| {
             let state = &model.parameters[state.parameter];
             (
@@ -191,8 +194,8 @@ fn check_persistence<'g>(
 /// Returns the index of the first component of a quaternion whose length is not one, if any.
 fn first_non_unit_quaternion<'g>(
     model: &Model<'g>,
-    rest: &RestValues<'g>,
-    normal: &mut Normal<'g>,
+    rest: &EquilibriumValues<'g>,
+    normal: &mut NormalFormCache<'g>,
 ) -> Option<usize> {
     quaternion_indices(model).find(|q| {
         let components = &rest.configuration[*q..q + 4];
@@ -207,7 +210,7 @@ fn quaternion_indices(model: &Model<'_>) -> impl Iterator<Item = usize> {
 }
 
 /// Checks that an expression of the parameters is always zero. The error is the nonzero remainder as text.
-fn check_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Result<(), String> {
+fn check_zero<'g>(e: Expr<'g>, normal: &mut NormalFormCache<'g>, model: &Model<'g>) -> Result<(), String> {
     let p = normal.normal_form(e).map(|p| remove_noise(&normal.ring, &p));
     let Some(p) = p.and_then(|p| simplify_trigonometry(&mut normal.ring, &p)) else {
         let tape = Tape::new(&[e]);
@@ -255,7 +258,10 @@ pub fn random_parameter(s: Symbol, seed: u64) -> f64 {
 
 /// Returns the name of a function whose argument at rest is at a kink, a jump, or a point with an infinite
 /// derivative.
-fn singular_function_at_rest<'g>(e: &[Expr<'g>], rest: &RestValues<'g>) -> Option<&'static str> {
+fn name_of_singular_function_at_rest<'g>(
+    e: &[Expr<'g>],
+    rest: &EquilibriumValues<'g>,
+) -> Option<&'static str> {
     let graph = e.first()?.graph();
     let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
     for id in nodes_in_order(graph, e) {
@@ -282,7 +288,7 @@ fn singular_function_at_rest<'g>(e: &[Expr<'g>], rest: &RestValues<'g>) -> Optio
     };
     suspects.retain(|(_, argument)| depends_on_motion(argument));
     let arguments: Vec<Expr<'g>> = suspects.iter().map(|(_, argument)| *argument).collect();
-    let values = rest.evaluate_at_rest(&arguments);
+    let values = rest.evaluate_at_equilibrium(&arguments);
     let vanishes_numerically = |value: &Expr<'g>| {
         let tape = Tape::new(&[*value]);
         let found =
@@ -296,20 +302,22 @@ fn singular_function_at_rest<'g>(e: &[Expr<'g>], rest: &RestValues<'g>) -> Optio
 /// linearly dependent.
 fn solve_for_multipliers<'g>(
     model: &Model<'g>,
-    rest: &RestValues<'g>,
+    rest: &EquilibriumValues<'g>,
     balance: &[Expr<'g>],
 ) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
     let g = model.graph;
     let count = model.constraints.len();
-    let without = RestValues {
+    let without = EquilibriumValues {
         multipliers: vec![g.zero(); count],
         configuration: rest.configuration.clone(),
         inputs: rest.inputs.clone(),
         states: rest.states.clone(),
     };
-    let right = without.evaluate_at_rest(balance);
-    let jacobian: Vec<Vec<Expr<'g>>> =
-        crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.evaluate_at_rest(row)).collect();
+    let right = without.evaluate_at_equilibrium(balance);
+    let jacobian: Vec<Vec<Expr<'g>>> = crate::mechanics::constraints::jacobian(model)
+        .iter()
+        .map(|row| rest.evaluate_at_equilibrium(row))
+        .collect();
     // Each row is an equation of Jᵀ λ = force to be balanced.
     let mut rows: Vec<Vec<Expr<'g>>> =
         (0..model.nv()).map(|k| jacobian.iter().map(|row| row[k]).chain([right[k]]).collect()).collect();
@@ -347,7 +355,7 @@ fn minimum_magnitude(e: Expr<'_>) -> f64 {
 }
 
 /// Returns the reason why coefficients are not finite; `None` if they are finite.
-pub fn reason_for_unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
+pub fn reason_for_infinite_coefficients(all: &EquilibriumCoefficients<'_>) -> Option<&'static str> {
     /// Larger values result from a division by [`TINY`] alone.
     const HUGE: f64 = 1e-6 / TINY;
     let entries: Vec<Expr<'_>> =

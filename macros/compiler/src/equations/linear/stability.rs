@@ -5,7 +5,7 @@
 //! coefficients and the discriminant must be positive. If the forces have a potential, these squares are
 //! always real and need not be distinct (Lagrange and Dirichlet).
 
-use super::characteristic::Characteristic;
+use super::characteristic::CharacteristicPolynomial;
 use super::parts::ROOT;
 use super::rest::{random_parameter, values_at_random_parameters, vanishes_identically};
 use crate::algebra::normal::inverse;
@@ -25,12 +25,12 @@ pub struct Stability {
     /// Frequency of oscillation, rad/s, if all nonzero roots belong to one undamped oscillation.
     pub frequency: Option<Polynomial>,
     /// Stability with respect to the nonzero roots.
-    pub verdict: Verdict,
+    pub verdict: StabilityVerdict,
 }
 
 /// Stability with respect to the nonzero roots of the characteristic polynomial.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
+pub enum StabilityVerdict {
     /// The equilibrium is asymptotically stable if all of these polynomials are positive.
     Asymptotic(Vec<Polynomial>),
     /// The equilibrium is stable if all of these polynomials are positive: deviations oscillate and remain
@@ -50,10 +50,10 @@ pub enum Verdict {
 const TERMS: usize = 120;
 
 /// Analyses the stability. `None` if the sign of the leading coefficient depends on the parameters.
-pub fn analyse_stability(c: Characteristic) -> Option<Stability> {
-    let Characteristic { mut ring, mut coefficients, conservative, positive: known } = c;
+pub fn analyse_stability(c: CharacteristicPolynomial) -> Option<Stability> {
+    let CharacteristicPolynomial { mut ring, mut coefficients, conservative, positive: known } = c;
     let mut positive = known.clone();
-    coefficients = without_even_divisors(&coefficients, &mut ring)?;
+    coefficients = multiplied_by_even_denominators(&coefficients, &mut ring)?;
     let leading = coefficients.last()?;
     let signs = values_at_random_parameters(|seed| {
         Some(ring.evaluate_polynomial(leading, &|s| random_parameter(s, seed)).signum())
@@ -69,12 +69,12 @@ pub fn analyse_stability(c: Characteristic) -> Option<Stability> {
     let rest = coefficients[zeros..].to_vec();
     let even = rest.iter().skip(1).step_by(2).all(|p| p.terms.is_empty());
     let verdict = match (rest.len() - 1, even) {
-        (0, _) => Verdict::Nothing,
+        (0, _) => StabilityVerdict::Nothing,
         (_, false) => lienard_chipart_conditions(&rest, &mut ring, &positive),
         (_, true) => oscillation_conditions(&rest, conservative, &mut ring, &positive),
     };
     ring.monomial_of_atom(Atom::Symbol(ROOT.symbol()))?;
-    let oscillates = matches!(verdict, Verdict::Oscillation(_));
+    let oscillates = matches!(verdict, StabilityVerdict::Oscillation(_));
     let frequency = match rest.as_slice() {
         [last, middle, first] if middle.terms.is_empty() && oscillates => {
             natural_frequency(last, first, &mut ring)
@@ -87,7 +87,7 @@ pub fn analyse_stability(c: Characteristic) -> Option<Stability> {
 /// Divides all coefficients by their common monomial and by a sign. Returns the parameters that the common
 /// monomial contains to an odd power, which are assumed to be positive.
 fn divide_by_common_monomial(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol> {
-    let sign = sign / integer_multiple_unit(coefficients.iter());
+    let sign = sign / common_coefficient_divisor(coefficients.iter());
     let mut terms = coefficients.iter().flat_map(|p| &p.terms).map(|t| t.monomial);
     let Some(first) = terms.next() else { return Vec::new() };
     let common = terms.fold(first, Monomial::greatest_common_divisor);
@@ -121,7 +121,7 @@ fn natural_frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> 
 
 /// Returns the conditions of Liénard and Chipart: every other coefficient and every other Hurwitz determinant
 /// is positive.
-fn lienard_chipart_conditions(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verdict {
+fn lienard_chipart_conditions(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> StabilityVerdict {
     let n = rest.len() - 1;
     let mut conditions: Vec<Polynomial> = rest.iter().step_by(2).take(n.div_ceil(2)).cloned().collect();
     // Determinants of orders n − 1, n − 3, …
@@ -133,10 +133,10 @@ fn lienard_chipart_conditions(rest: &[Polynomial], ring: &mut Ring, positive: &[
     for order in orders {
         match hurwitz_determinant(rest, order, ring) {
             Some(determinant) => conditions.push(determinant),
-            None => return Verdict::Long,
+            None => return StabilityVerdict::Long,
         }
     }
-    simplify_conditions(conditions, Verdict::Asymptotic, ring, positive)
+    remove_trivial_stability_conditions(conditions, StabilityVerdict::Asymptotic, ring, positive)
 }
 
 /// Returns the Hurwitz determinant of an order. `None` beyond the limits of the ring.
@@ -151,19 +151,19 @@ fn hurwitz_determinant(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Op
                 .collect()
         })
         .collect();
-    expand_minor(&rows, ring)
+    determinant_by_expansion(&rows, ring)
 }
 
 /// Returns a determinant of polynomials, expanded along its first row.
-fn expand_minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
+fn determinant_by_expansion(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
     let Some((first, others)) = rows.split_first() else { return Some(Polynomial::from_number(1.0)) };
     let mut sum = Polynomial::default();
     for (c, entry) in first.iter().enumerate().filter(|(_, p)| !p.terms.is_empty()) {
-        let remaining_row = |row: &Vec<Polynomial>| {
+        let row_without_column = |row: &Vec<Polynomial>| {
             let kept = row.iter().enumerate().filter(|(k, _)| *k != c);
             kept.map(|(_, p)| p.clone()).collect()
         };
-        let own = expand_minor(&others.iter().map(remaining_row).collect::<Vec<_>>(), ring)?;
+        let own = determinant_by_expansion(&others.iter().map(row_without_column).collect::<Vec<_>>(), ring)?;
         let product =
             ring.multiply_and_reduce(entry, &own)?.multiplied_by_number(if c % 2 == 0 { 1.0 } else { -1.0 });
         sum = ring.add_within_limits(&sum, &product)?;
@@ -177,16 +177,16 @@ fn oscillation_conditions(
     conservative: bool,
     ring: &mut Ring,
     positive: &[Symbol],
-) -> Verdict {
+) -> StabilityVerdict {
     let squares: Vec<Polynomial> = rest.iter().step_by(2).cloned().collect();
     let mut conditions = squares[..squares.len() - 1].to_vec();
     if !conservative && squares.len() > 2 {
         match polynomial_discriminant(&squares, ring) {
             Some(discriminant) => conditions.push(discriminant),
-            None => return Verdict::Long,
+            None => return StabilityVerdict::Long,
         }
     }
-    simplify_conditions(conditions, Verdict::Oscillation, ring, positive)
+    remove_trivial_stability_conditions(conditions, StabilityVerdict::Oscillation, ring, positive)
 }
 
 /// Returns the discriminant of a quadratic or cubic polynomial, `None` for other degrees.
@@ -214,38 +214,38 @@ fn polynomial_discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomi
 }
 
 /// Removes conditions that always hold. Returns another verdict if a condition never holds.
-fn simplify_conditions(
+fn remove_trivial_stability_conditions(
     conditions: Vec<Polynomial>,
-    verdict: fn(Vec<Polynomial>) -> Verdict,
+    verdict: fn(Vec<Polynomial>) -> StabilityVerdict,
     ring: &mut Ring,
     positive: &[Symbol],
-) -> Verdict {
+) -> StabilityVerdict {
     let mut kept: Vec<Polynomial> = Vec::new();
     let (mut unstable, mut zero) = (false, false);
     for condition in conditions {
         let Some(condition) = remove_positive_factors(&condition, ring, positive) else {
-            return Verdict::Long;
+            return StabilityVerdict::Long;
         };
         if condition.terms.is_empty() || vanishes_identically(ring, &condition) {
             zero = true;
-        } else if is_positive(&condition.multiplied_by_number(-1.0), ring, positive) {
+        } else if has_only_positive_terms(&condition.multiplied_by_number(-1.0), ring, positive) {
             unstable = true;
-        } else if !is_positive(&condition, ring, positive) && !kept.contains(&condition) {
+        } else if !has_only_positive_terms(&condition, ring, positive) && !kept.contains(&condition) {
             kept.push(condition);
         }
     }
     let has_opposite_condition = |p: &Polynomial| kept.contains(&p.multiplied_by_number(-1.0));
     zero |= kept.iter().any(has_opposite_condition);
     match (unstable, zero) {
-        (true, _) => Verdict::Unstable,
-        (_, true) => Verdict::NotAsymptotic,
-        _ if kept.iter().map(|p| p.terms.len()).sum::<usize>() > TERMS => Verdict::Long,
+        (true, _) => StabilityVerdict::Unstable,
+        (_, true) => StabilityVerdict::NotAsymptotic,
+        _ if kept.iter().map(|p| p.terms.len()).sum::<usize>() > TERMS => StabilityVerdict::Long,
         _ => verdict(kept),
     }
 }
 
 /// Returns true if all terms of a polynomial are positive.
-fn is_positive(p: &Polynomial, ring: &Ring, positive: &[Symbol]) -> bool {
+fn has_only_positive_terms(p: &Polynomial, ring: &Ring, positive: &[Symbol]) -> bool {
     let is_positive_power =
         |(atom, power): (usize, u8)| power % 2 == 0 || is_positive_atom(ring, atom, positive);
     !p.terms.is_empty()
@@ -258,7 +258,7 @@ fn is_positive_atom(ring: &Ring, atom: usize, positive: &[Symbol]) -> bool {
     match &ring.atoms[atom] {
         Atom::Symbol(symbol) => positive.contains(symbol),
         Atom::Call(Function::Sqrt | Function::Exp | Function::Cosh, _) => true,
-        Atom::Inverse(p) => is_positive(p, ring, positive),
+        Atom::Inverse(p) => has_only_positive_terms(p, ring, positive),
         _ => false,
     }
 }
@@ -266,7 +266,7 @@ fn is_positive_atom(ring: &Ring, atom: usize, positive: &[Symbol]) -> bool {
 /// Removes positive factors from a condition. If the remaining sum has a definite sign and other factors
 /// remain, only the sign is retained.
 fn remove_positive_factors(p: &Polynomial, ring: &mut Ring, positive: &[Symbol]) -> Option<Polynomial> {
-    let p = without_even_divisors(std::slice::from_ref(p), ring)?.pop()?;
+    let p = multiplied_by_even_denominators(std::slice::from_ref(p), ring)?.pop()?;
     let Some(common) = common_monomial(&p) else { return Some(p) };
     let mut divisor = Monomial::ONE;
     for (atom, power) in common.atoms_with_powers() {
@@ -276,12 +276,13 @@ fn remove_positive_factors(p: &Polynomial, ring: &mut Ring, positive: &[Symbol])
     }
     let factor = common.quotient(divisor);
     let left = divide_by_monomial(&p, common);
-    let sign =
-        [1.0, -1.0].into_iter().find(|sign| is_positive(&left.multiplied_by_number(*sign), ring, positive));
+    let sign = [1.0, -1.0]
+        .into_iter()
+        .find(|sign| has_only_positive_terms(&left.multiplied_by_number(*sign), ring, positive));
     if let (Some(sign), true) = (sign, factor != Monomial::ONE) {
         return Some(Polynomial::single_term(factor, sign));
     }
-    Some(scaled_to_whole(&divide_by_monomial(&p, divisor), 1.0 / integer_multiple_unit([&p])))
+    Some(scaled_to_whole(&divide_by_monomial(&p, divisor), 1.0 / common_coefficient_divisor([&p])))
 }
 
 /// Returns the common monomial of all terms, `None` for zero.
@@ -298,11 +299,11 @@ fn divide_by_monomial(p: &Polynomial, divisor: Monomial) -> Polynomial {
 
 /// Returns the smallest magnitude of the coefficients if all coefficients are integer multiples of it,
 /// otherwise one.
-fn integer_multiple_unit<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
+fn common_coefficient_divisor<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
     let sizes: Vec<f64> = all.into_iter().flat_map(|p| &p.terms).map(|t| t.coefficient.abs()).collect();
     let least = sizes.iter().copied().fold(f64::MAX, f64::min);
-    let is_whole = |size: &f64| (size / least - (size / least).round()).abs() < 1e-9;
-    if sizes.iter().all(is_whole) { least } else { 1.0 }
+    let is_integer_multiple_of_least = |size: &f64| (size / least - (size / least).round()).abs() < 1e-9;
+    if sizes.iter().all(is_integer_multiple_of_least) { least } else { 1.0 }
 }
 
 /// Multiplies a polynomial by a number, and rounds coefficients that are integers up to rounding error.
@@ -317,7 +318,7 @@ fn scaled_to_whole(p: &Polynomial, factor: f64) -> Polynomial {
 }
 
 /// Multiplies all polynomials by the even powers of atoms that occur in their denominators.
-fn without_even_divisors(all: &[Polynomial], ring: &mut Ring) -> Option<Vec<Polynomial>> {
+fn multiplied_by_even_denominators(all: &[Polynomial], ring: &mut Ring) -> Option<Vec<Polynomial>> {
     let mut out = all.to_vec();
     for k in 0..ring.atoms.len() {
         let Atom::Inverse(p) = &ring.atoms[k] else { continue };

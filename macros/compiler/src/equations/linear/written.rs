@@ -1,17 +1,18 @@
 //! Formats linear equations as plain text, LaTeX and MathML, with the user's names.
 
 use super::super::written::{
-    marks_of_coordinate_rates, name_and_derivative_order as name_of, typeset_names_with, wrap_sentences,
+    marks_of_coordinate_rates, name_and_derivative_order as name_of, typeset_names_with_extra_names,
+    wrap_at_page_width,
 };
-use super::Linear;
+use super::LinearisedEquations;
 use super::parts::{ROOT, multiplier_symbol};
-use super::stability::{Stability, Verdict};
+use super::stability::{Stability, StabilityVerdict};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Term};
-use crate::diag::all_of;
+use crate::diag::join_names_with_and;
 use crate::equations::print::aligned::format_aligned;
 use crate::equations::print::mathml::format_equations_as_html;
 use crate::equations::print::names::name_with_primes;
-use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, Style, Written, wrap_text};
+use crate::equations::print::{Latex, MathMl, Plain, PolynomialWriter, PrintedEquations, Style, wrap_text};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
 
@@ -35,14 +36,14 @@ struct SymbolNames<'a, 'g> {
 impl<'a, 'g> SymbolNames<'a, 'g> {
     fn new(model: &'a Model<'g>, at: &'a Equilibrium<'g>) -> SymbolNames<'a, 'g> {
         let first_unused_word = |choices: &[&str]| {
-            let is_used_as_name = |word: &str| {
+            let is_model_name = |word: &str| {
                 let velocities = model.velocities.iter().map(|(name, _)| name);
                 let inputs = model.inputs.iter().map(|(name, _)| name);
                 let mut all =
                     model.parameters.iter().chain(&model.configuration).chain(velocities).chain(inputs);
                 all.any(|name| name == word)
             };
-            let found = choices.iter().find(|word| !is_used_as_name(word));
+            let found = choices.iter().find(|word| !is_model_name(word));
             found.or(choices.last()).map_or_else(String::new, ToString::to_string)
         };
         SymbolNames {
@@ -109,27 +110,27 @@ struct LinearLines {
 }
 
 impl LinearLines {
-    fn new<S: Style + Copy>(linear: &Linear, style: S) -> LinearLines {
-        let writer = PolynomialWriter::with_style(&linear.ring, style);
+    fn new<S: Style + Copy>(linear: &LinearisedEquations, style: S) -> LinearLines {
+        let writer = PolynomialWriter::new_with_style(&linear.ring, style);
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
         let stability = linear.stability.as_ref();
-        let format_stability = |stability: &Stability| {
+        let stability_polynomial_text = |stability: &Stability| {
             Some(
-                PolynomialWriter::with_style(&stability.ring, style)
-                    .format_linear_form(&merged_characteristic(stability)?),
+                PolynomialWriter::new_with_style(&stability.ring, style)
+                    .format_linear_form(&characteristic_polynomial_in_root(stability)?),
             )
         };
-        let format_conditions = |stability: &Stability| match &stability.verdict {
-            Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
-                let writer = PolynomialWriter::with_style(&stability.ring, style);
+        let format_stability_conditions = |stability: &Stability| match &stability.verdict {
+            StabilityVerdict::Asymptotic(all) | StabilityVerdict::Oscillation(all) => {
+                let writer = PolynomialWriter::new_with_style(&stability.ring, style);
                 all.iter().map(|condition| writer.format_polynomial(condition)).collect()
             }
             _ => Vec::new(),
         };
         let frequency = stability.and_then(|stability| {
             let frequency = stability.frequency.as_ref()?;
-            Some(PolynomialWriter::with_style(&stability.ring, style).format_polynomial(frequency))
+            Some(PolynomialWriter::new_with_style(&stability.ring, style).format_polynomial(frequency))
         });
         LinearLines {
             equations: sides
@@ -138,15 +139,15 @@ impl LinearLines {
             values: values
                 .map(|(what, p)| (style.symbol(what.symbol(), 1), writer.format_polynomial(p)))
                 .collect(),
-            polynomial: stability.and_then(format_stability),
+            polynomial: stability.and_then(stability_polynomial_text),
             frequency,
-            conditions: stability.map(format_conditions).unwrap_or_default(),
+            conditions: stability.map(format_stability_conditions).unwrap_or_default(),
         }
     }
 }
 
 /// Returns the characteristic polynomial as one polynomial in its root; `None` if a power of it is too high.
-fn merged_characteristic(stability: &Stability) -> Option<Polynomial> {
+fn characteristic_polynomial_in_root(stability: &Stability) -> Option<Polynomial> {
     let root = stability.ring.atoms.iter().position(|atom| *atom == Atom::Symbol(ROOT.symbol()));
     let root = root.map_or(Monomial::ONE, Monomial::first_power_of_atom);
     let mut terms: Vec<Term> = Vec::new();
@@ -163,13 +164,17 @@ fn merged_characteristic(stability: &Stability) -> Option<Polynomial> {
 }
 
 /// Formats linear equations as plain text, LaTeX and MathML.
-pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
+pub fn format_linear_equations(
+    model: &Model<'_>,
+    at: &Equilibrium<'_>,
+    linear: &LinearisedEquations,
+) -> PrintedEquations {
     let words = SymbolNames::new(model, at);
     let primed_name = |symbol| name_with_primes(words.name_and_derivative_order(symbol));
     let plain = plain_text(&words, linear, &LinearLines::new(linear, Plain { name: &primed_name }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);
-    let names = typeset_names_with(model, &others);
+    let names = typeset_names_with_extra_names(model, &others);
     let name_with_dots = |symbol| {
         let (name, dots) = words.name_and_derivative_order(symbol);
         (names.get(&name), dots)
@@ -182,29 +187,29 @@ pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) 
         &LinearLines::new(linear, MathMl { name: &name_with_dots }),
         &frequency,
     ));
-    Written { plain, latex, mathml }
+    PrintedEquations { plain, latex, mathml }
 }
 
-fn plain_text(words: &SymbolNames<'_, '_>, linear: &Linear, lines: &LinearLines) -> String {
+fn plain_text(words: &SymbolNames<'_, '_>, linear: &LinearisedEquations, lines: &LinearLines) -> String {
     let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
     let values: Vec<String> = lines.values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let header = match values.as_slice() {
         [] => format!("{}: all coordinates and inputs at zero.", words.at.name),
         all => format!("{}: {}; other values are zero.", words.at.name, all.join(", ")),
     };
-    let mut out = wrap_sentences(&header) + "\n\n";
+    let mut out = wrap_at_page_width(&header) + "\n\n";
     out.extend(lines.equations.iter().map(|(motion, force)| wrapped_line(&format!("{motion} = {force}"))));
     out.push('\n');
     if let (Some(stability), Some(polynomial)) = (&linear.stability, &lines.polynomial) {
-        out += &(wrap_sentences(&roots_sentence(words, stability)) + "\n");
+        out += &(wrap_at_page_width(&characteristic_equation_sentence(words, stability)) + "\n");
         out += &wrapped_line(&format!("    {polynomial} = 0"));
         if let Some(frequency) = &lines.frequency {
             out += &format!("Natural frequency, rad/s:\n    {} = {frequency}\n", words.frequency);
         }
-        out += &(wrap_sentences(verdict_sentence(stability)) + "\n");
+        out += &(wrap_at_page_width(verdict_sentence(stability)) + "\n");
         out.extend(lines.conditions.iter().map(|condition| wrapped_line(&format!("    {condition} > 0"))));
         if stability.zeros > 0 {
-            out += &(wrap_sentences(&zero_roots_sentence(words, stability)) + "\n");
+            out += &(wrap_at_page_width(&zero_roots_sentence(words, stability)) + "\n");
         }
         out.push('\n');
     }
@@ -212,14 +217,14 @@ fn plain_text(words: &SymbolNames<'_, '_>, linear: &Linear, lines: &LinearLines)
 }
 
 /// Returns the sentence that introduces the characteristic equation.
-fn roots_sentence(words: &SymbolNames<'_, '_>, stability: &Stability) -> String {
+fn characteristic_equation_sentence(words: &SymbolNames<'_, '_>, stability: &Stability) -> String {
     let root = &words.root;
     let divided: Vec<String> =
         stability.divided.iter().map(|s| words.name_and_derivative_order(*s).0).collect();
     match divided.is_empty() {
         true => format!("Motions like exp({root} t), with the roots {root} of"),
         false => {
-            let all = all_of(&divided);
+            let all = join_names_with_and(&divided);
             format!(
                 "Motions like exp({root} t), with the roots {root} of (divided by {all}, taken to be \
                  positive)"
@@ -231,14 +236,16 @@ fn roots_sentence(words: &SymbolNames<'_, '_>, stability: &Stability) -> String 
 /// Returns the sentence that introduces the stability conditions, or states the result.
 fn verdict_sentence(stability: &Stability) -> &'static str {
     match &stability.verdict {
-        Verdict::Asymptotic(all) if all.is_empty() => "Asymptotically stable: all deviations die away.",
-        Verdict::Asymptotic(_) => "Asymptotically stable where",
-        Verdict::Oscillation(all) if all.is_empty() => "Stable: all deviations oscillate.",
-        Verdict::Oscillation(_) => "Stable, all deviations oscillate, where",
-        Verdict::NotAsymptotic => "Not asymptotically stable: some deviations do not die away.",
-        Verdict::Unstable => "Unstable: some deviations grow.",
-        Verdict::Nothing => "All roots are zero: deviations are not restored.",
-        Verdict::Long => "The conditions of stability are too long to be read.",
+        StabilityVerdict::Asymptotic(all) if all.is_empty() => {
+            "Asymptotically stable: all deviations die away."
+        }
+        StabilityVerdict::Asymptotic(_) => "Asymptotically stable where",
+        StabilityVerdict::Oscillation(all) if all.is_empty() => "Stable: all deviations oscillate.",
+        StabilityVerdict::Oscillation(_) => "Stable, all deviations oscillate, where",
+        StabilityVerdict::NotAsymptotic => "Not asymptotically stable: some deviations do not die away.",
+        StabilityVerdict::Unstable => "Unstable: some deviations grow.",
+        StabilityVerdict::Nothing => "All roots are zero: deviations are not restored.",
+        StabilityVerdict::Long => "The conditions of stability are too long to be read.",
     }
 }
 
@@ -273,10 +280,10 @@ fn legend_sentences(words: &SymbolNames<'_, '_>) -> String {
             Chart::Ball(_, v) => (v.0, 3),
             Chart::Free(_, v) => (v.0, 6),
         };
-        let all = all_of(&words.deviations[v + count - 3..v + count]);
+        let all = join_names_with_and(&words.deviations[v + count - 3..v + count]);
         sentences.push(format!("{all} are a small rotation about body axes."));
         if count == 6 {
-            let all = all_of(&words.deviations[v..v + 3]);
+            let all = join_names_with_and(&words.deviations[v..v + 3]);
             sentences.push(format!("{all} are a small displacement along body axes."));
         }
     }
@@ -290,12 +297,16 @@ fn legend_sentences(words: &SymbolNames<'_, '_>) -> String {
         } else {
             ("are the multipliers", "constraints")
         };
-        sentences.push(format!("{} {is} of the {of} {}.", all_of(&multipliers), all_of(&constraints)));
+        sentences.push(format!(
+            "{} {is} of the {of} {}.",
+            join_names_with_and(&multipliers),
+            join_names_with_and(&constraints)
+        ));
     }
     if !model.contacts.is_empty() {
         sentences.push("Contacts are open.".to_string());
     }
-    wrap_sentences(&sentences.join(" "))
+    wrap_at_page_width(&sentences.join(" "))
 }
 
 /// Returns all printed linear equations and stability conditions, one per string.

@@ -1,6 +1,6 @@
 //! Printing of equations for the math mode of LaTeX with `amsmath`.
 
-use super::names::{Glyph, SymbolName};
+use super::names::{NameFragment, SymbolName};
 use super::style::{Argument, Number, PrintedFactor, Style};
 use crate::expr::node::Symbol;
 
@@ -150,11 +150,11 @@ pub fn format_name(name: &SymbolName, dots: u8) -> String {
     if indices.is_empty() { base } else { format!("{base}_{{{}}}", indices.join(",")) }
 }
 
-fn format_glyph(glyph: &Glyph) -> String {
+fn format_glyph(glyph: &NameFragment) -> String {
     match glyph {
-        Glyph::Letter(letter) => letter.to_string(),
-        Glyph::Greek(name, _) => format!("\\{name}"),
-        Glyph::Digits(digits) => digits.clone(),
-        Glyph::Word(word) => format!("\\mathrm{{{}}}", word.replace('_', "\\_")),
+        NameFragment::Letter(letter) => letter.to_string(),
+        NameFragment::Greek(name, _) => format!("\\{name}"),
+        NameFragment::Digits(digits) => digits.clone(),
+        NameFragment::Word(word) => format!("\\mathrm{{{}}}", word.replace('_', "\\_")),
     }
 }

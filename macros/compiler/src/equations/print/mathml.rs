@@ -1,7 +1,7 @@
 //! Presentation MathML, which browsers render without scripts. Browsers do not break formulas. Every term of
 //! a sum is therefore a formula of its own, with line breaks between them.
 
-use super::names::{Glyph, SymbolName};
+use super::names::{NameFragment, SymbolName};
 use super::style::{Argument, Number, PrintedFactor, Style};
 use crate::expr::node::Symbol;
 
@@ -233,11 +233,11 @@ pub fn format_name(name: &SymbolName, dots: u8, power: u8) -> String {
     }
 }
 
-fn format_glyph(glyph: &Glyph) -> String {
+fn format_glyph(glyph: &NameFragment) -> String {
     match glyph {
-        Glyph::Letter(letter) | Glyph::Greek(_, letter) => format!("<mi>{letter}</mi>"),
-        Glyph::Digits(digits) => format!("<mn>{digits}</mn>"),
-        Glyph::Word(word) => format!("<mi>{}</mi>", escape_xml(word)),
+        NameFragment::Letter(letter) | NameFragment::Greek(_, letter) => format!("<mi>{letter}</mi>"),
+        NameFragment::Digits(digits) => format!("<mn>{digits}</mn>"),
+        NameFragment::Word(word) => format!("<mi>{}</mi>", escape_xml(word)),
     }
 }
 

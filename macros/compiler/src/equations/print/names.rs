@@ -5,15 +5,15 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymbolName {
     /// Part of the name that is typeset on the line.
-    pub base: Glyph,
+    pub base: NameFragment,
     /// Subscripts of the name.
-    pub indices: Vec<Glyph>,
+    pub indices: Vec<NameFragment>,
 }
 
 /// Indivisible part of a printed name.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it all")]
-pub enum Glyph {
+pub enum NameFragment {
     Letter(char),
     /// Greek letter: its English name and its character.
     Greek(&'static str, char),
@@ -59,16 +59,16 @@ const GREEK: [(&str, char); 34] = [
     ("Omega", 'Ω'),
 ];
 
-impl Glyph {
-    fn from_word(word: &str) -> Glyph {
+impl NameFragment {
+    fn from_word(word: &str) -> NameFragment {
         let mut letters = word.chars();
         let single = letters.next().filter(|_| letters.next().is_none());
         let greek = GREEK.iter().find(|(name, letter)| *name == word || Some(*letter) == single);
         match (greek, single) {
-            (Some((name, letter)), _) => Glyph::Greek(name, *letter),
-            _ if word.bytes().all(|b| b.is_ascii_digit()) => Glyph::Digits(word.to_string()),
-            (None, Some(letter)) if letter.is_alphabetic() => Glyph::Letter(letter),
-            _ => Glyph::Word(word.to_string()),
+            (Some((name, letter)), _) => NameFragment::Greek(name, *letter),
+            _ if word.bytes().all(|b| b.is_ascii_digit()) => NameFragment::Digits(word.to_string()),
+            (None, Some(letter)) if letter.is_alphabetic() => NameFragment::Letter(letter),
+            _ => NameFragment::Word(word.to_string()),
         }
     }
 }
@@ -76,45 +76,48 @@ impl Glyph {
 impl SymbolName {
     /// Returns a name that is typeset as one word, without subscripts.
     pub fn single_word_name(text: &str) -> SymbolName {
-        SymbolName { base: Glyph::Word(text.to_string()), indices: Vec::new() }
+        SymbolName { base: NameFragment::Word(text.to_string()), indices: Vec::new() }
     }
 
     /// Splits a name into base and subscripts.
     pub fn parse(text: &str) -> SymbolName {
         if let Some((joint, member)) = text.split_once('.') {
-            return SymbolName::name_of_member(joint, member);
+            return SymbolName::name_of_joint_coordinate(joint, member);
         }
         if text.split('_').any(str::is_empty) {
             return SymbolName::single_word_name(text);
         }
         let (head, tail) = text.split_once('_').map_or((text, None), |(head, tail)| (head, Some(tail)));
         let (stem, digits) = split_trailing_digits(head);
-        let base = Glyph::from_word(stem);
-        let digits_of_index = |digits: &str| (!digits.is_empty()).then(|| Glyph::Digits(digits.to_string()));
-        if let Glyph::Letter(_) | Glyph::Greek(..) = base {
-            let indices = digits_of_index(digits).into_iter().chain(tail.map(Glyph::from_word)).collect();
+        let base = NameFragment::from_word(stem);
+        let digits_of_index =
+            |digits: &str| (!digits.is_empty()).then(|| NameFragment::Digits(digits.to_string()));
+        if let NameFragment::Letter(_) | NameFragment::Greek(..) = base {
+            let indices =
+                digits_of_index(digits).into_iter().chain(tail.map(NameFragment::from_word)).collect();
             return SymbolName { base, indices };
         }
         let (stem, digits) = split_trailing_digits(text);
         let stem = stem.trim_end_matches('_');
         SymbolName {
-            base: Glyph::Word(stem.to_string()),
+            base: NameFragment::Word(stem.to_string()),
             indices: digits_of_index(digits).into_iter().collect(),
         }
     }
 
     /// Splits the name of a coordinate of a joint with several coordinates. Angular velocities, velocities
     /// and quaternions have an axis as second subscript.
-    fn name_of_member(joint: &str, member: &str) -> SymbolName {
-        let joint = Glyph::from_word(joint);
+    fn name_of_joint_coordinate(joint: &str, member: &str) -> SymbolName {
+        let joint = NameFragment::from_word(joint);
         let mut letters = member.chars();
         if let (Some(kind @ ('w' | 'v' | 'q' | 'r' | 'd')), Some(axis @ 'w'..='z'), None) =
             (letters.next(), letters.next(), letters.next())
         {
-            let base = if kind == 'w' { Glyph::Greek("omega", 'ω') } else { Glyph::Letter(kind) };
-            return SymbolName { base, indices: vec![joint, Glyph::Letter(axis)] };
+            let base =
+                if kind == 'w' { NameFragment::Greek("omega", 'ω') } else { NameFragment::Letter(kind) };
+            return SymbolName { base, indices: vec![joint, NameFragment::Letter(axis)] };
         }
-        SymbolName { base: Glyph::from_word(member), indices: vec![joint] }
+        SymbolName { base: NameFragment::from_word(member), indices: vec![joint] }
     }
 }
 

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// Printed text in all output formats; empty if there are no equations.
 #[derive(Clone, Debug, Default)]
-pub struct Written {
+pub struct PrintedEquations {
     /// Equations as plain text without markup.
     pub plain: String,
     /// Equations for the math mode of LaTeX.

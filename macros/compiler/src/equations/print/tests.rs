@@ -1,7 +1,7 @@
 //! Tests of the printing of numbers, of grouping and of line breaks.
 
 use super::*;
-use crate::algebra::normal::Normal;
+use crate::algebra::normal::NormalFormCache;
 use crate::expr::{Function, Graph};
 
 /// Names of parameters, coordinates, rates and an input: `m k l`, `x y`, `x' y'`, `u`.
@@ -20,7 +20,7 @@ fn rank_of_symbol(symbol: Symbol) -> crate::algebra::polynomial::AtomRank {
 fn formatted_text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String {
     let graph = Graph::new();
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
-    let mut normal = Normal::new(&graph, rank_of_symbol);
+    let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
     PolynomialWriter::new(&normal.ring, &|s| NAMES[s.0 as usize].to_string()).format_polynomial(&p)
 }
@@ -143,13 +143,13 @@ fn long_equations_are_split_into_lines() {
 fn formatted_latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String {
     let graph = Graph::new();
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
-    let mut normal = Normal::new(&graph, rank_of_symbol);
+    let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
     let name_with_primes = |s: Symbol| {
         let name = NAMES[s.0 as usize].trim_end_matches('\'');
         (SymbolName::parse(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
     };
-    PolynomialWriter::with_style(&normal.ring, Latex { name: &name_with_primes }).format_polynomial(&p)
+    PolynomialWriter::new_with_style(&normal.ring, Latex { name: &name_with_primes }).format_polynomial(&p)
 }
 
 #[test]

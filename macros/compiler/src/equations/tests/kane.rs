@@ -1,9 +1,9 @@
 //! Reads Kane's equations in independent velocities back and compares them with the accelerations of
 //! Lagrange's equations with multipliers.
 
-use super::super::kane::{kane_equations, written_kane};
+use super::super::kane::{format_kane_equations, kane_equations};
 use super::*;
-use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::speeds::SpeedTransformation;
 
 /// Chaplygin's sleigh: a knife edge at the origin of a sled whose centre of mass is ahead of it.
 const SLEIGH: &str = "struct Sleigh { m: f64, a: f64, j: f64,
@@ -74,12 +74,12 @@ fn solve_linear_system(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 /// with multipliers. Returns the text.
 pub(super) fn check_printed_equations(model: &Model<'_>) -> String {
     let joints = crate::kinematics::joints_of_model(model);
-    let speeds = InSpeeds::new(model);
+    let speeds = SpeedTransformation::new(model);
     let native = speeds.as_ref().map_or(model, |s| &s.native);
     let named = speeds.as_ref().map_or(model, |s| &s.model);
     let found = kane_equations(native, &joints, speeds.as_ref())
         .unwrap_or_else(|_| panic!("{} is short", model.name));
-    let text = written_kane(named, &found).plain;
+    let text = format_kane_equations(named, &found).plain;
     let lagrange = lagrange::derive(native, &joints);
     let (nv, nc) = (native.nv(), native.constraints.len());
     let rows = constraints::jacobian(native);
@@ -130,34 +130,35 @@ pub(super) fn check_printed_equations(model: &Model<'_>) -> String {
         let (v, a) = match &speeds {
             None => (v, a),
             Some(speeds) => {
-                let of_rates: Vec<Expr<'_>> = speeds.of_rates().concat();
-                let y = eval(&of_rates, &value_with_velocities);
+                let velocity_to_speed_matrix: Vec<Expr<'_>> = speeds.velocity_to_speed_matrix().concat();
+                let y = eval(&velocity_to_speed_matrix, &value_with_velocities);
                 let w: Vec<f64> = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * v[k]).sum()).collect();
-                let value_in_speeds = |s: Symbol| match Quantity::from_symbol(s) {
+                let value_with_replaced_velocities = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Velocity(k) => w[k],
                     _ => at(s),
                 };
                 let still = speeds.without_accelerations(&speeds.accelerations);
-                let change = eval(&still, &value_in_speeds);
+                let change = eval(&still, &value_with_replaced_velocities);
                 let rates = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * (a[k] - change[k])).sum());
                 let rates: Vec<f64> = rates.collect();
                 (w, rates)
             }
         };
-        let value_with_accelerations = |s: Symbol| match Quantity::from_symbol(s) {
+        let symbol_value_at_acceleration = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => v[k],
             Quantity::Acceleration(k) => a[k],
             _ => at(s),
         };
         for (motion, force) in found.motion.iter().zip(&found.forces) {
-            let sides = [motion, force].map(|p| found.ring.evaluate_polynomial(p, &value_with_accelerations));
+            let sides =
+                [motion, force].map(|p| found.ring.evaluate_polynomial(p, &symbol_value_at_acceleration));
             let size = motion.terms.iter().map(|t| Polynomial { terms: vec![*t] });
             let size = size
-                .map(|p| found.ring.evaluate_polynomial(&p, &value_with_accelerations).abs())
+                .map(|p| found.ring.evaluate_polynomial(&p, &symbol_value_at_acceleration).abs())
                 .fold(1.0, f64::max);
             assert!((sides[0] - sides[1]).abs() <= 1e-10 * size, "{sides:?}, state {seed}: {text}");
         }
-        let by_name = values_by_name(named, &value_with_accelerations);
+        let by_name = value_lookup_by_name(named, &symbol_value_at_acceleration);
         let lines = sides_of_equations(&text);
         assert!(lines.len() >= nv, "{text}");
         for (left, right) in &lines {

@@ -109,11 +109,11 @@ fn latex_of_all_mechanisms_is_well_formed() {
             assert!(text.starts_with("\\begin{aligned}\n& \\mathcal{L} = "), "{text}");
             assert!(text.ends_with("\n\\end{aligned}\n"), "{text}");
             let plain = with_model(&gravity, item, |model| crate::equations_as_text(&model));
-            let count_equations = |text: &str, sign: &str| text.matches(sign).count();
-            assert_eq!(count_equations(&text, " = "), count_equations(&plain, " = "), "{text}");
-            let lines = count_equations(&text, "\n& ") - count_equations(&text, "\n& \\quad");
-            assert_eq!(lines, count_equations(&plain, " = "), "{text}");
-            assert_eq!(count_equations(&text, "&"), count_equations(&text, " \\\\\n") + 1, "{text}");
+            let count_occurrences = |text: &str, sign: &str| text.matches(sign).count();
+            assert_eq!(count_occurrences(&text, " = "), count_occurrences(&plain, " = "), "{text}");
+            let lines = count_occurrences(&text, "\n& ") - count_occurrences(&text, "\n& \\quad");
+            assert_eq!(lines, count_occurrences(&plain, " = "), "{text}");
+            assert_eq!(count_occurrences(&text, "&"), count_occurrences(&text, " \\\\\n") + 1, "{text}");
         }
     }
     assert_eq!(equations_latex("-9.81 * z", SKEW), "");

@@ -1,11 +1,15 @@
 //! Compares linear equations with finite differences of Lagrange's equations, and tests their printed form.
 
-use super::super::linear::{self, Linear};
+use super::super::linear::{self, LinearisedEquations};
 use super::*;
 
 /// Calls `f` with the linear equations of every equilibrium of a struct, as polynomials, plain text and
 /// LaTeX.
-fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear, &str, &str)) {
+fn check_linear_equations(
+    gravity: &str,
+    item: &str,
+    f: impl for<'g> Fn(&Model<'g>, &LinearisedEquations, &str, &str),
+) {
     with_model(gravity, item, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
@@ -14,7 +18,7 @@ fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear
             let mut cx = Diagnostics::new();
             let found = linear::derive_linear_equations(&model, &joints, &mass, at, &mut cx);
             let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
-            let written = linear::written_linear(&model, at, &found);
+            let written = linear::format_linear_equations(&model, at, &found);
             assert_eq!(latex::latex_errors(&written.latex), [""; 0], "{}", written.latex);
             f(&model, &found, &written.plain, &written.latex);
         }
@@ -23,7 +27,7 @@ fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear
 
 /// Compares the rows of the linear equations with finite differences of force balances, constraints and rates
 /// of states.
-fn check_linear_rows(model: &Model<'_>, found: &Linear) {
+fn check_linear_rows(model: &Model<'_>, found: &LinearisedEquations) {
     let (nv, nu) = (model.nv(), model.nu());
     let at = &model.equilibria[0];
     let states = at.states.len();
@@ -39,7 +43,7 @@ fn check_linear_rows(model: &Model<'_>, found: &Linear) {
     let mut balance: Vec<Expr<'_>> = lagrange.bias.iter().zip(&right).map(|(a, b)| *a - *b).collect();
     balance.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
     balance.extend(at.states.iter().map(|state| -state.rate));
-    let balance_values = |q: &[f64], v: &[f64], u: &[f64], x: f64| {
+    let force_balance_values = |q: &[f64], v: &[f64], u: &[f64], x: f64| {
         eval(&balance, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],
@@ -54,45 +58,54 @@ fn check_linear_rows(model: &Model<'_>, found: &Linear) {
         let ((a, b), (c, d)) = ((f(h), f(-h)), (f(2.0 * h), f(-2.0 * h)));
         (0..a.len()).map(|k| (8.0 * (a[k] - b[k]) - (c[k] - d[k])) / (12.0 * h)).collect()
     };
-    let displaced_list = |list: &[f64], k: usize, by: f64| {
+    let list_with_changed_entry = |list: &[f64], k: usize, by: f64| {
         let mut list = list.to_vec();
         list[k] += by;
         list
     };
     let still = vec![0.0; nv];
     let coefficients_of_quantity = |what: Quantity, sides: &[Polynomial]| -> Vec<f64> {
-        let indicator_of_quantity = |s: Symbol| match Quantity::from_symbol(s) {
+        let value_for_unit_quantity = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Parameter(_) => parameter_value(s),
             _ => f64::from(u8::from(s == what.symbol())),
         };
-        sides.iter().map(|p| found.ring.evaluate_polynomial(p, &indicator_of_quantity)).collect()
+        sides.iter().map(|p| found.ring.evaluate_polynomial(p, &value_for_unit_quantity)).collect()
     };
     for k in 0..nv {
         // All coordinates are plain here.
-        let by_q = central_difference(&|d| balance_values(&displaced_list(&q, k, d), &still, &u, 0.0));
-        assert_small(
+        let by_q = central_difference(&|d| {
+            force_balance_values(&list_with_changed_entry(&q, k, d), &still, &u, 0.0)
+        });
+        assert_close_lists(
             &coefficients_of_quantity(linear::deviation_symbol(k), &found.motion),
             &by_q,
             "stiffness",
         );
-        let by_v = central_difference(&|d| balance_values(&q, &displaced_list(&still, k, d), &u, 0.0));
-        assert_small(&coefficients_of_quantity(Quantity::Velocity(k), &found.motion), &by_v, "damping");
+        let by_v = central_difference(&|d| {
+            force_balance_values(&q, &list_with_changed_entry(&still, k, d), &u, 0.0)
+        });
+        assert_close_lists(&coefficients_of_quantity(Quantity::Velocity(k), &found.motion), &by_v, "damping");
     }
     for k in 0..nu {
-        let by_u: Vec<f64> =
-            central_difference(&|d| balance_values(&q, &still, &displaced_list(&u, k, d), 0.0))
-                .iter()
-                .map(|x| -x)
-                .collect();
-        assert_small(&coefficients_of_quantity(Quantity::Input(k), &found.forces), &by_u, "inputs");
+        let by_u: Vec<f64> = central_difference(&|d| {
+            force_balance_values(&q, &still, &list_with_changed_entry(&u, k, d), 0.0)
+        })
+        .iter()
+        .map(|x| -x)
+        .collect();
+        assert_close_lists(&coefficients_of_quantity(Quantity::Input(k), &found.forces), &by_u, "inputs");
     }
     if states > 0 {
-        let by_x = central_difference(&|d| balance_values(&q, &still, &u, d));
-        assert_small(&coefficients_of_quantity(linear::deviation_symbol(nv), &found.motion), &by_x, "states");
+        let by_x = central_difference(&|d| force_balance_values(&q, &still, &u, d));
+        assert_close_lists(
+            &coefficients_of_quantity(linear::deviation_symbol(nv), &found.motion),
+            &by_x,
+            "states",
+        );
     }
 }
 
-fn assert_small(a: &[f64], b: &[f64], what: &str) {
+fn assert_close_lists(a: &[f64], b: &[f64], what: &str) {
     let size = b.iter().fold(1.0_f64, |size, b| size.max(b.abs()));
     assert!(
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-8 * size),
@@ -115,14 +128,18 @@ const LAG: &str = "struct Lag { m: f64, k: f64, lag: f64, gain: f64,
 
 #[test]
 fn pendulum_linearises_to_its_natural_frequency() {
-    let pendulum_at = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
+    let pendulum_with_equilibrium = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
     let assert_lines_contained = |equilibrium: &str, lines: &'static [&'static str]| {
-        with_linear("-g * y", &pendulum_at(equilibrium), |model, found, plain, _| {
-            check_linear_rows(model, found);
-            for line in lines {
-                assert!(plain.contains(line), "{line} in {plain}");
-            }
-        });
+        check_linear_equations(
+            "-g * y",
+            &pendulum_with_equilibrium(equilibrium),
+            |model, found, plain, _| {
+                check_linear_rows(model, found);
+                for line in lines {
+                    assert!(plain.contains(line), "{line} in {plain}");
+                }
+            },
+        );
     };
     assert_lines_contained(
         "#[equilibrium] down: Equilibrium",
@@ -154,11 +171,11 @@ fn pendulum_linearises_to_its_natural_frequency() {
 fn linear_equations_are_derivatives_of_the_dynamics() {
     for (gravity, item) in [("-7 * y", DOUBLE_PENDULUM), ("-7 * y", CART_POLE), ("-7 * z", SPHERICAL)] {
         let item = item.trim_end().trim_end_matches('}').to_string() + "#[equilibrium] rest: Equilibrium }";
-        with_linear(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
+        check_linear_equations(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
             check_linear_rows(model, found);
         });
     }
-    with_linear("-9.81 * z", LAG, |model, found, plain, _| {
+    check_linear_equations("-9.81 * z", LAG, |model, found, plain, _| {
         check_linear_rows(model, found);
         assert!(plain.contains("power' + (gain rail + power)/lag = 0\n"), "{plain}");
     });
@@ -174,7 +191,7 @@ fn particle_on_a_wire_has_geometric_stiffness() {
         #[constraint(place.x * place.x + place.y * place.y = l * l)] wire: Holonomic,
         #[equilibrium(place.y = -l)] low: Equilibrium,
         #[equilibrium(place.y = l)] high: Equilibrium }";
-    with_linear("-g * y", item, |_, _, plain, _| {
+    check_linear_equations("-g * y", item, |_, _, plain, _| {
         let low = plain.starts_with("low");
         let expected: &[&str] = match low {
             true => &[
@@ -199,7 +216,7 @@ fn orientation_deviations_are_small_rotations() {
         #[body(mass = m, com = -l * z, inertia = diagonal(a, a, c))] bob: Body,
         #[joint(ground -> bob)] tip: Ball,
         #[equilibrium] down: Equilibrium }";
-    with_linear("-g * z", item, |_, _, plain, latex| {
+    check_linear_equations("-g * z", item, |_, _, plain, latex| {
         for line in [
             "(m l² + a) tip.rx'' + m g l tip.rx = 0\n",
             "c tip.rz'' = 0\n",
@@ -221,7 +238,7 @@ fn bead_on_a_spinning_hoop_is_in_relative_equilibrium() {
         #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))] bead: Particle,
         #[equilibrium] bottom: Equilibrium,
         #[equilibrium(theta = acos(g / (spin * spin * radius)))] side: Equilibrium }";
-    with_linear("-g * z", item, |_, _, plain, _| {
+    check_linear_equations("-g * z", item, |_, _, plain, _| {
         let expected = match plain.starts_with("bottom") {
             true => ["omega = sqrt(g/radius - spin²)\n", "    g - radius spin² > 0\n"],
             false => ["side: theta = acos(g/(radius spin²));", "    -g² + radius² spin⁴ > 0\n"],
@@ -242,7 +259,7 @@ fn skate_edge_leaves_the_lateral_position_free() {
         #[energy(c / 2 * pose.angle * pose.angle)] coil: Potential,
         #[constraint(rate(pose.x) * sin(pose.angle) - rate(pose.y) * cos(pose.angle) = 0)] edge: Nonholonomic,
         #[equilibrium] rest: Equilibrium }";
-    with_linear("0 * x", item, |_, _, plain, _| {
+    check_linear_equations("0 * x", item, |_, _, plain, _| {
         for line in [
             "m pose.x'' + k pose.x = 0\n",
             "m pose.y'' = -lambda1\n",
@@ -273,7 +290,7 @@ fn polynomials_of_high_degree_are_printed_completely() {
             "struct Three {{ k: f64, b: f64, {} {states} #[equilibrium] rest: Equilibrium }}",
             oscillators.concat()
         );
-        with_linear("0 * x", &item, |_, found, plain, _| {
+        check_linear_equations("0 * x", &item, |_, found, plain, _| {
             let found = found.stability.as_ref().map(|stability| stability.coefficients.len() - 1);
             assert_eq!(found, degree, "{plain}");
             assert_eq!(plain.contains("s⁷"), degree.is_some(), "{plain}");

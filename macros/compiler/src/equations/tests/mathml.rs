@@ -79,13 +79,13 @@ fn check_mathml_page(model: &Model<'_>) {
     let (plain, page) = (sides_of_equations(&written.plain), equations_of_page(&written.mathml));
     assert_eq!(plain.len(), page.len(), "{}", written.mathml);
     let rates = written::marks_of_coordinate_rates(model);
-    let names = written::typeset_names_with(model, &[]);
+    let names = written::typeset_names_with_extra_names(model, &[]);
     let symbols = (0..model.parameters.len())
         .map(Quantity::Parameter)
         .chain((0..model.nq()).map(Quantity::Configuration))
         .chain((0..model.nv()).flat_map(|k| [Quantity::Velocity(k), Quantity::Acceleration(k)]))
         .chain((0..model.nu()).map(Quantity::Input))
-        .chain((0..model.constraints.len()).map(|k| Quantity::Given(Supplied::Multiplier, k)))
+        .chain((0..model.constraints.len()).map(|k| Quantity::Given(SuppliedQuantity::Multiplier, k)))
         .chain([Quantity::Time]);
     let spelled: Vec<(String, Symbol)> = symbols
         .map(|q| {
@@ -100,7 +100,7 @@ fn check_mathml_page(model: &Model<'_>) {
             Some((_, s)) => symbol(*s),
             None => panic!("{word}: {spelled:?}"),
         };
-        let names = values_by_name(model, &symbol);
+        let names = value_lookup_by_name(model, &symbol);
         for (k, (plain, page)) in plain.iter().zip(&page).enumerate() {
             if k > 0 {
                 assert_near(

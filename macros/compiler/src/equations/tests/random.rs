@@ -2,7 +2,7 @@
 //! constraints, as polynomials and as texts.
 
 use super::kane::check_printed_equations;
-use super::routh::check_against_lagrange;
+use super::routh::compare_routh_with_lagrange;
 use super::*;
 use crate::mechanics::routh;
 
@@ -80,11 +80,11 @@ fn all_printed_forms_agree_for_random_mechanisms() {
                 compared[2] += 1;
             }
             if !constrained && canonical_equations(&model, &joints, &mass).is_some() {
-                check_canonical(&model);
+                check_hamiltons_equations(&model);
                 compared[1] += 1;
             }
             if !constrained && !driven && !routh::cyclic_coordinates(&model, &joints).is_empty() {
-                check_against_lagrange(&model);
+                compare_routh_with_lagrange(&model);
                 compared[3] += 1;
             }
         });

@@ -8,12 +8,17 @@ use std::f64::consts::PI;
 mod numbers;
 pub(super) mod text;
 
-use numbers::{Numbers, assert_same_roots, eigenvalues, roots};
-use text::{Text, Values, evaluate_text};
+use numbers::{Numbers, assert_same_roots, eigenvalues, polynomial_roots};
+use text::{NameValues, ParsedEquations, evaluate_text};
 
 /// Compares the printed linear rows with accelerations by finite differences.
 #[track_caller]
-fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values<'_>) {
+fn check_printed_linear_rows(
+    text: &ParsedEquations,
+    names: &[&str],
+    a: &[Vec<f64>],
+    parameters: NameValues<'_>,
+) {
     let n = names.len();
     let coefficient_column =
         |name: &str, mark: &str| text.coefficient_column(&format!("{name}{mark}"), false, parameters);
@@ -39,7 +44,7 @@ fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values
 fn with_linear_equations<R>(
     gravity: &str,
     item: &str,
-    f: impl for<'g> FnOnce(Numbers<'g>, Vec<Text>) -> R,
+    f: impl for<'g> FnOnce(Numbers<'g>, Vec<ParsedEquations>) -> R,
 ) -> R {
     with_model(gravity, item, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
@@ -48,7 +53,7 @@ fn with_linear_equations<R>(
             let mut cx = Diagnostics::new();
             let found = super::super::linear::derive_linear_equations(&model, &joints, &mass, at, &mut cx);
             let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
-            Text::parse(&super::super::linear::written_linear(&model, at, &found).plain)
+            ParsedEquations::parse(&super::super::linear::format_linear_equations(&model, at, &found).plain)
         };
         let texts = model.equilibria.iter().map(text_of_equilibrium).collect();
         f(Numbers::new(&model), texts)
@@ -56,7 +61,7 @@ fn with_linear_equations<R>(
 }
 
 /// Returns a function from parameter names to values.
-fn values_by_name<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> f64 + 'a {
+fn value_lookup_by_name<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> f64 + 'a {
     move |word| {
         let k = names.iter().position(|name| *name == word);
         values[k.unwrap_or_else(|| panic!("the name {word}"))]
@@ -71,8 +76,8 @@ fn random_generator(seed: u64, low: f64, high: f64) -> impl FnMut() -> f64 {
     move || low + (high - low) * random.number_below(100_000) as f64 / 100_000.0
 }
 
-fn largest_real_part(roots: &[Complex<f64>]) -> f64 {
-    roots.iter().map(|z| z.re).fold(f64::MIN, f64::max)
+fn largest_real_part(polynomial_roots: &[Complex<f64>]) -> f64 {
+    polynomial_roots.iter().map(|z| z.re).fold(f64::MIN, f64::max)
 }
 
 const BALANCE: &str = "struct CartPole {
@@ -110,11 +115,11 @@ fn linear_equations_linearise_lagranges_equations() {
     with_linear_equations("-9.81 * y", BALANCE, |numbers, texts| {
         for _ in 0..20 {
             let values: Vec<f64> = (0..5).map(|_| next()).collect();
-            let parameters = values_by_name(&names, &values);
+            let parameters = value_lookup_by_name(&names, &values);
             for (text, angle) in texts.iter().zip([0.0, PI / 3.0]) {
                 let torque = values[3] * angle - 9.81 * values[1] * values[2] / 2.0 * angle.sin();
                 let a = numbers.linear_system_matrix(&[0.0, angle], &[0.0, torque], &values);
-                check_rows_of(text, &["rail", "hinge"], &a, &parameters);
+                check_printed_linear_rows(text, &["rail", "hinge"], &a, &parameters);
                 let column_of_input = |name: &str| text.coefficient_column(name, true, &parameters);
                 assert_eq!([column_of_input("push"), column_of_input("motor")], [[1.0, 0.0], [0.0, 1.0]]);
                 assert_same_roots(&text.characteristic_roots(&parameters), &eigenvalues(&a), 1e-4);
@@ -151,7 +156,7 @@ fn small_rotations_linearise_lagranges_equations() {
     with_linear_equations("-9.81 * z", CRAFT, |numbers, texts| {
         let a =
             numbers.linear_system_matrix(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &[9.81 * 1.3, 0.0], &values);
-        check_rows_of(&texts[0], &joints, &a, &values_by_name(&names, &values));
+        check_printed_linear_rows(&texts[0], &joints, &a, &value_lookup_by_name(&names, &values));
     });
 }
 
@@ -198,7 +203,7 @@ fn stability_conditions_of_three_masses_agree_with_eigenvalues() {
                 largest_real_part(&eigenvalues(&numbers.linear_system_matrix(&[0.0; 3], &[], &values)));
             if largest.abs() > 1e-5 {
                 assert_eq!(
-                    text.satisfies_conditions(&values_by_name(&names, &values)),
+                    text.satisfies_conditions(&value_lookup_by_name(&names, &values)),
                     largest < 0.0,
                     "{values:?} {largest}"
                 );
@@ -250,7 +255,7 @@ fn follower_force_makes_a_column_flutter() {
             let [m, l, k] = [next(), next(), next()];
             for (part, stable) in [(0.2, true), (0.999, true), (1.001, false), (1.4, false)] {
                 let values = [m, l, k, part * (3.5 - 2.0_f64.sqrt()) * k / l];
-                let parameters = values_by_name(&names, &values);
+                let parameters = value_lookup_by_name(&names, &values);
                 assert_eq!(text.satisfies_conditions(&parameters), stable, "{part} {values:?}");
                 let exact = eigenvalues(&numbers.linear_system_matrix(&[0.0; 2], &[], &values));
                 assert_same_roots(&text.characteristic_roots(&parameters), &exact, 1e-3);
@@ -286,14 +291,15 @@ fn bead_on_a_hoop_has_textbook_frequencies() {
             [[9.81, 0.7, 0.5, 6.0], [1.6, 0.7, 0.8, 2.1], [9.81, 0.7, 0.5, 4.0], [2.0, 0.3, 1.0, 1.0]]
         {
             let [g, _, radius, spin] = values;
-            let parameters = values_by_name(&names, &values);
+            let parameters = value_lookup_by_name(&names, &values);
             let above = spin * spin * radius > g;
             assert_eq!(
                 [texts[0].satisfies_conditions(&parameters), texts[1].satisfies_conditions(&parameters)],
                 [!above, above]
             );
             let [below, side] = [g / radius - spin * spin, spin * spin - (g / (radius * spin)).powi(2)];
-            let squared_frequency = |text: &Text| evaluate_text(&text.frequency, &parameters).powi(2);
+            let squared_frequency =
+                |text: &ParsedEquations| evaluate_text(&text.frequency, &parameters).powi(2);
             let (found, expected) = if above {
                 (squared_frequency(&texts[1]), side)
             } else {
@@ -301,8 +307,12 @@ fn bead_on_a_hoop_has_textbook_frequencies() {
             };
             assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
             let angle = if above { (g / (spin * spin * radius)).acos() } else { 0.0 };
-            let roots = eigenvalues(&numbers.linear_system_matrix(&[angle], &[], &values));
-            assert_same_roots(&texts[usize::from(above)].characteristic_roots(&parameters), &roots, 1e-6);
+            let polynomial_roots = eigenvalues(&numbers.linear_system_matrix(&[angle], &[], &values));
+            assert_same_roots(
+                &texts[usize::from(above)].characteristic_roots(&parameters),
+                &polynomial_roots,
+                1e-6,
+            );
         }
     });
 }
@@ -340,12 +350,12 @@ fn actuator_lag_destabilises_control() {
         for _ in 0..200 {
             let values = [next(), 0.3 * next(), next(), next(), next()];
             let [m, c, k, lag, gain] = values;
-            let parameters = values_by_name(&names, &values);
+            let parameters = value_lookup_by_name(&names, &values);
             let cubic = [k + gain, c + lag * k, m + lag * c, lag * m];
             let expected = cubic[2] * cubic[1] > cubic[3] * cubic[0];
             assert_eq!(texts[0].satisfies_conditions(&parameters), expected, "{values:?}");
             *(if expected { &mut stable } else { &mut unstable }) += 1;
-            assert_same_roots(&texts[0].characteristic_roots(&parameters), &roots(&cubic), 1e-6);
+            assert_same_roots(&texts[0].characteristic_roots(&parameters), &polynomial_roots(&cubic), 1e-6);
         }
         assert!(stable > 20 && unstable > 20, "{stable} {unstable}");
     });
@@ -373,12 +383,15 @@ const LADDER: &str = "struct Ladder {
 fn constrained_ladder_oscillates_like_a_pendulum() {
     with_linear_equations("-9.81 * y", LADDER, |_, texts| {
         for values in [[1.0, 2.0], [0.4, 0.7]] {
-            let parameters = values_by_name(&["m", "l"], &values);
+            let parameters = value_lookup_by_name(&["m", "l"], &values);
             let square = evaluate_text(&texts[0].frequency, &parameters).powi(2);
             assert!((square - 1.5 * 9.81 / values[1]).abs() < 1e-12 * square, "{square}");
-            let roots = texts[0].characteristic_roots(&parameters);
-            assert_eq!(roots.len(), 2);
-            assert!(roots.iter().all(|z| (z * z + square).norm() < 1e-9 * square), "{roots:?}");
+            let polynomial_roots = texts[0].characteristic_roots(&parameters);
+            assert_eq!(polynomial_roots.len(), 2);
+            assert!(
+                polynomial_roots.iter().all(|z| (z * z + square).norm() < 1e-9 * square),
+                "{polynomial_roots:?}"
+            );
         }
     });
 }

@@ -1,7 +1,7 @@
 //! Compares Routh's reduction with accelerations of the unreduced mechanism, Lagrange's equations of the
 //! Routhian, and closed forms.
 
-use super::super::reduced::{routh_equations, written_reduced};
+use super::super::reduced::{format_routh_equations, routh_equations};
 use super::*;
 use crate::expr::eval::Tape;
 use crate::mechanics::routh;
@@ -43,7 +43,7 @@ const SPINNING: &str = "struct Spinning { m: f64, k: f64,
     #[energy(k / 2 * (place.x * place.x + place.y * place.y))] coil: Potential }";
 
 /// Returns the values of symbols in a state, with the given momenta and forces.
-fn state_values<'a>(
+fn symbol_values_in_state<'a>(
     model: &Model<'_>,
     seed: u64,
     p: &'a [f64],
@@ -59,7 +59,7 @@ fn state_values<'a>(
 
 /// Compares accelerations, velocities and Routhian with Lagrange's equations of the unreduced mechanism.
 /// Returns the names of the cyclic coordinates.
-pub(super) fn check_against_lagrange(model: &Model<'_>) -> Vec<String> {
+pub(super) fn compare_routh_with_lagrange(model: &Model<'_>) -> Vec<String> {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let cyclic = routh::cyclic_coordinates(model, &joints);
@@ -73,9 +73,9 @@ pub(super) fn check_against_lagrange(model: &Model<'_>) -> Vec<String> {
     let whole = crate::mechanics::ldl::solve_symmetric(lagrange.mass_matrix, force, &joints);
     for seed in 1..12 {
         let tau: Vec<f64> = (0..model.nv()).map(|k| 0.3 * k as f64 - 0.4).collect();
-        let p: Vec<f64> = eval(&momenta, &state_values(model, seed, &[], &tau));
+        let p: Vec<f64> = eval(&momenta, &symbol_values_in_state(model, seed, &[], &tau));
         let p: Vec<f64> = cyclic.iter().map(|k| p[*k]).collect();
-        let value = state_values(model, seed, &p, &tau);
+        let value = symbol_values_in_state(model, seed, &p, &tau);
         let expected = eval(&whole, &value);
         let expected: Vec<f64> = others.iter().map(|k| expected[*k]).collect();
         assert_near(&eval(&reduced.acceleration, &value), &expected, "accelerations");
@@ -92,7 +92,7 @@ pub(super) fn check_against_lagrange(model: &Model<'_>) -> Vec<String> {
 #[test]
 fn routh_reduced_motion_equals_the_full_motion() {
     for (gravity, item, names) in ROWS {
-        assert_eq!(with_model(gravity, item, |model| check_against_lagrange(&model)), names);
+        assert_eq!(with_model(gravity, item, |model| compare_routh_with_lagrange(&model)), names);
     }
 }
 
@@ -119,7 +119,7 @@ fn routh_reduction_of_random_chains_equals_the_full_motion() {
                 vector()
             );
         }
-        let found = with_model("-9.81 * z", &(item + "}"), |model| check_against_lagrange(&model));
+        let found = with_model("-9.81 * z", &(item + "}"), |model| compare_routh_with_lagrange(&model));
         assert_eq!(found, ["column"]);
     }
 }
@@ -136,7 +136,7 @@ fn lagranges_equations_hold_for_the_routhian() {
             let reduced = routh::derive(&model, &joints, &mass, cyclic.clone());
             let g = model.graph;
             let routhian_derivative = |quantity: Quantity| {
-                crate::expr::diff::Derivative::with_respect_to(quantity.symbol(), g)
+                crate::expr::diff::DirectionalDerivative::with_respect_to(quantity.symbol(), g)
                     .differentiate(reduced.routhian)
             };
             let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
@@ -152,10 +152,10 @@ fn lagranges_equations_hold_for_the_routhian() {
             for seed in 1..8 {
                 let tau = vec![0.0; model.nv()];
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
-                let value = state_values(&model, seed, &p, &tau);
+                let value = symbol_values_in_state(&model, seed, &p, &tau);
                 let (a, w) = (acceleration.evaluate_at(&value), velocity.evaluate_at(&value));
-                let displaced_value = |h: f64| {
-                    let value_along_motion = |s: Symbol| match Quantity::from_symbol(s) {
+                let momenta_along_motion = |h: f64| {
+                    let value_after_time_step = |s: Symbol| match Quantity::from_symbol(s) {
                         Quantity::Configuration(k) => {
                             let rate = cyclic
                                 .iter()
@@ -168,12 +168,12 @@ fn lagranges_equations_hold_for_the_routhian() {
                         }
                         _ => value(s),
                     };
-                    momenta.evaluate_at(&value_along_motion)
+                    momenta.evaluate_at(&value_after_time_step)
                 };
                 let h = 1e-3;
                 let ((b, c), (d, e)) = (
-                    (displaced_value(h), displaced_value(-h)),
-                    (displaced_value(2.0 * h), displaced_value(-2.0 * h)),
+                    (momenta_along_motion(h), momenta_along_motion(-h)),
+                    (momenta_along_motion(2.0 * h), momenta_along_motion(-2.0 * h)),
                 );
                 let rate: Vec<f64> =
                     (0..b.len()).map(|k| (8.0 * (b[k] - c[k]) - (d[k] - e[k])) / (12.0 * h)).collect();
@@ -215,9 +215,9 @@ fn printed_routhian_equals_generated_functions() {
             let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
             for seed in 1..8 {
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
-                let symbol = state_values(&model, seed, &p, &[]);
+                let symbol = symbol_values_in_state(&model, seed, &p, &[]);
                 let tau = eval(&inputs, &symbol);
-                let symbol = state_values(&model, seed, &p, &tau);
+                let symbol = symbol_values_in_state(&model, seed, &p, &tau);
                 let a = eval(&functions.acceleration, &symbol);
                 let value_with_unit_inertias = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(_) => 1.0,
@@ -256,7 +256,7 @@ fn printed_routhian_equals_generated_functions() {
                     "R",
                 );
             }
-            let written = written_reduced(&model, &printed);
+            let written = format_routh_equations(&model, &printed);
             assert_eq!(latex::latex_errors(&written.latex), [""; 0], "{}", written.latex);
             texts.push(written.plain);
         });

@@ -8,7 +8,7 @@
 
 use super::super::comments::wrap_paragraph;
 use super::super::handwritten::METHODS;
-use super::super::mechanism::{ExportedMechanism, Unfit};
+use super::super::mechanism::{CExportObstacle, ExportedMechanism};
 use super::super::names::replace_invalid_characters;
 use super::super::signatures::{Array, ExportedSignature};
 use super::super::template::Template;
@@ -45,7 +45,7 @@ impl MatrixArgument {
 }
 
 /// External function in the CasADi source file.
-struct External {
+struct CasadiExternalFunction {
     name: String,
     inputs: Vec<MatrixArgument>,
     outputs: Vec<MatrixArgument>,
@@ -66,11 +66,11 @@ struct CasadiWriter<'a> {
 ///
 /// # Errors
 /// A fixed parameter does not exist.
-pub fn casadi_source(i: &ExportedMechanism<'_>, given: &[(String, f64)]) -> Result<String, Unfit> {
+pub fn casadi_source(i: &ExportedMechanism<'_>, given: &[(String, f64)]) -> Result<String, CExportObstacle> {
     let mut fixed = vec![None; i.model.parameters.len()];
     for (name, value) in given {
         let at = i.model.parameters.iter().position(|known| known == name);
-        fixed[at.ok_or_else(|| Unfit::NoParameter(name.clone()))?] = Some(*value);
+        fixed[at.ok_or_else(|| CExportObstacle::NoParameter(name.clone()))?] = Some(*value);
     }
     let mut w = CasadiWriter { i, fixed, template: Template::default() };
     w.define_placeholders();
@@ -81,17 +81,17 @@ pub fn casadi_source(i: &ExportedMechanism<'_>, given: &[(String, f64)]) -> Resu
 
 impl CasadiWriter<'_> {
     /// Returns true if the Jacobians with respect to all arguments are known.
-    fn is_exact(&self) -> bool {
-        self.i.nq() == self.i.nv() && !self.i.model.time && self.free_parameters().is_empty()
+    fn has_exact_jacobians(&self) -> bool {
+        self.i.nq() == self.i.nv() && !self.i.model.time && self.free_parameter_names().is_empty()
     }
 
     /// Returns true if the state is a vector with respect to which derivatives are taken.
-    fn has_states(&self) -> bool {
+    fn has_vector_state(&self) -> bool {
         self.i.nq() == self.i.nv() && !self.i.model.time && self.i.has_transitions
     }
 
     /// Returns the names of the parameters that remain arguments of the CasADi functions.
-    fn free_parameters(&self) -> Vec<&String> {
+    fn free_parameter_names(&self) -> Vec<&String> {
         let all = self.i.parameters.iter().zip(&self.fixed);
         all.filter(|(_, value)| value.is_none()).map(|(name, _)| name).collect()
     }
@@ -111,19 +111,19 @@ impl CasadiWriter<'_> {
             i.call("generalized_forces", &list.iter().map(String::as_str).collect::<Vec<_>>())
         });
         let conditions = [
-            ("OWN", i.has_own()),
+            ("OWN", i.takes_parameter_struct()),
             ("INPUTS", i.nu() > 0 && forces.is_some()),
-            ("STATES", self.has_states()),
-            ("EXACT", self.is_exact()),
+            ("STATES", self.has_vector_state()),
+            ("EXACT", self.has_exact_jacobians()),
             (
                 "EXACT_FORWARD",
-                self.is_exact()
+                self.has_exact_jacobians()
                     && has_function("forward_dynamics")
                     && has_function("forward_dynamics_derivatives"),
             ),
             (
                 "EXACT_INVERSE",
-                self.is_exact()
+                self.has_exact_jacobians()
                     && is_plain
                     && ["inverse_dynamics", "inverse_dynamics_derivatives", "mass_matrix"]
                         .into_iter()
@@ -135,13 +135,13 @@ impl CasadiWriter<'_> {
             ("TABLES", &self.table_declarations()),
             ("MEMBERS", &self.member_assignments()),
             ("FORCES", &forces.unwrap_or_default()),
-            ("OWN_DECLARED", &if i.has_own() { "const struct @PREFIX@ *self, " } else { "" }),
-            ("SELF", &if i.has_own() { "&self, " } else { "" }),
+            ("OWN_DECLARED", &if i.takes_parameter_struct() { "const struct @PREFIX@ *self, " } else { "" }),
+            ("SELF", &if i.takes_parameter_struct() { "&self, " } else { "" }),
             ("T_INPUT", &if i.model.time { "t:1 " } else { "" }),
             ("T", &if i.model.time { "t[0], " } else { "" }),
             ("UPPER", &i.prefix.to_ascii_uppercase()),
             ("PREFIX", &i.prefix),
-            ("FREE", &self.free_parameters().len()),
+            ("FREE", &self.free_parameter_names().len()),
             ("NQ", &i.nq()),
             ("N", &i.nv()),
             ("M", &i.nu()),
@@ -153,7 +153,7 @@ impl CasadiWriter<'_> {
 
     fn header_notes(&self) -> String {
         let mut lines: Vec<String> = Vec::new();
-        if !self.is_exact() {
+        if !self.has_exact_jacobians() {
             let why = match (self.i.model.time, self.i.nq() == self.i.nv()) {
                 (true, _) => "the equations contain time",
                 (_, false) => {
@@ -164,7 +164,7 @@ impl CasadiWriter<'_> {
             };
             lines.push(format!("Functions jac_… with exact Jacobians are not there: {why}."));
         }
-        if self.has_states() {
+        if self.has_vector_state() {
             lines.push(
                 "For acados: …_expl_ode_fun, …_expl_vde_forw, …_expl_vde_adj, and by the classical method of \
                  Runge and Kutta …_dyn_disc_phi_fun and …_dyn_disc_phi_fun_jac, with x = (q, v); p holds the \
@@ -201,14 +201,14 @@ impl CasadiWriter<'_> {
         text
     }
 
-    fn external_functions(&self) -> Vec<External> {
+    fn external_functions(&self) -> Vec<CasadiExternalFunction> {
         let public = self.i.public.len();
-        let mut all: Vec<External> =
+        let mut all: Vec<CasadiExternalFunction> =
             self.i.functions[..public].iter().map(|f| self.external_from_signature(f)).collect();
         for (method, _) in METHODS.iter().filter(|_| self.i.has_steps) {
             let step = self.i.signature(&format!("{method}_step"));
             all.extend(step.map(|f| self.external_from_signature(f)));
-            if self.is_exact() && self.i.has_transitions {
+            if self.has_exact_jacobians() && self.i.has_transitions {
                 let mut template = Template::default();
                 template.add_value("METHOD", method);
                 all.extend(self.template_functions(&template, include_str!("templates/casadi_step.c")));
@@ -226,14 +226,14 @@ impl CasadiWriter<'_> {
     }
 
     /// Returns the function that calls a function of the mechanism.
-    fn external_from_signature(&self, f: &ExportedSignature) -> External {
+    fn external_from_signature(&self, f: &ExportedSignature) -> CasadiExternalFunction {
         let argument = |a: &Array| if a.is_value { format!("{}[0]", a.name) } else { a.name.clone() };
         let results = (0..f.results.len()).filter(|_| !f.returns).map(|k| format!("r{k}"));
-        let own = self.i.has_own().then(|| "&self".to_string());
+        let own = self.i.takes_parameter_struct().then(|| "&self".to_string());
         let list: Vec<String> =
             own.into_iter().chain(f.arguments.iter().map(argument)).chain(results).collect();
         let call = format!("{}_{}({});\n", self.i.prefix, f.name, list.join(", "));
-        External {
+        CasadiExternalFunction {
             name: format!("{}_casadi_{}", self.i.prefix, f.name),
             inputs: f.arguments.iter().map(MatrixArgument::from_array).collect(),
             outputs: f.results.iter().map(MatrixArgument::from_array).collect(),
@@ -243,7 +243,7 @@ impl CasadiWriter<'_> {
     }
 
     /// Returns the functions of a template. A line `//// name : inputs -> outputs + work` precedes each body.
-    fn template_functions(&self, values: &Template, text: &str) -> Vec<External> {
+    fn template_functions(&self, values: &Template, text: &str) -> Vec<CasadiExternalFunction> {
         let text = values.fill(&self.template.fill(text));
         let sections = text.split("//// ").filter_map(|section| section.split_once('\n'));
         let external = |(head, body): (&str, &str)| {
@@ -251,7 +251,7 @@ impl CasadiWriter<'_> {
             let (inputs, outputs) = head.split_once(" -> ")?;
             let (outputs, work) = outputs.split_once(" + ").unwrap_or((outputs, "0"));
             let entries = |text: &str| text.split_whitespace().map(MatrixArgument::from_text).collect();
-            Some(External {
+            Some(CasadiExternalFunction {
                 name: name.to_string(),
                 inputs: entries(inputs),
                 outputs: entries(outputs),
@@ -262,8 +262,8 @@ impl CasadiWriter<'_> {
         sections.filter_map(external).collect()
     }
 
-    fn write_external(&self, text: &mut String, f: &External) {
-        let (name, free) = (&f.name, self.free_parameters().len());
+    fn write_external(&self, text: &mut String, f: &CasadiExternalFunction) {
+        let (name, free) = (&f.name, self.free_parameter_names().len());
         let mut inputs: Vec<&MatrixArgument> = f.inputs.iter().collect();
         let shared = MatrixArgument::from_text(&format!("parameters:{free}"));
         // The last argument of acados' functions contains the parameters, after the length of a step.
@@ -298,7 +298,7 @@ impl CasadiWriter<'_> {
         if contains_word(&f.body, "extra") {
             body.push_str("    casadi_real *extra = w;\n");
         }
-        if self.i.has_own() {
+        if self.i.takes_parameter_struct() {
             let _ = writeln!(body, "    const struct {} self = lw_own({parameters});", self.i.prefix);
         }
         let outputs: Vec<&MatrixArgument> = f.outputs.iter().collect();

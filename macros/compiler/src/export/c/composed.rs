@@ -8,8 +8,8 @@ use std::fmt::Write;
 
 /// Writes the body of a C function whose result is assembled from the outputs of its program.
 pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i: &ExportedMechanism<'_>) {
-    let write = |body: &mut String, places: &dyn Fn(usize) -> Option<String>| {
-        write_program(body, &f.program, scope, places);
+    let write = |body: &mut String, assembled_output_element: &dyn Fn(usize) -> Option<String>| {
+        write_program(body, &f.program, scope, assembled_output_element);
     };
     match f.shape {
         Shape::Inverse(n) => {
@@ -34,12 +34,12 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             // The accelerations, which are the last outputs, are not returned.
             let mut program = f.program.clone();
             program.outputs.truncate(inverse.output_count());
-            program.remove_unused();
+            program.remove_unused_instructions();
             write_program(body, &program, scope, &|k| Some(inverse.element_of_output(k)));
             inverse.complete(body);
             write_acceleration_conversion(body, f, n);
         }
-        Shape::CalledForward(n) => called_forward(body, f, n, scope, i),
+        Shape::CalledForward(n) => write_composed_forward_derivatives(body, f, n, scope, i),
         Shape::Linear(n, m) => {
             if n > 0 {
                 let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", n * n);
@@ -48,14 +48,14 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             let rest = inverse.output_count();
             write(body, &|k| match k < rest {
                 true => Some(inverse.element_of_output(k)),
-                false => Some(assembled_place(n, m, k - rest)),
+                false => Some(assembled_array_element(n, m, k - rest)),
             });
             inverse.complete(body);
             write_inverse_products(body, n, "inverse", "by_q", n);
             write_inverse_products(body, n, "inverse", "by_v", n);
-            write_assembly(body, n, m);
+            write_kinematic_assembly(body, n, m);
         }
-        Shape::CalledLinear(n, m) => called_linear(body, f, (n, m), scope, i),
+        Shape::CalledLinear(n, m) => write_linear_system_by_calls(body, f, (n, m), scope, i),
         _ => {}
     }
 }
@@ -154,7 +154,13 @@ fn write_acceleration_conversion(body: &mut String, f: &Function, n: usize) {
     }
 }
 
-fn called_forward(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, i: &ExportedMechanism<'_>) {
+fn write_composed_forward_derivatives(
+    body: &mut String,
+    f: &Function,
+    n: usize,
+    scope: &Scope<'_>,
+    i: &ExportedMechanism<'_>,
+) {
     let _ = writeln!(
         body,
         "    double a[{}];\n    {};\n    {};",
@@ -173,7 +179,7 @@ fn called_forward(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, 
 
 /// Returns the array element for an output: derivatives with respect to inputs, then the block for
 /// displacements.
-fn assembled_place(n: usize, m: usize, k: usize) -> String {
+fn assembled_array_element(n: usize, m: usize, k: usize) -> String {
     match k < n * m {
         true => format!("by_input[{}]", k / n * 2 * n + n + k % n),
         false => format!("by_state[{}]", (k - n * m) / n * 2 * n + (k - n * m) % n),
@@ -181,14 +187,14 @@ fn assembled_place(n: usize, m: usize, k: usize) -> String {
 }
 
 /// Writes the composition of the system matrices.
-fn write_assembly(body: &mut String, n: usize, m: usize) {
+fn write_kinematic_assembly(body: &mut String, n: usize, m: usize) {
     if n > 0 {
         let _ = writeln!(body, "    lw_assemble({n}, {m}, by_q, by_v, inverse, by_state, by_input);");
     }
 }
 
 /// Writes the linear system with a call of the function for the derivatives of forward dynamics.
-fn called_linear(
+fn write_linear_system_by_calls(
     body: &mut String,
     f: &Function,
     (n, m): (usize, usize),
@@ -205,7 +211,7 @@ fn called_linear(
     write_program(body, &f.program, scope, &|k| match k {
         k if k < n => Some(format!("tau[{k}]")),
         k if k < rest => Some(format!("more[{}]", k - n)),
-        k => Some(assembled_place(n, m, k - rest)),
+        k => Some(assembled_array_element(n, m, k - rest)),
     });
     let call = i.call("forward_dynamics_derivatives", &["q", "v", "tau", "by_q", "by_v", "inverse"]);
     let _ = writeln!(body, "    {call};");
@@ -220,5 +226,5 @@ fn called_linear(
     } else {
         body.push_str("    (void)(more);\n");
     }
-    write_assembly(body, n, m);
+    write_kinematic_assembly(body, n, m);
 }

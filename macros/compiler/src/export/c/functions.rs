@@ -18,7 +18,7 @@ pub fn function_head(i: &ExportedMechanism<'_>, f: &ExportedSignature) -> String
         (_, true) => "double",
         _ => "void",
     };
-    let own = i.has_own().then(|| format!("const {} *self", i.prefix));
+    let own = i.takes_parameter_struct().then(|| format!("const {} *self", i.prefix));
     let frame = f.of_frame.then(|| "int frame".to_string());
     let arguments = f.arguments.iter().map(|a| match a.is_value {
         true => format!("double {}", a.name),
@@ -32,7 +32,7 @@ pub fn function_head(i: &ExportedMechanism<'_>, f: &ExportedSignature) -> String
 
 /// Returns the definition of a function with a body. Unused arguments cause no compiler warnings.
 pub fn definition(i: &ExportedMechanism<'_>, f: &ExportedSignature, body: &str) -> String {
-    let own = i.has_own().then_some("self");
+    let own = i.takes_parameter_struct().then_some("self");
     let unused: String = own
         .into_iter()
         .chain(f.array_names())
@@ -97,7 +97,7 @@ pub fn result_program<'f>(f: &'f Function, i: &ExportedMechanism<'_>) -> Cow<'f,
     }
     let mut program = f.program.clone();
     program.outputs.drain(..i.nv().min(program.outputs.len()));
-    program.remove_unused();
+    program.remove_unused_instructions();
     Cow::Owned(program)
 }
 

@@ -49,9 +49,9 @@ pub fn size_macros(i: &ExportedMechanism<'_>) -> String {
 }
 
 /// Returns the C types of tables and of the parameter struct, with the units of their members.
-pub fn parameter_types(i: &ExportedMechanism<'_>) -> String {
+pub fn c_parameter_type_definitions(i: &ExportedMechanism<'_>) -> String {
     let (p, units) = (&i.prefix, &i.model.units);
-    if !i.has_own() {
+    if !i.takes_parameter_struct() {
         return String::new();
     }
     let table_type = if i.tables.is_empty() {
@@ -121,7 +121,7 @@ pub fn header_text(i: &ExportedMechanism<'_>, reproducible: bool) -> String {
     let guard = format!("{}_H", i.prefix.to_ascii_uppercase());
     let _ = writeln!(text, "#ifndef {guard}\n#define {guard}\n\n{}", size_macros(i));
     text.push_str("#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
-    text.push_str(&parameter_types(i));
+    text.push_str(&c_parameter_type_definitions(i));
     let mut has_constants = false;
     for f in &i.functions {
         if f.of_frame && !std::mem::replace(&mut has_constants, true) {

@@ -1,5 +1,5 @@
 //! Helper functions that the mathematical library does not have. Each is defined only if it is called. Their
-//! names begin with `lw_`, which no name of a mechanism does (`names::prefix_identifier`).
+//! names begin with `lw_`, which no name of a mechanism does (`names::c_name_prefix`).
 
 use super::super::mechanism::ExportedMechanism;
 use super::super::template::Template;
@@ -57,7 +57,7 @@ pub fn with_helpers(code: &str, i: &ExportedMechanism<'_>, arithmetic: Arithmeti
         }
         Arithmetic::Kernel => format!("{helpers}{code}"),
         Arithmetic::Reproducible => {
-            let code = with_own_functions(&format!("{helpers}{code}"));
+            let code = replace_math_library_calls(&format!("{helpers}{code}"));
             format!("{}\n{code}", include_str!("templates/reproducible.c").trim_end())
         }
     }
@@ -78,7 +78,7 @@ fn called_sections(code: &str, library: &[&str]) -> String {
 }
 
 /// Replaces calls of the mathematical library by calls of included functions, and inserts their definitions.
-fn with_own_functions(code: &str) -> String {
+fn replace_math_library_calls(code: &str) -> String {
     let code = replaced(code, &|number| number.to_string(), &|word, after| {
         let is_call = after.starts_with('(') && REPLACED.contains(&word);
         if is_call { format!("lw_{word}") } else { word.to_string() }

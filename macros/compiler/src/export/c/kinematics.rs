@@ -8,7 +8,7 @@ use super::super::template::Template;
 use super::functions::{definition, function_head};
 use crate::catalogue::{Argument, Id};
 use crate::lower::Program;
-use crate::mechanism::{Chart, Supplied};
+use crate::mechanism::{Chart, SuppliedQuantity};
 use std::fmt::Write;
 
 /// Returns the placeholders and conditions of the templates for a mechanism.
@@ -52,7 +52,7 @@ pub fn mechanism_template(i: &ExportedMechanism<'_>) -> Template {
     let derivatives = i.find(Id::InputDerivatives);
     let has_block = |at: usize| derivatives.is_some_and(|f| (at..at + n * n).any(|k| !is_zero(f, k)));
     let conditions = [
-        ("OWN", i.has_own()),
+        ("OWN", i.takes_parameter_struct()),
         ("TIME", time),
         ("INPUTS", m > 0),
         ("SPEEDS", i.has_speeds()),
@@ -80,11 +80,12 @@ fn add_values(template: &mut Template, i: &ExportedMechanism<'_>) {
         ("CHANGES", &changes),
         ("START", &start[0]),
         ("START_DECLARED", &start[1]),
-        ("OWN", &choose(i.has_own(), "self, ")),
-        ("OWN_DECLARED", &choose(i.has_own(), "const struct @PREFIX@ *self, ")),
+        ("OWN", &choose(i.takes_parameter_struct(), "self, ")),
+        ("OWN_DECLARED", &choose(i.takes_parameter_struct(), "const struct @PREFIX@ *self, ")),
         (
             "UNUSED",
-            &(choose(i.has_own(), "    (void)(self);\n").to_string() + choose(time, "    (void)(t);\n")),
+            &(choose(i.takes_parameter_struct(), "    (void)(self);\n").to_string()
+                + choose(time, "    (void)(t);\n")),
         ),
         ("T", &choose(time, "t, ")),
         ("T_DECLARED", &choose(time, "double t, ")),
@@ -111,8 +112,9 @@ pub fn kinematic_definitions(i: &ExportedMechanism<'_>, is_late: bool) -> String
     let joints = joint_signatures(i);
     let (functions, hidden) = if i.has_speeds() { (&joints, "static ") } else { (&i.functions, "") };
     for name in ["integrate", "difference", "tangent_rate"] {
-        let is_named = |f: &&ExportedSignature| f.name.strip_prefix("joints_").unwrap_or(&f.name) == name;
-        if let Some(f) = functions.iter().rev().find(is_named) {
+        let has_nonzero_coefficient =
+            |f: &&ExportedSignature| f.name.strip_prefix("joints_").unwrap_or(&f.name) == name;
+        if let Some(f) = functions.iter().rev().find(has_nonzero_coefficient) {
             let _ = writeln!(text, "{hidden}{}", definition(i, f, &chart_statements(i, name)));
         }
     }
@@ -177,20 +179,20 @@ fn limits_definition(i: &ExportedMechanism<'_>) -> String {
 fn frame_definitions(i: &ExportedMechanism<'_>, mut template: Template, is_late: bool) -> String {
     use Argument::{A, Q, V};
     let (links, frames) = (&i.output.links, &i.output.frames);
-    let parent = |n| Argument::Given("p", Supplied::Parent, n);
+    let parent = |n| Argument::Given("p", SuppliedQuantity::Parent, n);
     let link_index = |link: Option<usize>| link.map_or("-1".to_string(), |k| k.to_string());
     let mut add_step = |name: &str, is_link: bool, given: &[Argument], programs: Vec<Option<&Program>>| {
         let time = (is_link && i.model.time).then_some(Argument::T);
         let arguments: Vec<Argument> = time.into_iter().chain(given.iter().copied()).collect();
         template.add_value(name, &step_definition(i, name, &arguments, &programs, is_late));
     };
-    let of_links = |program: fn(&crate::derive::LinkSteps) -> &Program| {
+    let of_links = |program: fn(&crate::derive::LinkRecursionPrograms) -> &Program| {
         links.iter().map(|link| Some(program(link))).collect::<Vec<_>>()
     };
     add_step("link_placement", true, &[Q, parent(12)], of_links(|link| &link.placement));
     add_step("link_twist", true, &[Q, V, parent(6)], of_links(|link| &link.twist));
     add_step("link_acceleration", true, &[Q, V, A, parent(12)], of_links(|link| &link.acceleration));
-    let origin = Argument::Given("o", Supplied::Origin, 3);
+    let origin = Argument::Given("o", SuppliedQuantity::Origin, 3);
     add_step("link_columns", true, &[Q, parent(12), origin], of_links(|link| &link.columns));
     let is_copy = |frame: &crate::derive::FrameSteps| frame.is_link && frame.link.is_some();
     let placements = frames.iter().map(|frame| (!is_copy(frame)).then_some(&frame.placement)).collect();
@@ -234,7 +236,8 @@ fn step_definition(
         }
         body.push_str("    break;\n    }\n");
     }
-    let own = if i.has_own() { format!("const struct {} *self, ", i.prefix) } else { String::new() };
+    let own =
+        if i.takes_parameter_struct() { format!("const struct {} *self, ", i.prefix) } else { String::new() };
     let declared: String = arguments
         .iter()
         .map(|a| {
@@ -245,7 +248,8 @@ fn step_definition(
             }
         })
         .collect();
-    let names = arguments.iter().map(|a| a.argument_name()).chain(i.has_own().then_some("self"));
+    let names =
+        arguments.iter().map(|a| a.argument_name()).chain(i.takes_parameter_struct().then_some("self"));
     let unused: String = names.map(|name| format!("    (void)({name});\n")).collect();
     format!(
         "static void lw_{name}(int which, {own}{declared}double *result) {{\n{unused}    \

@@ -14,7 +14,9 @@ mod kinematics;
 mod source;
 
 pub(super) use functions::result_program;
-pub(super) use header::{frame_index_constants, list_state_entries, parameter_types, size_macros};
+pub(super) use header::{
+    c_parameter_type_definitions, frame_index_constants, list_state_entries, size_macros,
+};
 pub(super) use kinematics::chart_statements;
 pub(super) use source::kernel_definitions;
-pub use source::{Files, export_c_source};
+pub use source::{CSourceFiles, export_c_source};

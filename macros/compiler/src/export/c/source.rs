@@ -3,7 +3,7 @@
 use super::super::body::MISSING;
 use super::super::comments::comment_safe_text;
 use super::super::handwritten::LIMITS;
-use super::super::mechanism::{ExportedMechanism, Options, Unfit};
+use super::super::mechanism::{CExportObstacle, ExportedMechanism, Options};
 use super::super::signatures::reaction_name;
 use super::super::tokens::in_single_precision;
 use super::casadi::casadi_source;
@@ -17,7 +17,7 @@ use std::fmt::Write;
 
 /// Texts of the exported C files, and names of functions that the files lack.
 #[derive(Clone, Debug)]
-pub struct Files {
+pub struct CSourceFiles {
     /// Prefix of the names in the files and of the file names.
     pub prefix: String,
     /// Text of the header `PREFIX.h`.
@@ -42,13 +42,13 @@ const HEADERS: [(&str, &str); 5] = [
 /// Exports a mechanism whose programs have no vector lanes; `tables` are the names of its tables.
 ///
 /// # Errors
-/// The mechanism or the options are not supported in C, for the reason in [`Unfit`].
+/// The mechanism or the options are not supported in C, for the reason in [`CExportObstacle`].
 pub fn export_c_source(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &Options,
-) -> Result<Files, Unfit> {
+) -> Result<CSourceFiles, CExportObstacle> {
     let mut i = ExportedMechanism::new(model, output, tables, options)?;
     if options.casadi.is_some() {
         check_casadi(&i, options)?;
@@ -57,7 +57,7 @@ pub fn export_c_source(
         i.left_out.extend(lines);
     }
     let arithmetic = match (options.reproducible, options.single) {
-        (true, true) => return Err(Unfit::Irreproducible("single precision")),
+        (true, true) => return Err(CExportObstacle::Irreproducible("single precision")),
         (true, false) => Arithmetic::Reproducible,
         (false, true) => Arithmetic::Single,
         (false, false) => Arithmetic::Double,
@@ -76,10 +76,11 @@ pub fn export_c_source(
         let _ = writeln!(source, "#include <{name}>");
     }
     let _ = write!(source, "\n{}\n", code.trim_end());
-    let convert_to_precision = |text: String| if options.single { in_single_precision(&text) } else { text };
-    Ok(Files {
-        header: convert_to_precision(header_text(&i, options.reproducible)),
-        source: convert_to_precision(source),
+    let convert_to_requested_precision =
+        |text: String| if options.single { in_single_precision(&text) } else { text };
+    Ok(CSourceFiles {
+        header: convert_to_requested_precision(header_text(&i, options.reproducible)),
+        source: convert_to_requested_precision(source),
         casadi,
         left_out: i.left_out,
         prefix: i.prefix,
@@ -87,11 +88,11 @@ pub fn export_c_source(
 }
 
 /// Returns an error if CasADi's functions do not support the mechanism or the options.
-fn check_casadi(i: &ExportedMechanism<'_>, options: &Options) -> Result<(), Unfit> {
+fn check_casadi(i: &ExportedMechanism<'_>, options: &Options) -> Result<(), CExportObstacle> {
     match (i.has_speeds(), options.single, options.reproducible) {
-        (true, ..) => Err(Unfit::CasadiSpeeds),
-        (_, true, _) => Err(Unfit::SingleCasadi),
-        (_, _, true) => Err(Unfit::Irreproducible("CasADi")),
+        (true, ..) => Err(CExportObstacle::CasadiSpeeds),
+        (_, true, _) => Err(CExportObstacle::SingleCasadi),
+        (_, _, true) => Err(CExportObstacle::Irreproducible("CasADi")),
         _ => Ok(()),
     }
 }
@@ -101,21 +102,21 @@ fn check_casadi(i: &ExportedMechanism<'_>, options: &Options) -> Result<(), Unfi
 ///
 /// # Errors
 /// A program reads a value that does not exist.
-pub fn kernel_definitions(i: &ExportedMechanism<'_>) -> Result<String, Unfit> {
+pub fn kernel_definitions(i: &ExportedMechanism<'_>) -> Result<String, CExportObstacle> {
     definitions(i, Arithmetic::Kernel)
 }
 
 /// Returns the definitions of helper functions, followed by those of all exported functions.
-fn definitions(i: &ExportedMechanism<'_>, arithmetic: Arithmetic) -> Result<String, Unfit> {
+fn definitions(i: &ExportedMechanism<'_>, arithmetic: Arithmetic) -> Result<String, CExportObstacle> {
     let is_late = arithmetic == Arithmetic::Kernel;
     let code = derived_definitions(i, is_late) + &kinematic_definitions(i, is_late);
     if code.contains(MISSING) {
-        return Err(Unfit::Missing);
+        return Err(CExportObstacle::Missing);
     }
     let reasons = [("lw_isa_", "the standard atmosphere"), ("lw_tabulated", "a table")];
     let reason = reasons.into_iter().find(|(helper, _)| code.contains(helper));
     match reason.filter(|_| arithmetic == Arithmetic::Reproducible) {
-        Some((_, what)) => Err(Unfit::Irreproducible(what)),
+        Some((_, what)) => Err(CExportObstacle::Irreproducible(what)),
         None => Ok(with_helpers(&code, i, arithmetic)),
     }
 }

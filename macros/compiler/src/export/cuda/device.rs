@@ -6,7 +6,7 @@ const KINDS: [&str; 5] = ["static inline ", "static ", "void ", "double ", "int 
 
 /// Converts definitions in C to device functions. Comments and statements do not change, except declarations
 /// of pointers.
-pub fn device_functions(code: &str) -> String {
+pub fn convert_to_device_functions(code: &str) -> String {
     let mut out = String::with_capacity(code.len() + code.len() / 8);
     let mut lines = code.lines();
     while let Some(line) = lines.next() {
@@ -77,7 +77,7 @@ fn convert_statement(line: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::device_functions;
+    use super::convert_to_device_functions;
 
     #[test]
     fn c_functions_become_cuda_templates() {
@@ -85,7 +85,7 @@ mod tests {
                     b[3],\n    double *c) {\n    double *d = c + 1;\n    d[2] = 0.0;\n}\nvoid p_y(void) {\n\
                     }\n";
         assert_eq!(
-            device_functions(code),
+            convert_to_device_functions(code),
             "LW_TABLE const int lw_of[2] = {0, 1};\ntemplate <class T0, class T1, class T2> LW_DEVICE void \
              lw_x(int n, T0 a, T1 b, T2 c) {\n    auto d = c + 1;\n    d[2] = lw_zero();\n}\nLW_DEVICE void \
              p_y() {\n}\n"

@@ -25,7 +25,7 @@ fn write_launch_function(text: &mut String, kernels: &Kernels<'_>, f: &ExportedS
     let view_argument = |kind: &str, name: &str| {
         (format!("lw_view<{kind}> {name}"), format!("{name}.at, {name}.entry_of(states), {name}.state"))
     };
-    if kernels.i.has_own() {
+    if kernels.i.takes_parameter_struct() {
         let (argument, values) = view_argument("const double", "parameters");
         declared.push(argument);
         passed.push(values);

@@ -6,7 +6,7 @@ use super::super::template::Template;
 use crate::catalogue::{Id, InverseForm};
 
 /// Products of row vectors with the Jacobians of inverse and forward dynamics.
-pub struct Products<'a> {
+pub struct JacobianProducts<'a> {
     i: &'a ExportedMechanism<'a>,
     has: [bool; 2],
     /// Whether a function returns all columns of the inverse mass matrix without further steps.
@@ -16,9 +16,9 @@ pub struct Products<'a> {
 
 const NAMES: [&str; 2] = ["inverse_dynamics_vjp", "forward_dynamics_vjp"];
 
-impl<'a> Products<'a> {
+impl<'a> JacobianProducts<'a> {
     /// Determines the vector–Jacobian products that a mechanism has.
-    pub fn from_interface(i: &'a ExportedMechanism<'a>) -> Products<'a> {
+    pub fn from_interface(i: &'a ExportedMechanism<'a>) -> JacobianProducts<'a> {
         let has_function = |name: &str| i.signature(name).is_some();
         let is_plain = i.model.acceleration_forces.is_empty();
         let has_inverse = has_function("inverse_dynamics_derivatives") && has_function("mass_matrix");
@@ -26,7 +26,7 @@ impl<'a> Products<'a> {
             has_inverse && has_function("forward_dynamics") && has_function("mass_matrix_inverse");
         let has = [has_inverse, has_forward].map(|has| has && is_plain && i.nv() > 0);
         let inverse = i.find(Id::MassMatrixInverse);
-        Products {
+        JacobianProducts {
             i,
             has: [0, 1].map(|k| has[k] && !has_function(NAMES[k])),
             explicit_inverse: inverse.is_some_and(|f| matches!(f.structure.inverse, InverseForm::Explicit)),
@@ -67,11 +67,11 @@ impl<'a> Products<'a> {
             true => include_str!("templates/product_with_inverse.cu"),
             false => include_str!("templates/product_with_stored_inverse.cu"),
         };
-        let (has_own, time) = (self.i.has_own(), self.i.model.time);
+        let (takes_parameter_struct, time) = (self.i.takes_parameter_struct(), self.i.model.time);
         let mut template = Template::default();
         template.add_value("INVERSE", &inverse);
-        template.add_value("OWN_DECLARED", &choose(has_own, "const @PREFIX@ *self, "));
-        template.add_value("OWN", &choose(has_own, "self, "));
+        template.add_value("OWN_DECLARED", &choose(takes_parameter_struct, "const @PREFIX@ *self, "));
+        template.add_value("OWN", &choose(takes_parameter_struct, "self, "));
         template.add_value("T_DECLARED", &choose(time, "double t, "));
         template.add_value("T", &choose(time, "t, "));
         template.add_value("PREFIX", &self.i.prefix);

@@ -10,7 +10,7 @@ mod kernels;
 mod python;
 
 use super::c;
-use super::mechanism::{ExportedMechanism, Options, Unfit};
+use super::mechanism::{CExportObstacle, ExportedMechanism, Options};
 use super::signatures::{Array, ExportedSignature};
 use super::tokens::in_single_precision;
 use crate::derive::Output;
@@ -43,24 +43,25 @@ struct Kernels<'a> {
 /// Exports a tree mechanism whose programs have no vector lanes; `tables` are the names of its tables.
 ///
 /// # Errors
-/// The mechanism is not supported, for the reason in [`Unfit`].
+/// The mechanism is not supported, for the reason in [`CExportObstacle`].
 pub fn export_cuda_kernels(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &Options,
-) -> Result<KernelFiles, Unfit> {
+) -> Result<KernelFiles, CExportObstacle> {
     let i = ExportedMechanism::new(model, output, tables, options)?;
-    let products = kernels::Products::from_interface(&i);
+    let products = kernels::JacobianProducts::from_interface(&i);
     let functions = i.functions.iter().cloned().chain(products.product_signatures()).collect();
     let scalar = if options.single { "float" } else { "double" };
     let kernels = Kernels { i: &i, functions, scalar };
-    let convert_to_precision = |text: String| if options.single { in_single_precision(&text) } else { text };
+    let convert_to_requested_precision =
+        |text: String| if options.single { in_single_precision(&text) } else { text };
     let definitions = c::kernel_definitions(&i)? + &products.product_definitions();
     Ok(KernelFiles {
         prefix: i.prefix.clone(),
-        kernels: kernels.kernel_source(&definitions, &convert_to_precision),
-        host: convert_to_precision(host::header_text(&kernels)),
+        kernels: kernels.kernel_source(&definitions, &convert_to_requested_precision),
+        host: convert_to_requested_precision(host::header_text(&kernels)),
         python: python::python_module(&kernels),
         left_out: i.left_out.iter().cloned().chain(products.left_out()).collect(),
     })
@@ -80,13 +81,13 @@ impl Kernels<'_> {
             c::list_state_entries(self.i.model),
             include_str!("templates/preamble.cu")
         );
-        let types = c::parameter_types(self.i) + &c::frame_index_constants(self.i);
+        let types = c::c_parameter_type_definitions(self.i) + &c::frame_index_constants(self.i);
         let _ = writeln!(
             text,
             "{}\nnamespace {p}_device {{\n\n{}\n{}\n}}\n",
             c::size_macros(self.i),
             single(types),
-            single(device::device_functions(definitions))
+            single(device::convert_to_device_functions(definitions))
         );
         for function in &self.functions {
             text.push_str(&single(self.kernel_definition(function)));
@@ -107,7 +108,7 @@ impl Kernels<'_> {
         let p = &self.i.prefix;
         let mut body = String::new();
         let mut list: Vec<String> = Vec::new();
-        if self.i.has_own() {
+        if self.i.takes_parameter_struct() {
             let _ = writeln!(body, "    {p}_device::{p} own;");
             for (k, name) in self.i.parameters.iter().enumerate() {
                 let _ = writeln!(
@@ -143,15 +144,17 @@ impl Kernels<'_> {
     /// Returns the parameter list of a CUDA kernel.
     fn kernel_arguments(&self, f: &ExportedSignature) -> Vec<String> {
         let p = &self.i.prefix;
-        let array_parameters = |kind: &str, name: &str| {
+        let array_parameter_text = |kind: &str, name: &str| {
             format!("{kind} *LW_RESTRICT {name}, long long {name}_entry, long long {name}_state")
         };
         let mut list = vec!["long long states".to_string()];
-        list.extend(self.i.has_own().then(|| array_parameters("const double", "parameters")));
+        list.extend(
+            self.i.takes_parameter_struct().then(|| array_parameter_text("const double", "parameters")),
+        );
         list.extend(self.i.tables.iter().map(|name| format!("{p}_device::{p}_table table_{name}")));
         list.extend(f.of_frame.then(|| "int frame".to_string()));
-        list.extend(f.arguments.iter().map(|a| array_parameters("const double", &a.name)));
-        list.extend(f.results.iter().map(|a| array_parameters("double", &a.name)));
+        list.extend(f.arguments.iter().map(|a| array_parameter_text("const double", &a.name)));
+        list.extend(f.results.iter().map(|a| array_parameter_text("double", &a.name)));
         list
     }
 }

@@ -1,7 +1,7 @@
 //! Texts of `modelDescription.xml` and `buildDescription.xml` of an FMU.
 
 use super::units::{BASES, exponents_of_unit};
-use super::variables::{ScalarVariable, VariableRole, Variables};
+use super::variables::{FmuVariables, ScalarVariable, VariableRole};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ pub fn model_description_text(
     model: &Model<'_>,
     identifier: &str,
     token: &str,
-    variables: &Variables,
+    variables: &FmuVariables,
 ) -> String {
     let mut abilities = r#"canGetAndSetFMUState="true" canSerializeFMUState="true""#.to_string();
     if variables.is_differentiable {
@@ -30,7 +30,7 @@ pub fn model_description_text(
         write_variable(&mut list, reference, variable, variables);
     }
     let mut structure = String::new();
-    write_structure(&mut structure, variables);
+    write_model_structure(&mut structure, variables);
     let exchange = match variables.has_model_exchange {
         true => include_str!("templates/model_exchange.xml"),
         false => "",
@@ -48,7 +48,7 @@ pub fn model_description_text(
 }
 
 /// Writes the definition of every known unit to `modelDescription.xml`.
-fn write_units(text: &mut String, variables: &Variables) {
+fn write_units(text: &mut String, variables: &FmuVariables) {
     let mut units: Vec<&str> =
         variables.all.iter().map(|v| v.unit.as_str()).filter(|u| is_known(u)).collect();
     units.sort_unstable();
@@ -67,7 +67,7 @@ fn is_known(unit: &str) -> bool {
     !matches!(unit, "any" | "")
 }
 
-fn write_variable(text: &mut String, reference: usize, variable: &ScalarVariable, variables: &Variables) {
+fn write_variable(text: &mut String, reference: usize, variable: &ScalarVariable, variables: &FmuVariables) {
     let initial = if variables.is_constrained { "approx" } else { "exact" };
     let reinit = if variables.is_projected { r#" reinit="true""# } else { "" };
     let start = variable.start;
@@ -101,7 +101,7 @@ fn write_variable(text: &mut String, reference: usize, variable: &ScalarVariable
 
 /// Writes the outputs, the rates of the states, the variables that initialization computes, and the event
 /// indicators.
-fn write_structure(text: &mut String, variables: &Variables) {
+fn write_model_structure(text: &mut String, variables: &FmuVariables) {
     let mut write = |element: &str, is_listed: &dyn Fn(VariableRole) -> bool| {
         for (reference, _) in variables.all.iter().enumerate().filter(|(_, v)| is_listed(v.role)) {
             let _ = writeln!(text, r#"    <{element} valueReference="{reference}"/>"#);
@@ -117,7 +117,7 @@ fn write_structure(text: &mut String, variables: &Variables) {
 }
 
 /// Returns the text of `buildDescription.xml`.
-pub fn build(identifier: &str, main: &str) -> String {
+pub fn build_description_xml(identifier: &str, main: &str) -> String {
     include_str!("templates/build_description.xml")
         .replace("@IDENTIFIER@", identifier)
         .replace("@MAIN@", main)

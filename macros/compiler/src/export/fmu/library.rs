@@ -1,10 +1,10 @@
 //! FMUs for co-simulation whose binary contains the run-time library.
 
-use super::super::names::{prefix_identifier, snake_case_prefix};
+use super::super::names::{c_name_prefix, snake_case_prefix};
 use super::description;
-use super::model::{array_definition, charts_definition, escape_character, names_definition};
+use super::model::{array_definition, chart_index_definitions, escape_character, names_definition};
 use super::values::StartValues;
-use super::variables::{ENERGIES, OutputFunction, VariableRole, Variables};
+use super::variables::{ENERGIES, FmuVariables, OutputFunction, VariableRole};
 use super::{FmuFiles, MAIN, SOURCES, instantiation_token};
 use crate::catalogue::{Argument, Id, REACTION, TOUCHED};
 use crate::derive::Output;
@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 /// Exports a mechanism whose declaration the run-time library reads. Outputs that need accelerations or
 /// forces are left out; their names are returned.
-pub fn export_library_fmu(
+pub fn export_fmu_for_runtime_library(
     model: &Model<'_>,
     output: &Output,
     declaration: &str,
@@ -21,8 +21,8 @@ pub fn export_library_fmu(
     start: &StartValues,
 ) -> (FmuFiles, Vec<String>) {
     let identifier = match prefix {
-        "" => prefix_identifier(&snake_case_prefix(&model.name)),
-        given => prefix_identifier(given),
+        "" => c_name_prefix(&snake_case_prefix(&model.name)),
+        given => c_name_prefix(given),
     };
     let (mut outputs, mut left_out) = (Vec::new(), Vec::new());
     for f in output.functions.iter().filter(|f| matches!(f.id, Id::Output | Id::Reaction | Id::Touched)) {
@@ -36,7 +36,7 @@ pub fn export_library_fmu(
             }
         }
     }
-    let variables = Variables::of_library(model, outputs, start);
+    let variables = FmuVariables::library_variables(model, outputs, start);
     let text = library_header(model, output, declaration, &variables, start);
     let token = instantiation_token(&[declaration, &text]);
     let text_of_description = description::model_description_text(model, &identifier, &token, &variables);
@@ -53,7 +53,7 @@ fn library_header(
     model: &Model<'_>,
     output: &Output,
     declaration: &str,
-    variables: &Variables,
+    variables: &FmuVariables,
     start: &StartValues,
 ) -> String {
     let mut text = String::from("#define LW_TOKEN \"@TOKEN@\"\n#define LW_LIBRARY 1\n");
@@ -79,7 +79,7 @@ fn library_header(
     }
     let method = if has_contacts { "time_stepping" } else { "automatic" };
     let _ = writeln!(text, "#define LW_METHOD \"{method}\"\n");
-    text.push_str(&charts_definition(&output.charts));
+    text.push_str(&chart_index_definitions(&output.charts));
     text.push_str(&names_definition(variables));
     let roles = [VariableRole::State, VariableRole::Input, VariableRole::Parameter];
     let values = roles.iter().flat_map(|role| variables.all.iter().filter(move |v| v.role == *role));

@@ -11,12 +11,12 @@ mod values;
 mod variables;
 
 use super::c;
-use super::mechanism::{ExportedMechanism, Options, Unfit};
+use super::mechanism::{CExportObstacle, ExportedMechanism, Options};
 use crate::derive::Output;
 use crate::mechanism::Model;
-pub use library::export_library_fmu;
+pub use library::export_fmu_for_runtime_library;
 pub use values::{StartValues, TableValues};
-use variables::Variables;
+use variables::FmuVariables;
 
 /// Handwritten sources, which need no other file than `lw_model.h` and the functions in C. No identifier of a
 /// model begins with `lw_`.
@@ -86,7 +86,7 @@ pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'
 /// `has_derivatives` the FMU provides directional and adjoint derivatives.
 ///
 /// # Errors
-/// The mechanism is not supported, for the reason in [`Unfit`].
+/// The mechanism is not supported, for the reason in [`CExportObstacle`].
 pub fn export_fmu(
     model: &Model<'_>,
     output: &Output,
@@ -94,10 +94,10 @@ pub fn export_fmu(
     options: &Options,
     start: &StartValues,
     has_derivatives: bool,
-) -> Result<FmuFiles, Unfit> {
+) -> Result<FmuFiles, CExportObstacle> {
     let code = c::export_c_source(model, output, tables, options)?;
     let signatures = ExportedMechanism::new(model, output, tables, options)?;
-    let variables = Variables::new(model, &signatures, start, has_derivatives);
+    let variables = FmuVariables::new(model, &signatures, start, has_derivatives);
     let identifier = code.prefix.clone();
     let model_text = model::model_header(model, output, &signatures, &variables, start);
     let token = instantiation_token(&[&code.source, &code.header, &model_text]);
@@ -105,7 +105,7 @@ pub fn export_fmu(
     let sources = vec![format!("sources/{identifier}.c"), format!("sources/{MAIN}")];
     let mut files = vec![
         ("modelDescription.xml".to_string(), description),
-        ("sources/buildDescription.xml".to_string(), description::build(&identifier, MAIN)),
+        ("sources/buildDescription.xml".to_string(), description::build_description_xml(&identifier, MAIN)),
         (sources[0].clone(), code.source),
         (format!("sources/{identifier}.h"), code.header),
         ("sources/lw_model.h".to_string(), model_text.replace("@TOKEN@", &token)),

@@ -5,7 +5,7 @@ use super::super::comments::comment_safe_text;
 use super::super::mechanism::ExportedMechanism;
 use super::super::tokens::contains_word;
 use super::values::{StartValues, TableValues};
-use super::variables::{OutputFunction, VariableRole, Variables};
+use super::variables::{FmuVariables, OutputFunction, VariableRole};
 use crate::derive::Output;
 use crate::mechanism::{Chart, Model};
 use std::fmt::Write;
@@ -21,7 +21,7 @@ pub fn model_header(
     model: &Model<'_>,
     output: &Output,
     signatures: &ExportedMechanism<'_>,
-    variables: &Variables,
+    variables: &FmuVariables,
     start: &StartValues,
 ) -> String {
     let mut w = HeaderWriter { signatures, text: String::new() };
@@ -33,13 +33,13 @@ pub fn model_header(
     );
     w.text.push_str("#define LW_TOKEN \"@TOKEN@\"\n#define LW_LIBRARY 0\n");
     w.write_sizes(model, variables, start);
-    w.text.push_str(&charts_definition(&output.charts));
+    w.text.push_str(&chart_index_definitions(&output.charts));
     w.write_start_values(variables, start);
-    w.write_parameters(variables, start);
-    w.write_kinematics(model);
-    w.write_dynamics(variables);
-    w.write_constraint_rows(model);
-    w.write_results(variables);
+    w.write_parameter_type_and_setter(variables, start);
+    w.write_kinematics_adapters(model);
+    w.write_dynamics_adapters(variables);
+    w.write_constraint_adapters(model);
+    w.write_output_adapters(variables);
     if variables.is_differentiable && variables.has_generated_derivatives {
         w.write_derivatives(variables);
     }
@@ -48,7 +48,7 @@ pub fn model_header(
 
 impl HeaderWriter<'_> {
     /// Writes the constants for the numbers of variables and of rows.
-    fn write_sizes(&mut self, model: &Model<'_>, variables: &Variables, start: &StartValues) {
+    fn write_sizes(&mut self, model: &Model<'_>, variables: &FmuVariables, start: &StartValues) {
         let length_of_result = |name: &str| self.result_length(name);
         let outputs = variables.all.iter().filter(|v| v.role == VariableRole::Output).count();
         let balls = model.charts.iter().filter(|chart| chart.first_quaternion_index().is_some()).count();
@@ -83,7 +83,7 @@ impl HeaderWriter<'_> {
     }
 
     /// Writes names and start values, and the columns of states and parameters among all parameters.
-    fn write_start_values(&mut self, variables: &Variables, start: &StartValues) {
+    fn write_start_values(&mut self, variables: &FmuVariables, start: &StartValues) {
         self.text.push_str(&names_definition(variables));
         let of_role =
             |role: VariableRole| variables.all.iter().filter(move |v| v.role == role).map(|v| v.start);
@@ -100,7 +100,7 @@ impl HeaderWriter<'_> {
     }
 
     /// Writes the type of the parameters, and the function that sets them.
-    fn write_parameters(&mut self, variables: &Variables, start: &StartValues) {
+    fn write_parameter_type_and_setter(&mut self, variables: &FmuVariables, start: &StartValues) {
         let ExportedMechanism { prefix, parameters, tables, .. } = self.signatures;
         if parameters.is_empty() && tables.is_empty() {
             self.text.push_str("typedef struct {\n    char none;\n} lw_mechanism;\n\n");
@@ -121,36 +121,36 @@ impl HeaderWriter<'_> {
     }
 
     /// Writes the C adapters of functions of the configuration alone.
-    fn write_kinematics(&mut self, model: &Model<'_>) {
+    fn write_kinematics_adapters(&mut self, model: &Model<'_>) {
         let body = match model.speeds.is_some() {
             true => self.c_function_call("rates_of_speeds", &["w"]),
             false => "    memcpy(w, v, LW_NV * sizeof(double));\n".to_string(),
         };
-        self.write_adapter("lw_joint_velocities", &["t", "q", "v"], &["w"], &body);
+        self.write_function_adapter("lw_joint_velocities", &["t", "q", "v"], &["w"], &body);
         let body = self.c_function_call("integrate", &["result"]);
-        self.write_adapter("lw_integrate", &["q", "dv"], &["result"], &body);
+        self.write_function_adapter("lw_integrate", &["q", "dv"], &["result"], &body);
     }
 
     /// Writes the C adapters of functions of forces and accelerations.
-    fn write_dynamics(&mut self, variables: &Variables) {
+    fn write_dynamics_adapters(&mut self, variables: &FmuVariables) {
         let forces = self.c_function_call("generalized_forces", &["tau"]);
         let forces = match forces.is_empty() {
             true => "    memset(tau, 0, LW_NV * sizeof(double));\n".to_string(),
             false => forces,
         };
-        self.write_adapter("lw_input_forces", &["t", "q", "v", "u"], &["tau"], &forces);
+        self.write_function_adapter("lw_input_forces", &["t", "q", "v", "u"], &["tau"], &forces);
         let body = self.c_function_call("mass_matrix", &["matrix"]);
-        self.write_adapter("lw_mass_matrix", &["t", "q"], &["matrix"], &body);
+        self.write_function_adapter("lw_mass_matrix", &["t", "q"], &["matrix"], &body);
         let body = self.c_function_call("bias_forces", &["bias"]);
-        self.write_adapter("lw_bias_forces", &["t", "q", "v"], &["bias"], &body);
+        self.write_function_adapter("lw_bias_forces", &["t", "q", "v"], &["bias"], &body);
         if !variables.is_constrained {
             let body = self.c_function_call("forward_dynamics", &["a"]);
-            self.write_adapter("lw_accelerations", &["t", "q", "v", "tau"], &["a"], &body);
+            self.write_function_adapter("lw_accelerations", &["t", "q", "v", "tau"], &["a"], &body);
         }
     }
 
     /// Writes the C adapters of functions of constraints and contacts.
-    fn write_constraint_rows(&mut self, model: &Model<'_>) {
+    fn write_constraint_adapters(&mut self, model: &Model<'_>) {
         let results = ["residuals", "velocities", "biases", "jacobian"];
         let kinds = [
             (
@@ -165,16 +165,16 @@ impl HeaderWriter<'_> {
             let body: String = calls
                 .map(|(function, result)| self.c_function_call(&format!("{kind}_{function}"), &[result]))
                 .collect();
-            self.write_adapter(&format!("lw_{kind}_rows"), &["t", "q", "v"], &results, &body);
+            self.write_function_adapter(&format!("lw_{kind}_rows"), &["t", "q", "v"], &results, &body);
         }
         if !model.contacts.is_empty() {
             let body = self.c_function_call("contact_laws", &["laws"]);
-            self.write_adapter("lw_contact_laws", &[], &["laws"], &body);
+            self.write_function_adapter("lw_contact_laws", &[], &["laws"], &body);
         }
     }
 
     /// Writes the function for the rates of states of first order, outputs and energies.
-    fn write_results(&mut self, variables: &Variables) {
+    fn write_output_adapters(&mut self, variables: &FmuVariables) {
         let mut body = String::new();
         for (k, rate) in variables.rates.iter().enumerate() {
             body.push_str(&self.c_function_call(&rate.name, &[&format!("rates[{k}]")]));
@@ -188,40 +188,45 @@ impl HeaderWriter<'_> {
         for (k, energy) in super::variables::ENERGIES.iter().enumerate() {
             body.push_str(&self.c_function_call(energy, &[&format!("outputs[{}]", at + k)]));
         }
-        self.write_adapter("lw_results", &["t", "q", "v", "a", "u"], &["rates", "outputs"], &body);
+        self.write_function_adapter("lw_results", &["t", "q", "v", "a", "u"], &["rates", "outputs"], &body);
     }
 
     /// Writes the C adapters of functions for derivatives.
-    fn write_derivatives(&mut self, variables: &Variables) {
+    fn write_derivatives(&mut self, variables: &FmuVariables) {
         if variables.is_constrained {
             let results = ["forces_by_q", "forces_by_v", "bias_by_q", "bias_by_v", "rates_by_q"];
             let call = self.c_function_call("motion_derivatives", &[&results[..], &["turning"]].concat());
             let body = format!("    double turning[LW_NV * LW_NV];\n{call}");
             let arguments = ["t", "q", "v", "a", "lambda"];
-            self.write_adapter("lw_motion_derivatives", &arguments, &results, &body);
+            self.write_function_adapter("lw_motion_derivatives", &arguments, &results, &body);
         } else {
             let mut body = self.c_function_call("forward_dynamics_derivatives", &["by_q", "by_v", "by_tau"]);
             body.push_str(&self.c_function_call("forward_dynamics_by_parameters", &["by_constants"]));
             let results = ["by_q", "by_v", "by_tau", "by_constants"];
-            self.write_adapter("lw_acceleration_derivatives", &["t", "q", "v", "tau"], &results, &body);
+            self.write_function_adapter(
+                "lw_acceleration_derivatives",
+                &["t", "q", "v", "tau"],
+                &results,
+                &body,
+            );
         }
         let mut body = self.c_function_call("generalized_forces_derivatives", &["by_q", "by_v", "by_u"]);
         body.push_str(&self.c_function_call("generalized_forces_by_parameters", &["by_constants"]));
         let results = ["by_q", "by_v", "by_u", "by_constants"];
-        self.write_adapter("lw_force_derivatives", &["t", "q", "v", "u"], &results, &body);
+        self.write_function_adapter("lw_force_derivatives", &["t", "q", "v", "u"], &results, &body);
         let mut first = 0;
         let mut body = String::new();
         let all = variables.rates.iter().chain(&variables.outputs);
         for output in all.filter(|output| output.is_differentiable) {
-            body.push_str(&self.result_derivatives(output, first));
+            body.push_str(&self.result_derivative_statements(output, first));
             first += output.size;
         }
         let results = ["r_by_q", "r_by_v", "r_by_a", "r_by_u", "r_by_constants"];
-        self.write_adapter("lw_result_derivatives", &["t", "q", "v", "a", "u"], &results, &body);
+        self.write_function_adapter("lw_result_derivatives", &["t", "q", "v", "a", "u"], &results, &body);
     }
 
     /// Returns the statements for the derivatives of an output, whose first row is `first`.
-    fn result_derivatives(&self, output: &OutputFunction, first: usize) -> String {
+    fn result_derivative_statements(&self, output: &OutputFunction, first: usize) -> String {
         let OutputFunction { name, size, .. } = output;
         let columns = [
             ("q", "LW_NV"),
@@ -269,7 +274,7 @@ impl HeaderWriter<'_> {
     }
 
     /// Writes an adapter that calls a function of the mechanism.
-    fn write_adapter(&mut self, name: &str, arguments: &[&str], results: &[&str], body: &str) {
+    fn write_function_adapter(&mut self, name: &str, arguments: &[&str], results: &[&str], body: &str) {
         self.write_function(name, "const lw_mechanism *m", arguments, results, body);
     }
 
@@ -293,7 +298,7 @@ impl HeaderWriter<'_> {
 
 /// Returns the indices of plain coordinates, and of the quaternions, angular velocities and positions of ball
 /// and free joints.
-pub fn charts_definition(charts: &[Chart]) -> String {
+pub fn chart_index_definitions(charts: &[Chart]) -> String {
     let (mut plains, mut balls) = (Vec::new(), Vec::new());
     for chart in charts {
         match chart {
@@ -314,7 +319,7 @@ pub fn charts_definition(charts: &[Chart]) -> String {
 }
 
 /// Returns the names of all variables, in the order of their value references.
-pub fn names_definition(variables: &Variables) -> String {
+pub fn names_definition(variables: &FmuVariables) -> String {
     let mut text = String::from("\nstatic const char *const lw_names[] = {\n");
     for variable in &variables.all {
         let name: String = variable.name.chars().flat_map(escape_character).collect();

@@ -55,7 +55,7 @@ impl OutputFunction {
 }
 
 /// All variables of an FMU.
-pub struct Variables {
+pub struct FmuVariables {
     /// All variables, in the order of their value references.
     pub all: Vec<ScalarVariable>,
     /// C functions for the rates of states of first order.
@@ -82,14 +82,14 @@ pub struct Variables {
 /// Names of the energy variables, which follow the outputs.
 pub const ENERGIES: [&str; 2] = ["kinetic_energy", "potential_energy"];
 
-impl Variables {
+impl FmuVariables {
     /// Lists the variables of a mechanism, with or without derivatives.
     pub fn new(
         model: &Model<'_>,
         signatures: &ExportedMechanism<'_>,
         start: &StartValues,
         is_differentiable: bool,
-    ) -> Variables {
+    ) -> FmuVariables {
         let has_function = |name: &str| signatures.functions.iter().any(|f| f.name == name);
         let is_constrained = has_function("constraint_jacobian");
         let has_generated_sensitivities =
@@ -113,7 +113,7 @@ impl Variables {
         let has_quaternions = model.charts.iter().any(|chart| chart.first_quaternion_index().is_some());
         let parameters: Vec<usize> =
             (0..model.parameters.len()).filter(|k| !start.states.contains(k)).collect();
-        let mut variables = Variables {
+        let mut variables = FmuVariables {
             all: Vec::new(),
             rates,
             outputs,
@@ -130,9 +130,13 @@ impl Variables {
     }
 
     /// Lists the variables of a mechanism that the run-time library simulates: no rates and event indicators.
-    pub fn of_library(model: &Model<'_>, outputs: Vec<OutputFunction>, start: &StartValues) -> Variables {
+    pub fn library_variables(
+        model: &Model<'_>,
+        outputs: Vec<OutputFunction>,
+        start: &StartValues,
+    ) -> FmuVariables {
         let parameters = (0..model.parameters.len()).filter(|k| !start.states.contains(k)).collect();
-        let mut variables = Variables {
+        let mut variables = FmuVariables {
             all: Vec::new(),
             rates: Vec::new(),
             outputs,

@@ -5,9 +5,9 @@
 
 use super::body::{MISSING, Scope, write_program};
 use super::c::{self, result_program};
-use super::mechanism::{ExportedMechanism, Options, Unfit};
+use super::mechanism::{CExportObstacle, ExportedMechanism, Options};
 use super::signatures::{Array, ExportedSignature, array_list};
-use super::tokens::number_length;
+use super::tokens::leading_number_length;
 use crate::catalogue::{Called, InverseForm, Shape};
 use crate::derive::{Function, Output};
 use crate::mechanism::Model;
@@ -40,13 +40,13 @@ const FUNCTIONS: [(&str, &str); 6] = [
 /// Exports a tree mechanism whose programs have no vector lanes; `tables` are the names of its tables.
 ///
 /// # Errors
-/// The mechanism is not supported, for the reason in [`Unfit`].
+/// The mechanism is not supported, for the reason in [`CExportObstacle`].
 pub fn export_wgsl_shaders(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &Options,
-) -> Result<ShaderFiles, Unfit> {
+) -> Result<ShaderFiles, CExportObstacle> {
     let i = &ExportedMechanism::new(model, output, tables, options)?;
     let mut left_out = i.left_out.clone();
     let functions = functions_without_calls(i, &mut left_out)?;
@@ -79,12 +79,12 @@ pub fn export_wgsl_shaders(
 fn functions_without_calls(
     i: &ExportedMechanism<'_>,
     left_out: &mut Vec<String>,
-) -> Result<Vec<(ExportedSignature, String)>, Unfit> {
+) -> Result<Vec<(ExportedSignature, String)>, CExportObstacle> {
     let mut functions = Vec::new();
     let calling = "it calls other functions";
     for (f, signature) in i.public.iter().zip(&i.functions) {
         match body_without_calls(f, i) {
-            Some(body) if body.contains(MISSING) => return Err(Unfit::Missing),
+            Some(body) if body.contains(MISSING) => return Err(CExportObstacle::Missing),
             Some(body) => functions.push((signature.clone(), body)),
             None => left_out.push(format!("{}: {calling}", signature.name)),
         }
@@ -198,7 +198,7 @@ impl Converter<'_> {
         while let Some(first) = rest.chars().next() {
             let is_word_character = |c: char| c.is_ascii_alphanumeric() || c == '_';
             if first.is_ascii_digit() {
-                let (number, after) = rest.split_at(number_length(rest));
+                let (number, after) = rest.split_at(leading_number_length(rest));
                 out.push_str(&single_precision_literal(number)?);
                 rest = after;
             } else if is_word_character(first) {
@@ -256,13 +256,13 @@ impl Converter<'_> {
 
     /// Returns the buffer of an array, and the index of its first entry.
     fn buffer_and_offset(&self, name: &str) -> Option<(&'static str, usize)> {
-        let offset_in_arrays = |list: &[Array]| {
+        let offset_of_named_array = |list: &[Array]| {
             let at = list.iter().position(|array| array.name == name)?;
             Some(list[..at].iter().map(Array::length).sum())
         };
-        match offset_in_arrays(&self.signature.arguments) {
+        match offset_of_named_array(&self.signature.arguments) {
             Some(at) => Some(("arguments", at)),
-            None => offset_in_arrays(&self.signature.results).map(|at| ("results", at)),
+            None => offset_of_named_array(&self.signature.results).map(|at| ("results", at)),
         }
     }
 }

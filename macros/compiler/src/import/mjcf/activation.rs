@@ -1,7 +1,7 @@
 //! Laws of actuators with states of first order or with several inputs, as expressions.
 
 use super::defaults::Element;
-use super::formula::Formula;
+use super::formula::ActuatorLawExpression;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::imported::Located;
@@ -22,7 +22,7 @@ pub(super) struct ActuatorLaw {
     /// States of first order of the actuator.
     pub(super) states: Vec<ActuatorState>,
     /// Force of the actuator as an expression.
-    pub(super) force: Formula,
+    pub(super) force: ActuatorLawExpression,
     /// Maximum magnitude of the actuator's force, if it is limited.
     pub(super) limit: Option<Located<f64>>,
 }
@@ -36,7 +36,7 @@ pub(super) struct ActuatorState {
     /// Unit of the actuator's state, as text.
     pub(super) unit: &'static str,
     /// Time derivative of the state as an expression.
-    pub(super) rate: Formula,
+    pub(super) rate: ActuatorLawExpression,
 }
 
 /// Name of an actuator, of its inputs and of its states.
@@ -59,45 +59,56 @@ impl ActuatorLaw {
             actuator: named.actuator.to_string(),
             inputs: Vec::new(),
             states: Vec::new(),
-            force: Formula::number_literal(0.0, place),
+            force: ActuatorLawExpression::number_literal(0.0, place),
             limit: None,
         }
     }
 
     /// Returns a constant as an expression of the actuator law.
-    pub(super) fn constant_formula(&self, value: f64) -> Formula {
-        Formula::number_literal(value, &self.place)
+    pub(super) fn constant_formula(&self, value: f64) -> ActuatorLawExpression {
+        ActuatorLawExpression::number_literal(value, &self.place)
     }
 
     /// Returns the actuator length as an expression.
-    pub(super) fn length(&self) -> Formula {
-        Formula::named_value(DriveQuantity::Length.name_for(&self.actuator), &self.place)
+    pub(super) fn length(&self) -> ActuatorLawExpression {
+        ActuatorLawExpression::formula_of_name(
+            DriveQuantity::Length.drive_quantity_name(&self.actuator),
+            &self.place,
+        )
     }
 
     /// Returns the time derivative of the actuator length as an expression.
-    pub(super) fn length_rate(&self) -> Formula {
-        Formula::named_value(DriveQuantity::Rate.name_for(&self.actuator), &self.place)
+    pub(super) fn length_rate(&self) -> ActuatorLawExpression {
+        ActuatorLawExpression::formula_of_name(
+            DriveQuantity::Rate.drive_quantity_name(&self.actuator),
+            &self.place,
+        )
     }
 
     /// Adds an input to the actuator and returns its value as an expression.
-    pub(super) fn add_input(&mut self, word: &str, unit: &'static str, named: &ActuatorNames<'_>) -> Formula {
+    pub(super) fn add_input(
+        &mut self,
+        word: &str,
+        unit: &'static str,
+        named: &ActuatorNames<'_>,
+    ) -> ActuatorLawExpression {
         let name = (named.input)(word);
         self.inputs.push((name.clone(), unit));
-        Formula::named_value(DriveQuantity::Input.name_for(&name), &self.place)
+        ActuatorLawExpression::formula_of_name(DriveQuantity::Input.drive_quantity_name(&name), &self.place)
     }
 
     /// Returns the value of an actuator state as an expression.
-    pub(super) fn state_value(&self, word: &str, named: &ActuatorNames<'_>) -> Formula {
-        Formula::named_value((named.field)(word), &self.place)
+    pub(super) fn state_value(&self, word: &str, named: &ActuatorNames<'_>) -> ActuatorLawExpression {
+        ActuatorLawExpression::formula_of_name((named.field)(word), &self.place)
     }
 
     /// Adds a state of first order to the actuator, with its time derivative.
-    pub(super) fn add_state(
+    pub(super) fn add_actuator_state(
         &mut self,
         word: &str,
         what: &str,
         unit: &'static str,
-        rate: Formula,
+        rate: ActuatorLawExpression,
         named: &ActuatorNames<'_>,
     ) {
         let comma = if unit == "1" || unit == "any" { String::new() } else { format!(", {unit}") };
@@ -106,7 +117,7 @@ impl ActuatorLaw {
     }
 
     /// Returns the affine force law `b₀ + b₁ length + b₂ rate` of an actuator.
-    pub(super) fn affine_formula(&self, prm: &[f64; 10]) -> Formula {
+    pub(super) fn affine_formula(&self, prm: &[f64; 10]) -> ActuatorLawExpression {
         let [b0, b1, b2, ..] = *prm;
         self.length() * b1 + self.length_rate() * b2 + b0
     }
@@ -116,7 +127,7 @@ impl ActuatorLaw {
 pub(super) const CONTROLS: [&str; 4] = ["pos", "vel", "ff", "voltage"];
 
 /// Returns the requested inputs of a controller. The order is MuJoCo's.
-pub(super) fn requested_controls(
+pub(super) fn requested_controller_inputs(
     actuator: &Element<'_>,
     usual: &'static str,
     known: &[&'static str],
@@ -125,9 +136,8 @@ pub(super) fn requested_controls(
     let text = actuator.trimmed_text("input").filter(|text| !text.is_empty()).unwrap_or(usual);
     let mut found: Vec<&'static str> = Vec::new();
     for word in text.split_ascii_whitespace() {
-        let position_in_controls = |word: &str| CONTROLS.iter().position(|known| *known == word);
-        let in_order =
-            found.last().is_none_or(|last| position_in_controls(last) < position_in_controls(word));
+        let control_word_index = |word: &str| CONTROLS.iter().position(|known| *known == word);
+        let in_order = found.last().is_none_or(|last| control_word_index(last) < control_word_index(word));
         match known.iter().find(|known| **known == word) {
             Some(known) if in_order => found.push(known),
             _ => {
@@ -143,7 +153,7 @@ pub(super) fn requested_controls(
 
 /// Reports a nonzero limit of a controller that depends on the length of MuJoCo's time step or is not
 /// continuous.
-pub(super) fn report_limit(
+pub(super) fn report_controller_limit(
     actuator: &Element<'_>,
     attribute: &str,
     what: &str,

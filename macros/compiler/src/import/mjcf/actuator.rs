@@ -6,16 +6,16 @@
 
 use super::activation::{ActuatorLaw, ActuatorNames, OTHER_INPUTS};
 use super::defaults::Element;
-use super::formula::Formula;
-use super::law::{Force, read_force};
+use super::formula::ActuatorLawExpression;
+use super::law::{ActuatorForceLaw, read_actuator_force};
 use super::reader::MjcfReader;
 use super::tendon::Tendon;
 use crate::import::context::Cx;
-use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
+use crate::import::element::{Node, child_elements, element_source_position, read_name_attribute};
 use crate::import::imported::Located;
 use crate::import::robot::{identifier_of_names, unused_name};
 use crate::syntax::file_parameters::{FileField, FileFieldKind};
-use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, InputOption, JointKind, LimitOption, Name};
+use crate::syntax::{Drive, DriveLaw, DriveTarget, Expr, FileInputSource, JointKind, LimitOption, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Actuator types of MuJoCo that are not supported, with the reasons.
@@ -49,48 +49,48 @@ pub(super) const ALL: [&str; 13] = [
 const TARGETS: [&str; 7] = ["joint", "jointinparent", "tendon", "site", "slidersite", "cranksite", "body"];
 
 /// Maximum effort of each joint: the sum over its actuators, or `None` if one of them is unlimited.
-type Efforts = BTreeMap<String, Option<Located<f64>>>;
+type JointEffortLimits = BTreeMap<String, Option<Located<f64>>>;
 
 impl<'a> MjcfReader<'a> {
     /// Reads all actuators of an MJCF file.
     pub(super) fn read_actuators(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = child_elements(root).filter(|node| node.tag_name().name() == "actuator");
         let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
-        let off = self.options.inputs != InputOption::Actuators || !self.settings.actuation;
+        let off = self.options.inputs != FileInputSource::Actuators || !self.settings.actuation;
         if off && !nodes.is_empty() {
             self.left_out.push(format!("{} actuators", nodes.len()));
         }
         let mut names: BTreeSet<String> =
             nodes.iter().filter_map(|node| node.attribute("name")).map(str::to_string).collect();
-        let mut efforts = Efforts::new();
+        let mut efforts = JointEffortLimits::new();
         for node in nodes {
             // Attributes common to all actuators may come from the defaults of any actuator type.
             let any = self.defaults.element_with_defaults(node, &ALL, 0, cx);
             self.add_rotor_losses(&any, tendons, cx);
-            let group = any.finite_number("group", cx).map_or(0.0, |group| group.value);
+            let group = any.read_finite_attribute("group", cx).map_or(0.0, |group| group.value);
             let disabled = self.settings.disabled_groups.contains(&group);
             if disabled && !off {
-                self.count_skipped("actuators of disabled groups", 1);
+                self.count_skipped_contents("actuators of disabled groups", 1);
             }
             if !off && !disabled {
                 self.read_actuator(&any, tendons, (&mut names, &mut efforts), cx);
             }
         }
-        self.limit_efforts(efforts);
+        self.limit_joint_efforts_to_actuators(efforts);
     }
 
     fn read_actuator(
         &mut self,
         any: &Element<'a>,
         tendons: &[Tendon],
-        (names, efforts): (&mut BTreeSet<String>, &mut Efforts),
+        (names, efforts): (&mut BTreeSet<String>, &mut JointEffortLimits),
         cx: &mut Cx<'_>,
     ) {
         let node = any.node;
         let kind = node.tag_name().name();
         if let Some((_, why)) = REFUSED.iter().find(|(refused, _)| *refused == kind) {
             let message = format!("actuator `<{kind}>` is not supported");
-            cx.report_error(&element_position(node, cx), message, |d| {
+            cx.report_error(&element_source_position(node, cx), message, |d| {
                 d.add_help(*why).add_help(OTHER_INPUTS)
             });
             return;
@@ -100,7 +100,7 @@ impl<'a> MjcfReader<'a> {
             return;
         }
         let classes = self.defaults.defaults_by_class(node, &ALL, 0, cx);
-        if let Some(found) = any.nonzero_number("delay", cx) {
+        if let Some(found) = any.nonzero_attribute_number("delay", cx) {
             cx.report_error(&found.place, "`delay` of an actuator is not supported", |d| {
                 d.add_help(OTHER_INPUTS)
             });
@@ -112,7 +112,7 @@ impl<'a> MjcfReader<'a> {
             let target = joint.or(any.trimmed_text("site")).unwrap_or("motor");
             Name {
                 text: unused_name(&format!("{target}_{kind}"), |name| names.contains(name)),
-                place: element_position(node, cx),
+                place: element_source_position(node, cx),
             }
         });
         names.insert(named.text.clone());
@@ -128,19 +128,19 @@ impl<'a> MjcfReader<'a> {
         let length = if turns { "rad" } else { "m" };
         let quantities =
             ActuatorNames { actuator: &named.text, length, field: &unused_state_name, input: &input };
-        let Some(force) = read_force(any, &classes, &quantities, cx) else { return };
+        let Some(force) = read_actuator_force(any, &classes, &quantities, cx) else { return };
         match force {
-            Force::Affine { gain, bias } => {
+            ActuatorForceLaw::Affine { gain, bias } => {
                 let servo = bias[1] != 0.0;
                 let Some((on, _)) = self.read_transmission(any, tendons, servo, cx) else { return };
                 self.add_effort_limit(any, &on, ((gain, bias), None), efforts, cx);
                 self.add_affine_actuator(&named, on, (gain, bias), input_unit(kind, turns, (gain, bias)));
             }
-            Force::Law(law) => {
+            ActuatorForceLaw::Law(law) => {
                 let Some((on, _)) = self.read_transmission(any, tendons, true, cx) else { return };
                 self.add_effort_limit(any, &on, ((1.0, [1.0; 3]), law.limit.clone()), efforts, cx);
                 let limited = self.read_range(any, "actlimited", "actrange", cx).is_some();
-                self.count_skipped("ranges of activations", usize::from(limited));
+                self.count_skipped_contents("ranges of activations", usize::from(limited));
                 names.extend(law.inputs.iter().map(|(input, _)| input.clone()));
                 self.add_actuator_law(named, on, *law);
             }
@@ -151,16 +151,16 @@ impl<'a> MjcfReader<'a> {
     fn add_affine_actuator(
         &mut self,
         name: &Name,
-        on: DriveOn,
+        on: DriveTarget,
         (gain, [constant, stiffness, damping]): (f64, [f64; 3]),
         unit: &'static str,
     ) {
-        let mut drive = |on: DriveOn, law: DriveLaw| {
+        let mut drive = |on: DriveTarget, law: DriveLaw| {
             self.robot.drives.push(Drive { name: name.clone(), on, law });
         };
-        drive(on.scaled_target(gain), DriveLaw::Input(unit));
+        drive(on.with_scaled_weights(gain), DriveLaw::Input(unit));
         // The length of an actuator on a site is zero.
-        let stiffness = if matches!(on, DriveOn::Wrench(_)) { 0.0 } else { stiffness };
+        let stiffness = if matches!(on, DriveTarget::Wrench(_)) { 0.0 } else { stiffness };
         if stiffness != 0.0 {
             drive(on.clone(), DriveLaw::Spring { stiffness: -stiffness, free: constant / -stiffness });
         } else if constant != 0.0 {
@@ -172,10 +172,10 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Adds the inputs, the states and the force of an actuator.
-    fn add_actuator_law(&mut self, name: Name, on: DriveOn, law: ActuatorLaw) {
+    fn add_actuator_law(&mut self, name: Name, on: DriveTarget, law: ActuatorLaw) {
         for (input, unit) in law.inputs {
             let name = Name { text: input, place: name.place.clone() };
-            let on = DriveOn::Sum(Vec::new());
+            let on = DriveTarget::Sum(Vec::new());
             self.robot.drives.push(Drive { name, on, law: DriveLaw::Input(unit) });
         }
         for state in law.states {
@@ -187,10 +187,10 @@ impl<'a> MjcfReader<'a> {
                 values: vec![0.0],
                 units: vec![state.unit],
             };
-            let Formula(rate) = state.rate;
+            let ActuatorLawExpression(rate) = state.rate;
             self.robot.states.push((field, rate));
         }
-        let Formula(force) = law.force;
+        let ActuatorLawExpression(force) = law.force;
         let law = DriveLaw::Expression { force: Box::new(force), offset: 0.0 };
         self.robot.drives.push(Drive { name, on, law });
     }
@@ -202,14 +202,14 @@ impl<'a> MjcfReader<'a> {
         tendons: &[Tendon],
         servo: bool,
         cx: &mut Cx<'_>,
-    ) -> Option<(DriveOn, bool)> {
+    ) -> Option<(DriveTarget, bool)> {
         let said: Vec<&str> =
             TARGETS.into_iter().filter(|target| element.node.has_attribute(*target)).collect();
         match said.as_slice() {
             [_] | ["slidersite", "cranksite"] => {}
             [] => {
                 let message = "an actuator without a target";
-                cx.report_error(&element_position(element.node, cx), message, |d| {
+                cx.report_error(&element_source_position(element.node, cx), message, |d| {
                     d.add_help("expected `joint`, `tendon` or `site`").add_help(OTHER_INPUTS)
                 });
                 return None;
@@ -217,36 +217,39 @@ impl<'a> MjcfReader<'a> {
             several => {
                 let message =
                     format!("an actuator has one target, but here are `{}`", several.join("` and `"));
-                cx.report_error(&element_position(element.node, cx), message, |d| d.add_help(OTHER_INPUTS));
+                cx.report_error(&element_source_position(element.node, cx), message, |d| {
+                    d.add_help(OTHER_INPUTS)
+                });
                 return None;
             }
         }
-        if let Some(site) = element.name_of_attribute("site", cx) {
+        if let Some(site) = element.attribute_text_with_span("site", cx) {
             return self.site_transmission(&site, element, servo, cx);
         }
         let gear = element
             .numbers_with_defaults("gear", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], cx)
             .map_or(1.0, |gear| gear.value[0]);
-        if let Some(joint) =
-            element.name_of_attribute("joint", cx).or_else(|| element.name_of_attribute("jointinparent", cx))
+        if let Some(joint) = element
+            .attribute_text_with_span("joint", cx)
+            .or_else(|| element.attribute_text_with_span("jointinparent", cx))
         {
-            if !self.check_coupled_joint(&joint, "drive", cx) {
+            if !self.check_single_coordinate_joint(&joint, "drive", cx) {
                 return None;
             }
             let is_pin = |known: &crate::import::robot::FileJoint| {
                 known.name.text == joint.text && known.kind == JointKind::Pin
             };
             let turns = self.robot.joints.iter().any(is_pin);
-            return Some((DriveOn::Sum(vec![(joint, gear)]), turns));
+            return Some((DriveTarget::Sum(vec![(joint, gear)]), turns));
         }
-        if let Some(tendon) = element.name_of_attribute("tendon", cx) {
+        if let Some(tendon) = element.attribute_text_with_span("tendon", cx) {
             return Some((
-                Tendon::drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.scaled_target(gear),
+                Tendon::tendon_drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.with_scaled_weights(gear),
                 false,
             ));
         }
         let message = "an actuator on no joint, tendon or site is not supported";
-        cx.report_error(&element_position(element.node, cx), message, |d| d.add_help(OTHER_INPUTS));
+        cx.report_error(&element_source_position(element.node, cx), message, |d| d.add_help(OTHER_INPUTS));
         None
     }
 
@@ -255,13 +258,14 @@ impl<'a> MjcfReader<'a> {
     fn add_rotor_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let gear =
             element.numbers_with_defaults("gear", [1.0; 6], cx).map_or(1.0, |gear| gear.value[0].abs());
-        let damping = element.polynomial_coefficients("damping", cx).filter(|_| self.dampers && gear > 0.0);
+        let damping =
+            element.polynomial_force_coefficients("damping", cx).filter(|_| self.dampers && gear > 0.0);
         // MuJoCo multiplies all coefficients by the square of the gear ratio.
         let damping = damping.map(|Located { value: [linear, square, cube], place }| Located {
             value: [linear, square / gear, cube / (gear * gear)],
             place,
         });
-        let rotor = element.nonzero_number("armature", cx);
+        let rotor = element.nonzero_attribute_number("armature", cx);
         let laws = [
             damping.map(|found| (DriveLaw::damper(found.value), found.place)),
             rotor.as_ref().map(|found| (DriveLaw::Inerter(found.value), found.place.clone())),
@@ -290,9 +294,9 @@ impl<'a> MjcfReader<'a> {
     fn add_effort_limit(
         &mut self,
         element: &Element<'a>,
-        on: &DriveOn,
+        on: &DriveTarget,
         ((gain, bias), saturation): ((f64, [f64; 3]), Option<Located<f64>>),
-        efforts: &mut Efforts,
+        efforts: &mut JointEffortLimits,
         cx: &mut Cx<'_>,
     ) {
         let largest_magnitude = |ends: [Located<f64>; 2]| {
@@ -304,17 +308,17 @@ impl<'a> MjcfReader<'a> {
         let by_force = saturation.or(by_force);
         let by_input = self.read_range(element, "ctrllimited", "ctrlrange", cx).map(largest_magnitude);
         let by_input = by_input.filter(|_| self.settings.clamped);
-        let inherits = element.nonzero_number("inheritrange", cx).is_some();
+        let inherits = element.nonzero_attribute_number("inheritrange", cx).is_some();
         let is_servo = bias != [0.0; 3];
         let servos = usize::from((by_input.is_some() || inherits) && is_servo);
-        self.count_skipped("ranges of servo commands", servos);
+        self.count_skipped_contents("ranges of servo commands", servos);
         let by_input =
             by_input.filter(|_| !is_servo).map(|found| Located { value: found.value * gain.abs(), ..found });
         let limit = match (by_force, by_input) {
             (Some(a), Some(b)) => Some(if a.value <= b.value { a } else { b }),
             (a, b) => a.or(b),
         };
-        let add = |joint: String, more: Option<Located<f64>>, efforts: &mut Efforts| match efforts
+        let add = |joint: String, more: Option<Located<f64>>, efforts: &mut JointEffortLimits| match efforts
             .get_mut(&joint)
         {
             Some(known) => {
@@ -327,27 +331,28 @@ impl<'a> MjcfReader<'a> {
                 efforts.insert(joint, more);
             }
         };
-        if let DriveOn::Sum(terms) = on {
+        if let DriveTarget::Sum(terms) = on {
             for (joint, weight) in terms {
                 let more = limit.clone().map(|limit| Located { value: limit.value * weight.abs(), ..limit });
                 add(joint.text.clone(), more, efforts);
             }
             return;
         }
-        self.count_skipped("limits of actuators on cables and sites", usize::from(limit.is_some()));
-        for joint in self.joints_to_ground(on) {
+        self.count_skipped_contents("limits of actuators on cables and sites", usize::from(limit.is_some()));
+        for joint in self.joint_names_to_ground(on) {
             add(joint, None, efforts);
         }
     }
 
     /// Returns the names of all joints between the ground and the bodies that a length or a wrench refers to.
-    fn joints_to_ground(&self, on: &DriveOn) -> Vec<String> {
+    fn joint_names_to_ground(&self, on: &DriveTarget) -> Vec<String> {
         let ends = match on {
-            DriveOn::Sum(_) => Vec::new(),
-            DriveOn::Length(e) => e.subexpressions(),
-            DriveOn::Wrench(wrench) => {
-                std::iter::once(&wrench.on).chain(&wrench.against).flat_map(Expr::subexpressions).collect()
-            }
+            DriveTarget::Sum(_) => Vec::new(),
+            DriveTarget::Length(e) => e.all_subexpressions(),
+            DriveTarget::Wrench(wrench) => std::iter::once(&wrench.on)
+                .chain(&wrench.against)
+                .flat_map(Expr::all_subexpressions)
+                .collect(),
         };
         let mut found = Vec::new();
         for mut body in ends.into_iter().filter_map(Expr::as_name) {
@@ -362,7 +367,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Limits the effort of each joint to the sum of its actuators' maximum forces.
-    fn limit_efforts(&mut self, mut efforts: Efforts) {
+    fn limit_joint_efforts_to_actuators(&mut self, mut efforts: JointEffortLimits) {
         if self.options.limits == LimitOption::Ignore {
             return;
         }

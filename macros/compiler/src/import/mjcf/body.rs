@@ -4,16 +4,18 @@ use super::defaults::{Element, boolean_choice};
 use super::frame::read_pose;
 use super::geometry;
 use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint_element};
-use super::reader::{MjcfReader, origin_of_pose, set_mass};
+use super::reader::{MjcfReader, assign_mass_properties, origin_of_pose};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, child_elements, element_position, quoted_tag, read_name_attribute, read_number_attribute,
+    Node, child_elements, element_source_position, quoted_tag, read_name_attribute, read_number_attribute,
 };
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, add, axis_rotation, matrix_product, matrix_times_vector, scale_vector};
+use crate::import::pose::{
+    FilePose, add, axis_rotation, matrix_product, matrix_times_vector, vector_times_scalar,
+};
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, massless_link, unused_name};
-use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
+use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, InertiaOption, JointKind, Name};
 
 /// MuJoCo's name of the body that is fixed to the ground.
 pub(super) const WORLD: &str = "world";
@@ -21,7 +23,7 @@ pub(super) const WORLD: &str = "world";
 const WRITTEN_OUT: &str = "MuJoCo can write the expanded model: `mj_saveLastXML`, or its program `compile`";
 
 /// Body of an MJCF file that remains to be read.
-struct OpenBody<'a> {
+struct PendingBody<'a> {
     node: Node<'a>,
     /// Name of the parent link of the body.
     parent: Name,
@@ -33,14 +35,14 @@ struct OpenBody<'a> {
 }
 
 /// Shape or site, with the pose of its surrounding `<frame>` elements relative to the body.
-pub(super) type Shaped<'a> = (Element<'a>, FilePose);
+pub(super) type ElementWithPose<'a> = (Element<'a>, FilePose);
 
 /// Contents of a body, including the contents of its `<frame>` elements.
 #[derive(Default)]
 struct BodyContents<'a> {
     bodies: Vec<(Node<'a>, FilePose, usize)>,
-    shapes: Vec<Shaped<'a>>,
-    sites: Vec<Shaped<'a>>,
+    shapes: Vec<ElementWithPose<'a>>,
+    sites: Vec<ElementWithPose<'a>>,
     inertial: Option<(Node<'a>, FilePose)>,
     /// Joints, each with the pose of its surrounding `<frame>` elements relative to the body, and its class.
     jointed: Vec<(Node<'a>, FilePose, usize)>,
@@ -49,41 +51,41 @@ struct BodyContents<'a> {
 impl<'a> MjcfReader<'a> {
     /// Reads the world and all bodies of an MJCF file.
     pub(super) fn read_world(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Option<()> {
-        let world = Name { text: GROUND.to_string(), place: element_position(root, cx) };
+        let world = Name { text: GROUND.to_string(), place: element_source_position(root, cx) };
         self.robot.links.push(massless_link(world.clone()));
         // Generated names must differ from the names in the file.
         let names_of_elements = |kind: fn(Node<'_>) -> bool| {
             let nodes = root.descendants().filter(move |node| node.is_element() && kind(*node));
             nodes.filter_map(|node| node.attribute("name")).map(str::to_string)
         };
-        let is_inside_body = |node: Node<'_>| {
+        let is_joint_inside_body = |node: Node<'_>| {
             let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
             is_joint_element(node) && ["body", "frame"].contains(&parent)
         };
-        self.joint_names = names_of_elements(is_inside_body).collect();
+        self.joint_names = names_of_elements(is_joint_inside_body).collect();
         self.link_names = names_of_elements(|node| node.tag_name().name() == "body").collect();
         self.link_names.extend([GROUND.to_string(), WORLD.to_string()]);
         let worlds: Vec<Node<'a>> =
             child_elements(root).filter(|node| node.tag_name().name() == "worldbody").collect();
         if worlds.is_empty() {
-            cx.report_error(&element_position(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
+            cx.report_error(&element_source_position(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
             return None;
         }
-        let mut open: Vec<OpenBody<'a>> = Vec::new();
+        let mut open: Vec<PendingBody<'a>> = Vec::new();
         for node in worlds.into_iter().rev() {
             let class = self.defaults.class_index(node, "childclass", 0, cx);
             let inside = self.contents_of_body(node, class, cx);
             let fixed = inside.jointed.iter().map(|(node, ..)| *node);
             for node in fixed.chain(inside.inertial.map(|(node, _)| node)) {
                 let message = format!("{} of the world, which does not move", quoted_tag(node));
-                cx.report_error(&element_position(node, cx), message, |d| {
+                cx.report_error(&element_source_position(node, cx), message, |d| {
                     d.add_help("move it into a `<body>`")
                 });
             }
             self.collect_sites(&inside, GROUND, cx);
             self.add_world_planes(&inside.shapes, cx);
             self.record_shapes(GROUND, &inside.shapes, cx);
-            open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| OpenBody {
+            open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| PendingBody {
                 node,
                 parent: world.clone(),
                 outer,
@@ -91,12 +93,12 @@ impl<'a> MjcfReader<'a> {
                 class,
             }));
         }
-        self.check_free_base(&open, cx);
+        self.reject_wrong_free_base_option(&open, cx);
         // With an explicit stack, because chains may be long.
         while let Some(next) = open.pop() {
             if self.robot.links.len() > MAX_ELEMENTS {
                 cx.report_error(
-                    &element_position(next.node, cx),
+                    &element_source_position(next.node, cx),
                     format!("more than {MAX_ELEMENTS} bodies"),
                     |d| d,
                 );
@@ -110,7 +112,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Reports the option `base = free` unless the file has exactly one outermost body and it has no joints.
-    fn check_free_base(&self, open: &[OpenBody<'a>], cx: &mut Cx<'_>) {
+    fn reject_wrong_free_base_option(&self, open: &[PendingBody<'a>], cx: &mut Cx<'_>) {
         if self.options.base != Base::Free {
             return;
         }
@@ -134,7 +136,7 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn read_body(&mut self, open: OpenBody<'a>, cx: &mut Cx<'_>) -> Vec<OpenBody<'a>> {
+    fn read_body(&mut self, open: PendingBody<'a>, cx: &mut Cx<'_>) -> Vec<PendingBody<'a>> {
         let node = open.node;
         self.bodies += 1;
         let mocap = boolean_choice(node, "mocap", cx) == Some(true);
@@ -155,14 +157,14 @@ impl<'a> MjcfReader<'a> {
                 d.add_help("a mocap body is a child of `<worldbody>` and has no joint")
             });
         }
-        self.report_alignment(&inside, cx);
+        self.report_aligned_free_joint(&inside, cx);
         if self.options.base == Base::Free && open.parent.text == GROUND && joints.is_empty() {
-            joints.extend(self.plain_free_joint(&body));
+            joints.extend(self.generated_free_joint(&body));
         }
-        self.check_gravity_compensation(node, cx);
+        self.reject_gravity_compensation(node, cx);
         let mass = match self.options.inertias {
-            Inertias::None => None,
-            _ => geometry::mass_of_body(
+            InertiaOption::None => None,
+            _ => geometry::mass_properties_of_body(
                 &inside.inertial,
                 &inside.shapes,
                 &self.defaults,
@@ -178,7 +180,7 @@ impl<'a> MjcfReader<'a> {
         self.add_joint_chain(&open.parent, &body, &pose, joints, cx);
         let mut link = massless_link(body.clone());
         if let Some(mass) = &mass {
-            set_mass(&mut link, mass, &place_of_mass(&inside, node, cx));
+            assign_mass_properties(&mut link, mass, &source_position_of_mass(&inside, node, cx));
         }
         self.add_collision_shapes(self.robot.links.len(), &inside.shapes, cx);
         self.add_visual_shapes(self.robot.links.len(), &inside.shapes, cx);
@@ -187,14 +189,14 @@ impl<'a> MjcfReader<'a> {
         self.masses.push(mass);
         self.poses.insert(body.text.clone(), world);
         let next = inside.bodies.into_iter();
-        next.map(|(node, outer, class)| OpenBody { node, parent: body.clone(), outer, world, class })
+        next.map(|(node, outer, class)| PendingBody { node, parent: body.clone(), outer, world, class })
             .collect()
     }
 
     fn body_name(&mut self, said: Option<Name>, node: Node<'a>, cx: &mut Cx<'_>) -> Name {
         let mut body = said.unwrap_or_else(|| {
             let text = unused_name(&format!("body{}", self.bodies), |name| self.link_names.contains(name));
-            Name { text, place: element_position(node, cx) }
+            Name { text, place: element_source_position(node, cx) }
         });
         if body.text == GROUND {
             body.text = unused_name("ground_link", |name| self.link_names.contains(name));
@@ -210,11 +212,11 @@ impl<'a> MjcfReader<'a> {
     /// Collects the elements in a body, each with the pose of its surrounding `<frame>` elements.
     fn contents_of_body(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) -> BodyContents<'a> {
         let mut found = BodyContents::default();
-        self.gather_contents(node, &FilePose::ZERO, class, &mut found, cx);
+        self.gather_body_contents(node, &FilePose::ZERO, class, &mut found, cx);
         found
     }
 
-    fn gather_contents(
+    fn gather_body_contents(
         &mut self,
         node: Node<'a>,
         outer: &FilePose,
@@ -237,7 +239,7 @@ impl<'a> MjcfReader<'a> {
                     let element = self.defaults.element_with_defaults(child, &[], 0, cx);
                     let pose = outer.compose_with(&read_pose(&element, &self.settings, cx));
                     // The recursion depth is that of nested elements, which is limited.
-                    self.gather_contents(child, &pose, class, found, cx);
+                    self.gather_body_contents(child, &pose, class, found, cx);
                 }
                 "body" => found.bodies.push((child, *outer, class)),
                 "geom" => found
@@ -247,15 +249,21 @@ impl<'a> MjcfReader<'a> {
                     .sites
                     .push((self.defaults.element_with_defaults(child, &["site"], class, cx), *outer)),
                 "inertial" if found.inertial.is_some() => {
-                    cx.report_error(&element_position(child, cx), "second `<inertial>` of one body", |d| d);
+                    cx.report_error(
+                        &element_source_position(child, cx),
+                        "second `<inertial>` of one body",
+                        |d| d,
+                    );
                 }
                 "inertial" => found.inertial = Some((child, *outer)),
                 "joint" | "freejoint" => found.jointed.push((child, *outer, class)),
-                "camera" => self.count_skipped("cameras", 1),
-                "light" => self.count_skipped("lights", 1),
+                "camera" => self.count_skipped_contents("cameras", 1),
+                "light" => self.count_skipped_contents("lights", 1),
                 "composite" | "flexcomp" | "replicate" | "attach" | "plugin" => {
                     let message = format!("{} is not supported", quoted_tag(child));
-                    cx.report_error(&element_position(child, cx), message, |d| d.add_help(WRITTEN_OUT));
+                    cx.report_error(&element_source_position(child, cx), message, |d| {
+                        d.add_help(WRITTEN_OUT)
+                    });
                 }
                 // Unknown elements are reported by the schema check.
                 _ => {}
@@ -265,20 +273,20 @@ impl<'a> MjcfReader<'a> {
 
     /// Reports a free joint that aligns the axes of its body with the principal axes. Its coordinates would
     /// differ from those of the unaligned body.
-    fn report_alignment(&self, inside: &BodyContents<'a>, cx: &mut Cx<'_>) {
+    fn report_aligned_free_joint(&self, inside: &BodyContents<'a>, cx: &mut Cx<'_>) {
         for (joint, ..) in &inside.jointed {
             let aligned = joint.tag_name().name() == "freejoint"
                 && boolean_choice(*joint, "align", cx).unwrap_or(self.settings.align_free);
             if aligned && inside.bodies.is_empty() {
                 let message = "a free body in principal axes is not supported";
-                cx.report_error(&element_position(*joint, cx), message, |d| {
+                cx.report_error(&element_source_position(*joint, cx), message, |d| {
                     d.add_help("write `align=\"false\"` into the joint: the motion is the same in any axes")
                 });
             }
         }
     }
 
-    fn check_gravity_compensation(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
+    fn reject_gravity_compensation(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
         if let Some(found) =
             read_number_attribute(node, "gravcomp", cx).filter(|found| self.passive && found.value != 0.0)
         {
@@ -348,40 +356,40 @@ impl<'a> MjcfReader<'a> {
     ) {
         let at = &damping.place;
         let name_expr = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
-        let half_square = |e: Expr| {
-            let square = Expr::function_call_at("dot", vec![e.clone(), e], at);
+        let half_damping_times_square = |e: Expr| {
+            let square = Expr::function_call_expression("dot", vec![e.clone(), e], at);
             Expr::binary_operation(BinaryOp::Mul, Expr::number_at(damping.value / 2.0, at), square)
         };
         let quotient = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
-        let turning = Expr::function_call_at(
+        let turning = Expr::function_call_expression(
             "omega",
             vec![quotient(name_expr(&child.text), name_expr(&carrier.text))],
             at,
         );
-        let mut sum = half_square(turning);
+        let mut sum = half_damping_times_square(turning);
         if joint.kind == JointKind::Free {
             let path = quotient(quotient(name_expr(&child.text), name_expr(GROUND)), name_expr(GROUND));
             sum = Expr::binary_operation(
                 BinaryOp::Add,
                 sum,
-                half_square(Expr::function_call_at("v", vec![path], at)),
+                half_damping_times_square(Expr::function_call_expression("v", vec![path], at)),
             );
         }
         let text = format!("{}_damping", joint.name.text);
         self.robot.dissipations.push((Name { text, place: at.clone() }, sum));
     }
 
-    fn plain_free_joint(&mut self, body: &Name) -> Option<BodyJoint> {
+    fn generated_free_joint(&mut self, body: &Name) -> Option<BodyJoint> {
         let text = unused_name(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
         self.joint_names.insert(text.clone());
         let place = body.place.clone();
-        let placed_value = |value| Located { value, place: place.clone() };
+        let value_with_span = |value| Located { value, place: place.clone() };
         Some(BodyJoint {
             name: Name { text, place: place.clone() },
             kind: JointKind::Free,
             word: "free",
-            anchor: placed_value([0.0; 3]),
-            axis: placed_value([0.0, 0.0, 1.0]),
+            anchor: value_with_span([0.0; 3]),
+            axis: value_with_span([0.0, 0.0, 1.0]),
             reference: 0.0,
             limits: FileLimits::default(),
             damping: None,
@@ -395,7 +403,7 @@ impl<'a> MjcfReader<'a> {
         for (site, outer) in &inside.sites {
             let named =
                 site.node.has_attribute("name").then(|| read_name_attribute(site.node, "name", cx)).flatten();
-            if let Some(mesh) = site.name_of_attribute("mesh", cx) {
+            if let Some(mesh) = site.attribute_text_with_span("mesh", cx) {
                 cx.report_error(&mesh.place, "a site that is fitted to a mesh is not supported", |d| d);
             }
             let Some((pose, _)) = geometry::pose_and_half_length(site, &self.settings, cx) else { continue };
@@ -429,8 +437,8 @@ impl<'a> MjcfReader<'a> {
 }
 
 /// Returns the source position of the mass properties of a body.
-fn place_of_mass(inside: &BodyContents<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
-    element_position(inside.inertial.map_or(node, |(node, _)| node), cx)
+fn source_position_of_mass(inside: &BodyContents<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
+    element_source_position(inside.inertial.map_or(node, |(node, _)| node), cx)
 }
 
 /// Returns a joint that fixes one link to another.
@@ -446,7 +454,7 @@ fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FileP
     let mut inner = FilePose { at: joint.anchor.value, ..FilePose::ZERO };
     match joint.kind.rotates_about_one_axis() {
         Some(true) if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
-        Some(false) => inner.at = add(inner.at, scale_vector(axis, -joint.reference)),
+        Some(false) => inner.at = add(inner.at, vector_times_scalar(axis, -joint.reference)),
         Some(true) | None => {}
     }
     let free = joint.kind == JointKind::Free;

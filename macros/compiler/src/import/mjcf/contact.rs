@@ -1,13 +1,13 @@
 //! Collision geometry → shapes that contacts refer to, and contacts with the planes of the world.
 
-use super::body::Shaped;
+use super::body::ElementWithPose;
 use super::defaults::Element;
 use super::reader::{MjcfReader, origin_of_pose};
-use super::touch::{CollisionShape, Law, Plane};
+use super::touch::{CollisionShape, MjcfContactParameters, Plane};
 use crate::import::context::Cx;
-use crate::import::element::element_position;
+use crate::import::element::element_source_position;
 use crate::import::pose::FilePose;
-use crate::import::robot::{FileCollision, unused_name};
+use crate::import::robot::{FileCollisionShape, unused_name};
 use crate::syntax::Shape;
 use crate::syntax::contact::CONTACT_HELP;
 use std::collections::BTreeSet;
@@ -15,20 +15,25 @@ use std::collections::BTreeSet;
 impl<'a> MjcfReader<'a> {
     /// Adds the collision shapes of a link, if the options request them. Shapes with zero masks are only
     /// counted.
-    pub(super) fn add_collision_shapes(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+    pub(super) fn add_collision_shapes(
+        &mut self,
+        link: usize,
+        shapes: &[ElementWithPose<'a>],
+        cx: &mut Cx<'_>,
+    ) {
         if !self.options.collisions {
-            self.count_skipped("geometry of bodies", shapes.len());
+            self.count_skipped_contents("geometry of bodies", shapes.len());
             return;
         }
         for (shape, outer) in shapes {
             let mut bits =
-                |attribute: &str| shape.finite_number(attribute, cx).map_or(1.0, |bits| bits.value);
+                |attribute: &str| shape.read_finite_attribute(attribute, cx).map_or(1.0, |bits| bits.value);
             if bits("contype") == 0.0 && bits("conaffinity") == 0.0 {
-                self.count_skipped("geometry of bodies", 1);
+                self.count_skipped_contents("geometry of bodies", 1);
                 continue;
             }
             let Some((kind, pose)) = self.collision_shape(shape, cx) else { continue };
-            let at = element_position(shape.node, cx);
+            let at = element_source_position(shape.node, cx);
             let mesh = match kind {
                 Shape::Mesh if is_mesh(shape) => self.meshes.vertices_of_shape(shape, cx),
                 _ => None,
@@ -36,7 +41,7 @@ impl<'a> MjcfReader<'a> {
             let is_known = kind != Shape::Mesh || mesh.is_some();
             self.record_contact_shape(link, shape, is_known, cx);
             let origin = origin_of_pose(&outer.compose_with(&pose), &at);
-            let part = FileCollision { origin, shape: kind, mesh, place: at };
+            let part = FileCollisionShape { origin, shape: kind, mesh, place: at };
             self.robot.collisions.push((link, part));
         }
     }
@@ -48,25 +53,26 @@ impl<'a> MjcfReader<'a> {
             return;
         }
         if !is_known {
-            self.count_skipped("shapes fitted to meshes and generated meshes, for contact", 1);
+            self.count_skipped_contents("shapes fitted to meshes and generated meshes, for contact", 1);
             return;
         }
         let number = self.robot.collisions.iter().filter(|(known, _)| *known == link).count();
-        let (law, place) = (Law::read_contact_law(shape, cx), element_position(shape.node, cx));
+        let (law, place) =
+            (MjcfContactParameters::read_contact_law(shape, cx), element_source_position(shape.node, cx));
         let name = shape.node.attribute("name").map(str::to_string);
         self.touching.push(CollisionShape { link, number, name, law, place });
     }
 
     /// Adds the planes of the world for contacts. Other shapes of the world are only counted.
-    pub(super) fn add_world_planes(&mut self, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+    pub(super) fn add_world_planes(&mut self, shapes: &[ElementWithPose<'a>], cx: &mut Cx<'_>) {
         for (shape, outer) in shapes {
             if !self.options.contacts || shape.trimmed_text("type") != Some("plane") {
-                self.count_skipped("geometry of the ground", 1);
+                self.count_skipped_contents("geometry of the ground", 1);
                 continue;
             }
-            let law = Law::read_contact_law(shape, cx);
+            let law = MjcfContactParameters::read_contact_law(shape, cx);
             if law.has_no_contacts() {
-                self.count_skipped("geometry of the ground", 1);
+                self.count_skipped_contents("geometry of the ground", 1);
                 continue;
             }
             let pose = outer.compose_with(&super::frame::read_pose(shape, &self.settings, cx));
@@ -97,7 +103,7 @@ impl<'a> MjcfReader<'a> {
         for touching in &self.touching {
             let link = self.robot.links[touching.link].name.text.clone();
             let shape = touching.name.clone().unwrap_or_else(|| format!("{link}_geom{}", touching.number));
-            for plane in self.planes.iter().filter(|plane| touching.law.may_touch(&plane.law)) {
+            for plane in self.planes.iter().filter(|plane| touching.law.masks_permit_contact(&plane.law)) {
                 let end = if self.planes.len() > 1 { format!("_{}", plane.name) } else { String::new() };
                 let text = unused_name(&format!("{shape}{end}_contact"), |name| names.contains(name));
                 names.insert(text.clone());
@@ -133,7 +139,7 @@ impl<'a> MjcfReader<'a> {
             };
             return Some((Shape::Mesh, pose));
         }
-        let (pose, [x, y, z]) = super::geometry::shape_dimensions(kind, shape, &self.settings, cx)?;
+        let (pose, [x, y, z]) = super::geometry::shape_pose_and_dimensions(kind, shape, &self.settings, cx)?;
         let shape = match kind {
             "sphere" => Shape::Sphere(x),
             "capsule" => Shape::Capsule(x, 2.0 * z),

@@ -2,10 +2,11 @@
 //! and the controller of the motor (MuJoCo 4.0, "DC motor technical note").
 
 use super::activation::{
-    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_limit, requested_controls,
+    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_controller_limit,
+    requested_controller_inputs,
 };
 use super::defaults::Element;
-use super::formula::Formula;
+use super::formula::ActuatorLawExpression;
 use super::record::ActuatorRecord;
 use crate::import::context::Cx;
 use crate::import::imported::Located;
@@ -21,12 +22,12 @@ pub(super) fn write_motor_law(
     let (dynprm, gain, bias) = (&record.dynprm, &record.gain, &record.bias);
     let none = actuator.trimmed_text("input") == Some("none");
     check_winding_constants(actuator, [gain[0], gain[1]], none, cx)?;
-    report_limit(actuator, "controller", "the `slewmax` of a controller", dynprm[7], cx)?;
+    report_controller_limit(actuator, "controller", "the `slewmax` of a controller", dynprm[7], cx)?;
     if gain[5] > 0.0 {
-        report_limit(actuator, "controller", "the `Imax` of a controller", dynprm[8], cx)?;
+        report_controller_limit(actuator, "controller", "the `Imax` of a controller", dynprm[8], cx)?;
     }
     let [constant, lag] = [gain[1], dynprm[0]];
-    let voltage = motor_voltage(law, actuator, gain, none, named, cx)?;
+    let voltage = motor_voltage_from_inputs(law, actuator, gain, none, named, cx)?;
     let heats = dynprm[2] > 0.0;
     let resistance = match heats {
         // Temperature relative to the ambient temperature.
@@ -52,7 +53,7 @@ pub(super) fn write_motor_law(
         }
         let cooling = law.state_value("temperature", named) * (1.0 / dynprm[2]);
         let rate = (resistance.clone() * current.clone().square() - cooling) * (1.0 / dynprm[3]);
-        law.add_state("temperature", "Temperature above ambient", "K", rate, named);
+        law.add_actuator_state("temperature", "Temperature above ambient", "K", rate, named);
     }
     law.force = current.clone() * constant;
     if bias[0] != 0.0 {
@@ -64,7 +65,7 @@ pub(super) fn write_motor_law(
     if lag > 0.0 {
         let rate = (driving / resistance - current) * (1.0 / lag);
         let rate = if dynprm[1] > 0.0 { rate.clamp_between(-dynprm[1], dynprm[1]) } else { rate };
-        law.add_state("current", "Current", "A", rate, named);
+        law.add_actuator_state("current", "Current", "A", rate, named);
     }
     let saturation = actuator.numbers_with_defaults("saturation", [0.0; 3], cx);
     law.limit = saturation.and_then(|found| {
@@ -103,16 +104,17 @@ fn report_unsupported_attribute<T>(
 }
 
 /// Adds the inputs, and returns the voltage. The controller commands a torque and compensates the back-EMF.
-fn motor_voltage(
+fn motor_voltage_from_inputs(
     law: &mut ActuatorLaw,
     actuator: &Element<'_>,
     gain: &[f64; 10],
     none: bool,
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
-) -> Option<Formula> {
+) -> Option<ActuatorLawExpression> {
     let [resistance, constant, _, _, kp, ki, kd, maximum, ..] = *gain;
-    let controls = if none { Vec::new() } else { requested_controls(actuator, "voltage", &CONTROLS, cx)? };
+    let controls =
+        if none { Vec::new() } else { requested_controller_inputs(actuator, "voltage", &CONTROLS, cx)? };
     let has_controller = controls.iter().any(|word| *word != "voltage");
     if !has_controller && [kp, ki, kd].into_iter().any(|gain| gain != 0.0) {
         let message = "the gains of `controller` have no effect without an input that it controls";
@@ -152,7 +154,7 @@ fn motor_voltage(
     }
     if ki > 0.0 {
         torque = torque + law.state_value("integral", named) * ki;
-        law.add_state("integral", "Integral of the error", "rad·s", error, named);
+        law.add_actuator_state("integral", "Integral of the error", "rad·s", error, named);
     }
     let driven = torque * (resistance / constant) + law.length_rate() * constant;
     let driven = if maximum > 0.0 { driven.clamp_between(-maximum, maximum) } else { driven };
@@ -172,5 +174,5 @@ fn add_bristle_friction(
     let level = decay * (held - coulomb) + coulomb;
     let change = rate.clone() - rate.apply_function("abs") * stiffness / level * state.clone();
     law.force = law.force.clone() - state * stiffness - change.clone() * damping;
-    law.add_state("bristles", "Deflection of the bristles", "rad", change, named);
+    law.add_actuator_state("bristles", "Deflection of the bristles", "rad", change, named);
 }

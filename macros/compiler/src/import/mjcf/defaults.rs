@@ -2,8 +2,8 @@
 
 use super::super::context::{Cx, format_position, quote_word};
 use super::super::element::{
-    Node, check_attributes, child_elements, element_position, read_name_attribute, read_number_attribute,
-    read_numbers_attribute,
+    Node, check_attributes, child_elements, element_source_position, read_name_attribute,
+    read_number_attribute, read_numbers_attribute,
 };
 use crate::import::imported::Located;
 use crate::syntax::Name;
@@ -64,17 +64,19 @@ impl<'a> Defaults<'a> {
                 }
                 let Some(within) = child.attribute("class") else {
                     let help = "write `<default class=\"…\">`; only the outermost needs no name";
-                    cx.report_error(&element_position(child, cx), "`<default>` without `class`", |d| {
-                        d.add_help(help)
-                    });
+                    cx.report_error(
+                        &element_source_position(child, cx),
+                        "`<default>` without `class`",
+                        |d| d.add_help(help),
+                    );
                     continue;
                 };
                 let number = self.classes.len();
                 if let Some(known) = self.names.insert(within, number) {
                     let at = self.classes.get(known).and_then(|class| class.elements.first());
-                    let first = at.map(|node| format_position(&element_position(*node, cx)));
+                    let first = at.map(|node| format_position(&element_source_position(*node, cx)));
                     let message = format!("second class {}", quote_word(within));
-                    cx.report_error(&element_position(child, cx), message, |d| match first {
+                    cx.report_error(&element_source_position(child, cx), message, |d| match first {
                         Some(first) => d.add_help(format!("the first is at {first}")),
                         None => d,
                     });
@@ -158,22 +160,22 @@ impl<'a> Element<'a> {
     }
 
     /// Returns the text of an attribute with its source position.
-    pub(super) fn name_of_attribute(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
+    pub(super) fn attribute_text_with_span(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
         read_name_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
     /// Returns the value of an attribute that must be a finite number.
-    pub(super) fn finite_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Located<f64>> {
+    pub(super) fn read_finite_attribute(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Located<f64>> {
         read_number_attribute(self.node_with_attribute(attribute)?, attribute, cx)
     }
 
     /// Returns the value of an attribute that must be a finite number, or `None` if it is zero.
-    pub(super) fn nonzero_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Located<f64>> {
-        self.finite_number(attribute, cx).filter(|found| found.value != 0.0)
+    pub(super) fn nonzero_attribute_number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Located<f64>> {
+        self.read_finite_attribute(attribute, cx).filter(|found| found.value != 0.0)
     }
 
     /// Returns the coefficients of a polynomial force from the first order on, or `None` if they are zero.
-    pub(super) fn polynomial_coefficients(
+    pub(super) fn polynomial_force_coefficients(
         &self,
         attribute: &str,
         cx: &mut Cx<'_>,
@@ -188,7 +190,8 @@ impl<'a> Element<'a> {
         help: &'static str,
         cx: &mut Cx<'_>,
     ) -> Option<Located<f64>> {
-        let Located { value: [linear, square, cube], place } = self.polynomial_coefficients(attribute, cx)?;
+        let Located { value: [linear, square, cube], place } =
+            self.polynomial_force_coefficients(attribute, cx)?;
         if square != 0.0 || cube != 0.0 {
             let message = format!("a polynomial `{attribute}` is supported only on a `hinge` or a `slide`");
             cx.report_error(&place, message, |d| {
@@ -199,7 +202,7 @@ impl<'a> Element<'a> {
     }
 
     /// Returns the value of an attribute that must be exactly `N` finite numbers.
-    pub(super) fn exact_numbers<const N: usize>(
+    pub(super) fn read_exactly_n_numbers<const N: usize>(
         &self,
         attribute: &str,
         cx: &mut Cx<'_>,
@@ -233,7 +236,7 @@ impl<'a> Element<'a> {
     pub(super) fn place_of_value(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
         let found = self.node_with_attribute(attribute).and_then(|node| node.attribute_node(attribute));
         found.map_or_else(
-            || element_position(self.node, cx),
+            || element_source_position(self.node, cx),
             |found| cx.source_position(found.range_value().start),
         )
     }

@@ -4,11 +4,11 @@ use super::defaults::Element;
 use super::reader::{MjcfReader, origin_of_pose};
 use super::tendon::Tendon;
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
+use crate::import::element::{Node, child_elements, element_source_position, read_name_attribute};
 use crate::import::pose::{FilePose, rotation_of_quaternion};
 use crate::import::robot::{plain_joint, unused_name};
 use crate::syntax::{
-    BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, Mimic, Name,
+    BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, MimicRelation, Name,
     WrittenArguments,
 };
 
@@ -19,7 +19,7 @@ impl<'a> MjcfReader<'a> {
     pub(super) fn read_equalities(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = child_elements(root).filter(|node| node.tag_name().name() == "equality");
         let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
-        if !self.options.follow_mimic || !self.settings.has_equalities() {
+        if !self.options.follow_mimic || !self.settings.are_equalities_enabled() {
             if !nodes.is_empty() {
                 self.left_out.push(format!("{} couplings (`<equality>`)", nodes.len()));
             }
@@ -29,7 +29,7 @@ impl<'a> MjcfReader<'a> {
             let element =
                 self.defaults.element_with_defaults(node, &["equality", node.tag_name().name()], 0, cx);
             if element.boolean_choice("active", cx) == Some(false) {
-                self.count_skipped("couplings that are not active", 1);
+                self.count_skipped_contents("couplings that are not active", 1);
                 continue;
             }
             match node.tag_name().name() {
@@ -39,7 +39,7 @@ impl<'a> MjcfReader<'a> {
                 "weld" => self.close_loop(&element, JointKind::Weld, cx),
                 kind => {
                     let message = format!("the coupling `<{kind}>` is not supported");
-                    cx.report_error(&element_position(node, cx), message, |d| d.add_help(LEAVE_OUT));
+                    cx.report_error(&element_source_position(node, cx), message, |d| d.add_help(LEAVE_OUT));
                 }
             }
         }
@@ -49,7 +49,7 @@ impl<'a> MjcfReader<'a> {
     /// configuration of the file. A linear relation becomes a `mimic`, any other a constraint.
     fn couple_joints(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) {
         let Some(first) = read_name_attribute(element.node, "joint1", cx)
-            .filter(|joint| self.check_coupled_joint(joint, "follow", cx))
+            .filter(|joint| self.check_single_coordinate_joint(joint, "follow", cx))
         else {
             return;
         };
@@ -58,7 +58,10 @@ impl<'a> MjcfReader<'a> {
             .has_attribute("joint2")
             .then(|| read_name_attribute(element.node, "joint2", cx))
             .flatten();
-        if second.as_ref().is_some_and(|joint| !self.check_coupled_joint(joint, "be followed by", cx)) {
+        if second
+            .as_ref()
+            .is_some_and(|joint| !self.check_single_coordinate_joint(joint, "be followed by", cx))
+        {
             return;
         }
         let polynomial = coupling_coefficients(element, cx);
@@ -71,7 +74,7 @@ impl<'a> MjcfReader<'a> {
         let free = joint.filter(|joint| is_linear && joint.mimic.is_none() && joint.held.is_none());
         match (free, second) {
             (Some(joint), Some(second)) => {
-                joint.mimic = Some(Mimic { joint: second, multiplier: a1, offset })
+                joint.mimic = Some(MimicRelation { joint: second, multiplier: a1, offset })
             }
             (Some(joint), None) => joint.held = Some(offset),
             (None, second) => {
@@ -85,9 +88,13 @@ impl<'a> MjcfReader<'a> {
     /// joint follows the first.
     fn couple_tendons(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let Some(first) = terms_of_tendon("tendon1", element, tendons, cx) else { return };
-        let has_second = element.node.has_attribute("tendon2");
-        let second = if has_second { terms_of_tendon("tendon2", element, tendons, cx) } else { None };
-        if has_second && second.is_none() {
+        let has_dynamics_second_derivatives = element.node.has_attribute("tendon2");
+        let second = if has_dynamics_second_derivatives {
+            terms_of_tendon("tendon2", element, tendons, cx)
+        } else {
+            None
+        };
+        if has_dynamics_second_derivatives && second.is_none() {
             return;
         }
         let polynomial = coupling_coefficients(element, cx);
@@ -98,7 +105,7 @@ impl<'a> MjcfReader<'a> {
                 reference_of_joint(follower) + polynomial[0] / own - multiplier * reference_of_joint(leader);
             let joint = self.robot.joints.iter_mut().find(|joint| joint.name.text == follower.text);
             if let Some(joint) = joint.filter(|joint| joint.mimic.is_none() && joint.held.is_none()) {
-                joint.mimic = Some(Mimic { joint: leader.clone(), multiplier, offset });
+                joint.mimic = Some(MimicRelation { joint: leader.clone(), multiplier, offset });
                 return;
             }
         }
@@ -115,7 +122,7 @@ impl<'a> MjcfReader<'a> {
         polynomial: [f64; 5],
         cx: &mut Cx<'_>,
     ) {
-        let at = element_position(element.node, cx);
+        let at = element_source_position(element.node, cx);
         let number_literal = |x: f64| Expr::number_at(x, &at);
         let weighted_sum = |terms: &[(Name, f64)]| {
             let zero: f64 = terms
@@ -191,7 +198,7 @@ impl<'a> MjcfReader<'a> {
             .flatten();
         let mut named = said.unwrap_or_else(|| Name {
             text: format!("{}{number}", element.node.tag_name().name()),
-            place: element_position(element.node, cx),
+            place: element_source_position(element.node, cx),
         });
         named.text = unused_name(&named.text, |name| self.joint_names.contains(name));
         self.joint_names.insert(named.text.clone());
@@ -218,7 +225,7 @@ impl<'a> MjcfReader<'a> {
             return Some([end("site1")?, end("site2")?]);
         }
         let mut end = |attribute: &str| {
-            let zero = Name { text: GROUND.to_string(), place: element_position(element.node, cx) };
+            let zero = Name { text: GROUND.to_string(), place: element_source_position(element.node, cx) };
             if attribute == "body2" && !element.node.has_attribute(attribute) {
                 return Some((zero, FilePose::ZERO));
             }
@@ -242,7 +249,7 @@ impl<'a> MjcfReader<'a> {
         let [(first, outer), (second, inner)] = [end("body1")?, end("body2")?];
         // Pose of the first body relative to the second, in the configuration of the file.
         let between = inner.inverse_pose().compose_with(&outer);
-        let anchor = element.exact_numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
+        let anchor = element.read_exactly_n_numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
         if kind == JointKind::Ball {
             let at = FilePose { at: anchor, ..FilePose::ZERO };
             return Some([
@@ -250,7 +257,7 @@ impl<'a> MjcfReader<'a> {
                 (second, FilePose { at: between.compose_with(&at).at, ..FilePose::ZERO }),
             ]);
         }
-        let said = element.exact_numbers::<7>("relpose", cx).map(|said| said.value);
+        let said = element.read_exactly_n_numbers::<7>("relpose", cx).map(|said| said.value);
         // `relpose` is the pose of the second body's anchor relative to the first body. Without it, the
         // relative pose is that in the configuration of the file.
         let (pose, own) = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {

@@ -9,29 +9,33 @@ const IF: &str = "if";
 
 /// Expression of an actuator law that is being built.
 #[derive(Clone)]
-pub(super) struct Formula(pub(super) Expr);
+pub(super) struct ActuatorLawExpression(pub(super) Expr);
 
-impl Formula {
+impl ActuatorLawExpression {
     /// Returns the expression that consists of a name.
-    pub(super) fn named_value(text: String, place: &Place) -> Formula {
-        Formula(Expr { kind: ExprKind::Name(text), place: place.clone() })
+    pub(super) fn formula_of_name(text: String, place: &Place) -> ActuatorLawExpression {
+        ActuatorLawExpression(Expr { kind: ExprKind::Name(text), place: place.clone() })
     }
 
     /// Returns the expression that consists of a number.
-    pub(super) fn number_literal(value: f64, place: &Place) -> Formula {
-        Formula(Expr::number_at(value, place))
+    pub(super) fn number_literal(value: f64, place: &Place) -> ActuatorLawExpression {
+        ActuatorLawExpression(Expr::number_at(value, place))
     }
 
-    fn constant_like(&self, value: f64) -> Formula {
-        Formula::number_literal(value, &self.0.place)
+    fn number_with_same_span(&self, value: f64) -> ActuatorLawExpression {
+        ActuatorLawExpression::number_literal(value, &self.0.place)
     }
 
-    fn binary_operation(self, op: BinaryOp, other: Formula) -> Formula {
-        Formula(Expr::binary_operation(op, self.0, other.0))
+    fn binary_operation(self, op: BinaryOp, other: ActuatorLawExpression) -> ActuatorLawExpression {
+        ActuatorLawExpression(Expr::binary_operation(op, self.0, other.0))
     }
 
-    fn function_call(function: &str, arguments: Vec<Formula>, place: &Place) -> Formula {
-        Formula(Expr::function_call_at(
+    fn function_call(
+        function: &str,
+        arguments: Vec<ActuatorLawExpression>,
+        place: &Place,
+    ) -> ActuatorLawExpression {
+        ActuatorLawExpression(Expr::function_call_expression(
             function,
             arguments.into_iter().map(|formula| formula.0).collect(),
             place,
@@ -39,79 +43,84 @@ impl Formula {
     }
 
     /// Returns an elementary function of this expression.
-    pub(super) fn apply_function(self, function: &str) -> Formula {
+    pub(super) fn apply_function(self, function: &str) -> ActuatorLawExpression {
         let place = self.0.place.clone();
-        Formula::function_call(function, vec![self], &place)
+        ActuatorLawExpression::function_call(function, vec![self], &place)
     }
 
     /// Returns the square of this expression.
-    pub(super) fn square(self) -> Formula {
+    pub(super) fn square(self) -> ActuatorLawExpression {
         self.clone() * self
     }
 
     /// Returns this expression, limited to values between two numbers.
-    pub(super) fn clamp_between(self, low: f64, high: f64) -> Formula {
+    pub(super) fn clamp_between(self, low: f64, high: f64) -> ActuatorLawExpression {
         let place = self.0.place.clone();
-        let [low, high] = [low, high].map(|end| Formula::number_literal(end, &place));
-        let above = Formula::function_call("max", vec![self, low], &place);
-        Formula::function_call("min", vec![above, high], &place)
+        let [low, high] = [low, high].map(|end| ActuatorLawExpression::number_literal(end, &place));
+        let above = ActuatorLawExpression::function_call("max", vec![self, low], &place);
+        ActuatorLawExpression::function_call("min", vec![above, high], &place)
     }
 
     /// Returns one of two values by a comparison with a number: `if self < border { below } else { above }`.
-    pub(super) fn piecewise_choice(self, border: f64, below: Formula, above: Formula) -> Formula {
+    pub(super) fn piecewise_choice(
+        self,
+        border: f64,
+        below: ActuatorLawExpression,
+        above: ActuatorLawExpression,
+    ) -> ActuatorLawExpression {
         let place = self.0.place.clone();
-        let border = self.constant_like(border);
-        Formula::function_call(IF, vec![self, border, below, above], &place)
+        let border = self.number_with_same_span(border);
+        ActuatorLawExpression::function_call(IF, vec![self, border, below, above], &place)
     }
 }
 
-impl Add for Formula {
-    type Output = Formula;
-    fn add(self, other: Formula) -> Formula {
+impl Add for ActuatorLawExpression {
+    type Output = ActuatorLawExpression;
+    fn add(self, other: ActuatorLawExpression) -> ActuatorLawExpression {
         self.binary_operation(BinaryOp::Add, other)
     }
 }
 
-impl Sub for Formula {
-    type Output = Formula;
-    fn sub(self, other: Formula) -> Formula {
+impl Sub for ActuatorLawExpression {
+    type Output = ActuatorLawExpression;
+    fn sub(self, other: ActuatorLawExpression) -> ActuatorLawExpression {
         self.binary_operation(BinaryOp::Sub, other)
     }
 }
 
-impl Mul for Formula {
-    type Output = Formula;
-    fn mul(self, other: Formula) -> Formula {
+impl Mul for ActuatorLawExpression {
+    type Output = ActuatorLawExpression;
+    fn mul(self, other: ActuatorLawExpression) -> ActuatorLawExpression {
         self.binary_operation(BinaryOp::Mul, other)
     }
 }
 
-impl Div for Formula {
-    type Output = Formula;
-    fn div(self, other: Formula) -> Formula {
+impl Div for ActuatorLawExpression {
+    type Output = ActuatorLawExpression;
+    fn div(self, other: ActuatorLawExpression) -> ActuatorLawExpression {
         self.binary_operation(BinaryOp::Div, other)
     }
 }
 
-impl Add<f64> for Formula {
-    type Output = Formula;
-    fn add(self, other: f64) -> Formula {
-        let other = self.constant_like(other);
+impl Add<f64> for ActuatorLawExpression {
+    type Output = ActuatorLawExpression;
+    fn add(self, other: f64) -> ActuatorLawExpression {
+        let other = self.number_with_same_span(other);
         self + other
     }
 }
 
-impl Mul<f64> for Formula {
-    type Output = Formula;
-    fn mul(self, other: f64) -> Formula {
-        let other = self.constant_like(other);
+impl Mul<f64> for ActuatorLawExpression {
+    type Output = ActuatorLawExpression;
+    fn mul(self, other: f64) -> ActuatorLawExpression {
+        let other = self.number_with_same_span(other);
         self * other
     }
 }
 
-impl Neg for Formula {
-    type Output = Formula;
-    fn neg(self) -> Formula {
+impl Neg for ActuatorLawExpression {
+    type Output = ActuatorLawExpression;
+    fn neg(self) -> ActuatorLawExpression {
         self * -1.0
     }
 }

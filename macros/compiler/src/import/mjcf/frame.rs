@@ -1,27 +1,27 @@
 //! Positions and orientations of MJCF elements.
 
 use super::defaults::Element;
-use super::settings::Settings;
+use super::settings::MjcfSettings;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::element::check_radians;
+use crate::import::element::report_likely_degrees;
 use crate::import::imported::Located;
 use crate::import::pose::{
     FilePose, IDENTITY, Matrix, add, axis_rotation, cross, dot, length, matrix_product, rotation_from_z,
-    rotation_of_quaternion, scale_vector,
+    rotation_of_quaternion, vector_times_scalar,
 };
 
 /// Attributes that specify an orientation. An element may have at most one of them.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// Returns the pose of an MJCF element relative to its parent.
-pub(super) fn read_pose(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> FilePose {
-    let at = element.exact_numbers("pos", cx).map_or([0.0; 3], |at| at.value);
-    FilePose { at, axes: read_axes(element, settings, cx) }
+pub(super) fn read_pose(element: &Element<'_>, settings: &MjcfSettings, cx: &mut Cx<'_>) -> FilePose {
+    let at = element.read_exactly_n_numbers("pos", cx).map_or([0.0; 3], |at| at.value);
+    FilePose { at, axes: read_orientation(element, settings, cx) }
 }
 
 /// Returns the orientation of an MJCF element as a rotation matrix.
-pub(super) fn read_axes(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Matrix {
+pub(super) fn read_orientation(element: &Element<'_>, settings: &MjcfSettings, cx: &mut Cx<'_>) -> Matrix {
     let Some(node) = element.node_with_any_attribute(&ORIENTATIONS) else { return IDENTITY };
     let said: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| node.has_attribute(*name)).collect();
     let [one] = said.as_slice() else {
@@ -39,27 +39,27 @@ pub(super) fn read_axes(element: &Element<'_>, settings: &Settings, cx: &mut Cx<
 fn read_one_orientation(
     which: &str,
     element: &Element<'_>,
-    settings: &Settings,
+    settings: &MjcfSettings,
     cx: &mut Cx<'_>,
 ) -> Option<Matrix> {
     match which {
         "quat" => {
-            let quat = element.exact_numbers::<4>("quat", cx)?;
+            let quat = element.read_exactly_n_numbers::<4>("quat", cx)?;
             let size = quat.value.iter().map(|x| x * x).sum::<f64>().sqrt();
-            check_nonzero_length(size, "a quaternion", &quat, cx)?;
+            report_zero_length_vector(size, "a quaternion", &quat, cx)?;
             Some(rotation_of_quaternion(quat.value.map(|x| x / size)))
         }
         "axisangle" => {
-            let found = element.exact_numbers::<4>("axisangle", cx)?;
+            let found = element.read_exactly_n_numbers::<4>("axisangle", cx)?;
             let [x, y, z, angle] = found.value;
             let size = length([x, y, z]);
-            check_nonzero_length(size, "an axis", &found, cx)?;
-            check_file_angles(&[angle], &found.place, settings, cx);
-            Some(axis_rotation(scale_vector([x, y, z], 1.0 / size), settings.angle_in_radians(angle)))
+            report_zero_length_vector(size, "an axis", &found, cx)?;
+            report_angles_likely_in_degrees(&[angle], &found.place, settings, cx);
+            Some(axis_rotation(vector_times_scalar([x, y, z], 1.0 / size), settings.angle_in_radians(angle)))
         }
         "euler" => {
-            let found = element.exact_numbers::<3>("euler", cx)?;
-            check_file_angles(&found.value, &found.place, settings, cx);
+            let found = element.read_exactly_n_numbers::<3>("euler", cx)?;
+            report_angles_likely_in_degrees(&found.value, &found.place, settings, cx);
             Some(settings.euler.iter().zip(found.value).fold(IDENTITY, |whole, (axis, angle)| {
                 let unit = match axis.to_ascii_lowercase() {
                     'x' => [1.0, 0.0, 0.0],
@@ -77,30 +77,30 @@ fn read_one_orientation(
             }))
         }
         "xyaxes" => {
-            let found = element.exact_numbers::<6>("xyaxes", cx)?;
+            let found = element.read_exactly_n_numbers::<6>("xyaxes", cx)?;
             let [a, b, c, d, e, f] = found.value;
             let size = length([a, b, c]);
-            check_nonzero_length(size, "the x axis", &found, cx)?;
-            let x = scale_vector([a, b, c], 1.0 / size);
-            let y = add([d, e, f], scale_vector(x, -dot(x, [d, e, f])));
+            report_zero_length_vector(size, "the x axis", &found, cx)?;
+            let x = vector_times_scalar([a, b, c], 1.0 / size);
+            let y = add([d, e, f], vector_times_scalar(x, -dot(x, [d, e, f])));
             let size = length(y);
-            check_nonzero_length(size, "the y axis, orthogonalised against x,", &found, cx)?;
-            let y = scale_vector(y, 1.0 / size);
+            report_zero_length_vector(size, "the y axis, orthogonalised against x,", &found, cx)?;
+            let y = vector_times_scalar(y, 1.0 / size);
             Some(crate::import::pose::transpose(&[x, y, cross(x, y)]))
         }
         _ => {
-            let z = element.exact_numbers::<3>("zaxis", cx)?;
+            let z = element.read_exactly_n_numbers::<3>("zaxis", cx)?;
             let size = length(z.value);
-            check_nonzero_length(size, "the z axis", &z, cx)?;
-            Some(rotation_from_z(scale_vector(z.value, 1.0 / size)))
+            report_zero_length_vector(size, "the z axis", &z, cx)?;
+            Some(rotation_from_z(vector_times_scalar(z.value, 1.0 / size)))
         }
     }
 }
 
 /// Reports angles of an MJCF file in radians that are most likely meant in degrees.
-fn check_file_angles(angles: &[f64], place: &Place, settings: &Settings, cx: &mut Cx<'_>) {
+fn report_angles_likely_in_degrees(angles: &[f64], place: &Place, settings: &MjcfSettings, cx: &mut Cx<'_>) {
     if !settings.degrees {
-        check_radians(angles, place, RADIANS, cx);
+        report_likely_degrees(angles, place, RADIANS, cx);
     }
 }
 
@@ -108,7 +108,7 @@ const RADIANS: &str = "`angle=\"radian\"` makes angles of the file radians: writ
                        or `angle=\"degree\"`";
 
 /// Reports vectors whose length is zero or not finite.
-fn check_nonzero_length<const N: usize>(
+fn report_zero_length_vector<const N: usize>(
     size: f64,
     what: &str,
     found: &Located<[f64; N]>,

@@ -3,12 +3,14 @@
 use super::defaults::{Defaults, Element};
 use super::frame::read_pose;
 use super::mesh::Meshes;
-use super::settings::{MassSource, Settings};
+use super::settings::{MassSource, MjcfSettings};
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, check_attributes, element_position, quoted_tag, read_numbers_attribute};
+use crate::import::element::{
+    Node, check_attributes, element_source_position, quoted_tag, read_numbers_attribute,
+};
 use crate::import::pose::{
     FilePose, IDENTITY, Matrix, Vector, add, dot, eigen_decomposition, length, rotated_tensor,
-    rotation_from_z, scale_vector,
+    rotation_from_z, vector_times_scalar,
 };
 use std::f64::consts::PI;
 
@@ -34,7 +36,7 @@ const FLAT: [&str; 2] = ["plane", "hfield"];
 impl BodyMass {
     /// Transforms the mass properties from a frame to its reference frame. `pose` is the pose of the frame
     /// relative to the reference frame.
-    pub(super) fn mass_in_outer_frame(&self, pose: &FilePose) -> BodyMass {
+    pub(super) fn mass_properties_in_outer_frame(&self, pose: &FilePose) -> BodyMass {
         BodyMass {
             com: add(pose.at, crate::import::pose::matrix_times_vector(&pose.axes, self.com)),
             inertia: rotated_tensor(&pose.axes, &self.inertia),
@@ -52,13 +54,13 @@ pub(super) fn rigid_union(parts: &[BodyMass]) -> Option<BodyMass> {
     if mass <= 0.0 {
         return None;
     }
-    let com = scale_vector(
-        parts.iter().fold([0.0; 3], |sum, part| add(sum, scale_vector(part.com, part.mass))),
+    let com = vector_times_scalar(
+        parts.iter().fold([0.0; 3], |sum, part| add(sum, vector_times_scalar(part.com, part.mass))),
         1.0 / mass,
     );
     let mut inertia = [[0.0; 3]; 3];
     for part in parts {
-        let r = add(part.com, scale_vector(com, -1.0));
+        let r = add(part.com, vector_times_scalar(com, -1.0));
         for (i, row) in inertia.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
                 let unit = if i == j { dot(r, r) } else { 0.0 };
@@ -71,36 +73,44 @@ pub(super) fn rigid_union(parts: &[BodyMass]) -> Option<BodyMass> {
 
 /// Returns the mass properties of a body from `<inertial>` or from its shapes. Each comes with the pose of
 /// its surrounding `<frame>` elements relative to the body.
-pub(super) fn mass_of_body<'a>(
+pub(super) fn mass_properties_of_body<'a>(
     inertial: &Option<(Node<'a>, FilePose)>,
     shapes: &[(Element<'a>, FilePose)],
     defaults: &Defaults<'a>,
     meshes: &mut Meshes<'a>,
-    (pose, settings): (&FilePose, &Settings),
+    (pose, settings): (&FilePose, &MjcfSettings),
     cx: &mut Cx<'_>,
 ) -> Option<BodyMass> {
     let said = inertial.as_ref().filter(|_| settings.source != MassSource::Geometry || shapes.is_empty());
     let found = match said {
-        Some((node, outer)) => read_inertial(*node, defaults, settings, cx)
-            .map(|mass| if *outer == FilePose::ZERO { mass } else { mass.mass_in_outer_frame(outer) }),
+        Some((node, outer)) => read_inertial(*node, defaults, settings, cx).map(|mass| {
+            if *outer == FilePose::ZERO { mass } else { mass.mass_properties_in_outer_frame(outer) }
+        }),
         None if settings.source == MassSource::Inertial => None,
         None => {
             let parts: Vec<BodyMass> = shapes
                 .iter()
                 .filter_map(|(shape, outer)| {
-                    Some(mass_of_shape(shape, meshes, settings, cx)?.mass_in_outer_frame(outer))
+                    Some(
+                        mass_properties_of_shape(shape, meshes, settings, cx)?
+                            .mass_properties_in_outer_frame(outer),
+                    )
                 })
                 .filter(|part| part.mass > NOTHING)
                 .collect();
             rigid_union(&parts)
         }
     };
-    raised_to_minimum(found, pose, settings)
+    mass_raised_to_minimum(found, pose, settings)
 }
 
 /// Raises mass and principal moments to the minimum values of the file. With `balance`, principal moments
 /// that violate the triangle inequality are replaced by their mean.
-fn raised_to_minimum(found: Option<BodyMass>, pose: &FilePose, settings: &Settings) -> Option<BodyMass> {
+fn mass_raised_to_minimum(
+    found: Option<BodyMass>,
+    pose: &FilePose,
+    settings: &MjcfSettings,
+) -> Option<BodyMass> {
     if settings.least_mass == 0.0 && settings.least_inertia == 0.0 && !settings.balance {
         return found;
     }
@@ -131,12 +141,12 @@ const INERTIAL: [&str; 9] =
 fn read_inertial(
     node: Node<'_>,
     defaults: &Defaults<'_>,
-    settings: &Settings,
+    settings: &MjcfSettings,
     cx: &mut Cx<'_>,
 ) -> Option<BodyMass> {
     check_attributes(node, &["pos", "mass"], &INERTIAL, cx);
     let element = defaults.element_with_defaults(node, &[], 0, cx);
-    let mass = element.finite_number("mass", cx)?.value;
+    let mass = element.read_finite_attribute("mass", cx)?.value;
     let FilePose { at: com, axes } = read_pose(&element, settings, cx);
     if let Some(full) = read_numbers_attribute::<6>(node, "fullinertia", cx) {
         if node.has_attribute("diaginertia") {
@@ -155,18 +165,18 @@ fn read_inertial(
 }
 
 /// Returns the mass properties of a shape in body axes; `None` for a shape without mass.
-fn mass_of_shape<'a>(
+fn mass_properties_of_shape<'a>(
     shape: &Element<'a>,
     meshes: &mut Meshes<'a>,
-    settings: &Settings,
+    settings: &MjcfSettings,
     cx: &mut Cx<'_>,
 ) -> Option<BodyMass> {
-    let group = shape.finite_number("group", cx).map_or(0.0, |group| group.value);
+    let group = shape.read_finite_attribute("group", cx).map_or(0.0, |group| group.value);
     if group < settings.groups[0] || group > settings.groups[1] {
         return None;
     }
-    let said = shape.finite_number("mass", cx).map(|mass| mass.value);
-    let density = shape.finite_number("density", cx).map_or(DENSITY, |density| density.value);
+    let said = shape.read_finite_attribute("mass", cx).map(|mass| mass.value);
+    let density = shape.read_finite_attribute("density", cx).map_or(DENSITY, |density| density.value);
     let kind = shape.trimmed_text("type").unwrap_or("sphere");
     if said == Some(0.0) || (said.is_none() && density == 0.0) || FLAT.contains(&kind) {
         return None;
@@ -175,26 +185,26 @@ fn mass_of_shape<'a>(
         return report_unsupported_shape(shape, "`shellinertia`", cx);
     }
     if kind == "mesh" {
-        let found = meshes.mass_of_mesh_shape(shape, cx)?;
+        let found = meshes.mass_properties_of_mesh_shape(shape, cx)?;
         let found = found.scaled_to_mass(said.unwrap_or(density * found.mass));
-        return Some(found.mass_in_outer_frame(&read_pose(shape, settings, cx)));
+        return Some(found.mass_properties_in_outer_frame(&read_pose(shape, settings, cx)));
     }
     if shape.node_with_attribute("mesh").is_some() || kind == "sdf" {
         return report_unsupported_shape(shape, "a shape that is fitted to a mesh", cx);
     }
-    let (pose, size) = shape_dimensions(kind, shape, settings, cx)?;
+    let (pose, size) = shape_pose_and_dimensions(kind, shape, settings, cx)?;
     let (volume, moments) = solid_properties(kind, size);
     let mass = said.unwrap_or(density * volume);
-    let inertia = diagonal_matrix(scale_vector(moments, mass));
-    Some(BodyMass { mass, com: [0.0; 3], inertia }.mass_in_outer_frame(&pose))
+    let inertia = diagonal_matrix(vector_times_scalar(moments, mass));
+    Some(BodyMass { mass, com: [0.0; 3], inertia }.mass_properties_in_outer_frame(&pose))
 }
 
 /// Returns pose and half lengths of a shape. The first entry is the radius of a round shape and the last
 /// entry its half length; unused entries are ignored.
-pub(super) fn shape_dimensions(
+pub(super) fn shape_pose_and_dimensions(
     kind: &str,
     shape: &Element<'_>,
-    settings: &Settings,
+    settings: &MjcfSettings,
     cx: &mut Cx<'_>,
 ) -> Option<(FilePose, Vector)> {
     let (pose, half) = pose_and_half_length(shape, settings, cx)?;
@@ -234,10 +244,10 @@ pub(super) fn shape_dimensions(
 /// Returns pose and half length of a shape. The half length is `None` unless `fromto` gives two end points.
 pub(super) fn pose_and_half_length(
     shape: &Element<'_>,
-    settings: &Settings,
+    settings: &MjcfSettings,
     cx: &mut Cx<'_>,
 ) -> Option<(FilePose, Option<f64>)> {
-    let Some(ends) = shape.exact_numbers::<6>("fromto", cx) else {
+    let Some(ends) = shape.read_exactly_n_numbers::<6>("fromto", cx) else {
         return Some((read_pose(shape, settings, cx), None));
     };
     if let Some(node) = shape.node_with_attribute("pos") {
@@ -261,13 +271,13 @@ pub(super) fn pose_and_half_length(
         });
         return None;
     }
-    let at = scale_vector(add([a, b, c], [d, e, f]), 0.5);
-    Some((FilePose { at, axes: rotation_from_z(scale_vector(along, 1.0 / size)) }, Some(size / 2.0)))
+    let at = vector_times_scalar(add([a, b, c], [d, e, f]), 0.5);
+    Some((FilePose { at, axes: rotation_from_z(vector_times_scalar(along, 1.0 / size)) }, Some(size / 2.0)))
 }
 
 /// Returns the volume and the moments of inertia per unit mass of a solid with these half lengths.
 fn solid_properties(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
-    let round_moments = |xx: f64, zz: f64| [xx, xx, zz];
+    let axisymmetric_moments = |xx: f64, zz: f64| [xx, xx, zz];
     match kind {
         "sphere" => (4.0 / 3.0 * PI * x * x * x, [0.4 * x * x; 3]),
         "capsule" => {
@@ -277,19 +287,19 @@ fn solid_properties(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
             let (ball, tube) = (ball / volume, tube / volume);
             let across = tube * (3.0 * x * x + height * height) / 12.0;
             let caps = ball * (0.4 * x * x + height * (3.0 * x + 2.0 * height) / 8.0);
-            (volume, round_moments(across + caps, tube * x * x / 2.0 + ball * 0.4 * x * x))
+            (volume, axisymmetric_moments(across + caps, tube * x * x / 2.0 + ball * 0.4 * x * x))
         }
         "cylinder" => {
             let height = 2.0 * z;
-            (PI * x * x * height, round_moments((3.0 * x * x + height * height) / 12.0, x * x / 2.0))
+            (PI * x * x * height, axisymmetric_moments((3.0 * x * x + height * height) / 12.0, x * x / 2.0))
         }
         "ellipsoid" => {
             let moments = [y * y + z * z, x * x + z * z, x * x + y * y];
-            (4.0 / 3.0 * PI * x * y * z, scale_vector(moments, 0.2))
+            (4.0 / 3.0 * PI * x * y * z, vector_times_scalar(moments, 0.2))
         }
         _ => {
             let moments = [y * y + z * z, x * x + z * z, x * x + y * y];
-            (8.0 * x * y * z, scale_vector(moments, 1.0 / 3.0))
+            (8.0 * x * y * z, vector_times_scalar(moments, 1.0 / 3.0))
         }
     }
 }
@@ -297,7 +307,7 @@ fn solid_properties(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
 /// Reports a shape whose mass properties cannot be computed.
 fn report_unsupported_shape(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<BodyMass> {
     let message = format!("the mass properties of {what} are not computed");
-    cx.report_error(&element_position(shape.node, cx), message, |d| d.add_help(NEEDS_INERTIAL));
+    cx.report_error(&element_source_position(shape.node, cx), message, |d| d.add_help(NEEDS_INERTIAL));
     None
 }
 

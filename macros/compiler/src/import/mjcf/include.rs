@@ -8,7 +8,7 @@ use crate::diag::Diagnostics;
 use crate::import::context::{Cx, format_position, quote_word};
 use crate::import::element::{Node, check_attributes, read_name_attribute};
 use crate::import::whole::{
-    ComposedText, MAX_DEPTH, MAX_FILES, ReadFile, canonical_path, report_include_cycle,
+    ComposedText, LoadedRobotFile, MAX_DEPTH, MAX_FILES, canonical_path, report_include_cycle,
     report_too_many_includes,
 };
 use crate::import::{file, xml};
@@ -68,7 +68,7 @@ pub(super) fn read_with_includes(
 fn report_repeated_include(
     known: usize,
     open: &[usize],
-    files: &[ReadFile],
+    files: &[LoadedRobotFile],
     places: &[Name],
     at: &Name,
     cx: &mut Diagnostics,
@@ -87,7 +87,7 @@ fn report_repeated_include(
 /// Returns the steps that expand a file, last first: the whole file if `entire`, otherwise the contents of
 /// its root.
 fn expansion_steps(
-    files: &[ReadFile],
+    files: &[LoadedRobotFile],
     file: usize,
     name: &Name,
     entire: bool,
@@ -129,19 +129,24 @@ fn is_include_element(node: Node<'_>) -> bool {
 
 /// Finds and reads an included file: in the folder of the user's file, or else in the folder of the including
 /// file.
-fn find_included_file(files: &[ReadFile], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<ReadFile> {
-    let read_sibling = |file: usize| {
+fn find_included_file(
+    files: &[LoadedRobotFile],
+    by: usize,
+    at: &Name,
+    cx: &mut Diagnostics,
+) -> Option<LoadedRobotFile> {
+    let sibling_file_path = |file: usize| {
         let read = files.get(file)?;
         let shown = Path::new(&read.shown).with_file_name(&at.text);
         Some((read.path.with_file_name(&at.text), shown.to_string_lossy().into_owned()))
     };
-    let first = read_sibling(0)?;
-    let (path, shown) = match read_sibling(by).filter(|(path, _)| !first.0.is_file() && path.is_file()) {
+    let first = sibling_file_path(0)?;
+    let (path, shown) = match sibling_file_path(by).filter(|(path, _)| !first.0.is_file() && path.is_file()) {
         Some(other) => other,
         None => first,
     };
     let name = Name { text: shown.clone(), place: at.place.clone() };
     let text = file::read_named_file(&path, &name, FileFormat::Mjcf, cx)?;
     let text = xml::clean_xml_text(&text).into_owned();
-    Some(ReadFile { text, shown, path: canonical_path(&path) })
+    Some(LoadedRobotFile { text, shown, path: canonical_path(&path) })
 }

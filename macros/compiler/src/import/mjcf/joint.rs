@@ -3,11 +3,11 @@
 use super::defaults::Element;
 use super::reader::MjcfReader;
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, element_position, read_name_attribute};
+use crate::import::element::{Node, element_source_position, read_name_attribute};
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, Vector, add, length, matrix_times_vector, scale_vector};
+use crate::import::pose::{FilePose, Vector, add, length, matrix_times_vector, vector_times_scalar};
 use crate::import::robot::{FileLimits, unused_name};
-use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, JointKind, LimitOption, Name};
+use crate::syntax::{Drive, DriveLaw, DriveTarget, Expr, JointKind, LimitOption, Name};
 
 /// MJCF's names of the joint types.
 const TYPES: [(&str, JointKind); 4] = [
@@ -64,9 +64,9 @@ impl<'a> MjcfReader<'a> {
         let name = self.joint_name(element.node, word, body, cx);
         let alone = kind.rotates_about_one_axis().is_some();
         let zero = |at: &str, cx: &Cx<'_>| Located { value: [0.0; 3], place: element.place_of_value(at, cx) };
-        let mut anchor = element.exact_numbers("pos", cx).unwrap_or(zero("pos", cx));
+        let mut anchor = element.read_exactly_n_numbers("pos", cx).unwrap_or(zero("pos", cx));
         anchor.value = add(outer.at, matrix_times_vector(&outer.axes, anchor.value));
-        let mut axis = element.exact_numbers("axis", cx).unwrap_or(zero("axis", cx));
+        let mut axis = element.read_exactly_n_numbers("axis", cx).unwrap_or(zero("axis", cx));
         if element.node_with_attribute("axis").is_none() {
             axis.value = [0.0, 0.0, 1.0];
         }
@@ -75,18 +75,22 @@ impl<'a> MjcfReader<'a> {
             cx.report_error(&axis.place, "axis of zero length has no direction", |d| d);
             return None;
         }
-        axis.value =
-            matrix_times_vector(&outer.axes, scale_vector(axis.value, if alone { 1.0 / size } else { 1.0 }));
+        axis.value = matrix_times_vector(
+            &outer.axes,
+            vector_times_scalar(axis.value, if alone { 1.0 / size } else { 1.0 }),
+        );
         let turns = kind == JointKind::Pin;
         let angle_or_length =
             |reader: &Self, value: f64| if turns { reader.settings.angle_in_radians(value) } else { value };
-        let angle_of_attribute = |reader: &Self, attribute: &str, cx: &mut Cx<'_>| {
-            element.finite_number(attribute, cx).map_or(0.0, |found| angle_or_length(reader, found.value))
+        let angle_or_length_of_attribute = |reader: &Self, attribute: &str, cx: &mut Cx<'_>| {
+            element
+                .read_finite_attribute(attribute, cx)
+                .map_or(0.0, |found| angle_or_length(reader, found.value))
         };
-        let reference = if alone { angle_of_attribute(self, "ref", cx) } else { 0.0 };
-        let rest = angle_of_attribute(self, "springref", cx);
+        let reference = if alone { angle_or_length_of_attribute(self, "ref", cx) } else { 0.0 };
+        let rest = angle_or_length_of_attribute(self, "springref", cx);
         let limits = if alone {
-            self.joint_limits(element, turns, cx)
+            self.read_joint_limits(element, turns, cx)
         } else {
             self.report_ignored_limits(element, &name, cx)
         };
@@ -108,9 +112,9 @@ impl<'a> MjcfReader<'a> {
             self.refuse_time_constants(element, cx);
         }
         if self.springs {
-            self.read_spring(element, &joint, rest, cx);
+            self.read_joint_spring(element, &joint, rest, cx);
         }
-        self.read_dissipation(element, &mut joint, cx);
+        self.read_damping_and_friction_loss(element, &mut joint, cx);
         Some(joint)
     }
 
@@ -119,22 +123,23 @@ impl<'a> MjcfReader<'a> {
         let found = node.attribute("name").and_then(|_| read_name_attribute(node, "name", cx));
         let name = found.unwrap_or_else(|| Name {
             text: unused_name(&format!("{}_{word}", body.text), |name| self.joint_names.contains(name)),
-            place: element_position(node, cx),
+            place: element_source_position(node, cx),
         });
         self.joint_names.insert(name.text.clone());
         name
     }
 
-    fn joint_limits(&self, element: &Element<'a>, turns: bool, cx: &mut Cx<'_>) -> FileLimits {
+    fn read_joint_limits(&self, element: &Element<'a>, turns: bool, cx: &mut Cx<'_>) -> FileLimits {
         let mut limits = FileLimits::default();
         if let Some([low, high]) = self.read_range(element, "limited", "range", cx)
             && self.settings.has_limits()
         {
-            let converted_end = |end: Located<f64>| Located {
+            let range_end_in_radians = |end: Located<f64>| Located {
                 value: if turns { self.settings.angle_in_radians(end.value) } else { end.value },
                 place: end.place,
             };
-            (limits.lower, limits.upper) = (Some(converted_end(low)), Some(converted_end(high)));
+            (limits.lower, limits.upper) =
+                (Some(range_end_in_radians(low)), Some(range_end_in_radians(high)));
         }
         if let Some([low, high]) = self.read_range(element, "actuatorfrclimited", "actuatorfrcrange", cx) {
             let value = low.value.abs().max(high.value.abs());
@@ -159,7 +164,7 @@ impl<'a> MjcfReader<'a> {
             .is_some()
             .then(|| element.boolean_choice(limited, cx))
             .flatten();
-        let found = element.exact_numbers::<2>(range, cx);
+        let found = element.read_exactly_n_numbers::<2>(range, cx);
         if found.is_none() && element.node_with_attribute(range).is_some() {
             return None;
         }
@@ -204,7 +209,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     fn read_armature(&mut self, element: &Element<'a>, joint: &BodyJoint, cx: &mut Cx<'_>) {
-        let Some(armature) = element.nonzero_number("armature", cx) else { return };
+        let Some(armature) = element.nonzero_attribute_number("armature", cx) else { return };
         if joint.kind.rotates_about_one_axis().is_some() {
             if armature.value < 0.0 {
                 cx.report_error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
@@ -220,7 +225,7 @@ impl<'a> MjcfReader<'a> {
 
     fn refuse_time_constants(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
         if let Some(pair) =
-            element.exact_numbers::<2>("springdamper", cx).filter(|pair| pair.value != [0.0; 2])
+            element.read_exactly_n_numbers::<2>("springdamper", cx).filter(|pair| pair.value != [0.0; 2])
         {
             let message = "`springdamper` is not supported";
             cx.report_error(&pair.place, message, |d| {
@@ -229,10 +234,10 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn read_spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
+    fn read_joint_spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
         report_spring_yield(element, cx);
         if joint.kind.rotates_about_one_axis().is_some() {
-            if let Some(stiffness) = element.polynomial_coefficients("stiffness", cx) {
+            if let Some(stiffness) = element.polynomial_force_coefficients("stiffness", cx) {
                 self.add_drive(joint, DriveLaw::spring(stiffness.value, rest));
             }
         } else if let Some(stiffness) = element.linear_coefficient("stiffness", IGNORE_PASSIVE, cx) {
@@ -241,7 +246,12 @@ impl<'a> MjcfReader<'a> {
         }
     }
 
-    fn read_dissipation(&mut self, element: &Element<'a>, joint: &mut BodyJoint, cx: &mut Cx<'_>) {
+    fn read_damping_and_friction_loss(
+        &mut self,
+        element: &Element<'a>,
+        joint: &mut BodyJoint,
+        cx: &mut Cx<'_>,
+    ) {
         for (which, is_damping, acts) in
             [("damping", true, self.dampers), ("frictionloss", false, self.friction)]
         {
@@ -250,7 +260,7 @@ impl<'a> MjcfReader<'a> {
             }
             if is_damping
                 && joint.kind.rotates_about_one_axis().is_some()
-                && let Some(found) = element.polynomial_coefficients(which, cx)
+                && let Some(found) = element.polynomial_force_coefficients(which, cx)
                 && found.value[1..] != [0.0; 2]
             {
                 self.add_drive(joint, DriveLaw::damper(found.value));
@@ -258,7 +268,7 @@ impl<'a> MjcfReader<'a> {
             }
             let found = match is_damping {
                 true => element.linear_coefficient(which, IGNORE_PASSIVE, cx),
-                false => element.nonzero_number(which, cx),
+                false => element.nonzero_attribute_number(which, cx),
             };
             let Some(found) = found else { continue };
             if found.value < 0.0 {
@@ -279,14 +289,14 @@ impl<'a> MjcfReader<'a> {
     }
 
     fn add_drive(&mut self, joint: &BodyJoint, law: DriveLaw) {
-        let on = DriveOn::Sum(vec![(joint.name.clone(), 1.0)]);
+        let on = DriveTarget::Sum(vec![(joint.name.clone(), 1.0)]);
         self.robot.drives.push(Drive { name: joint.name.clone(), on, law });
     }
 }
 
 /// Reports a nonzero attribute `springyield`, which is not supported.
 pub(super) fn report_spring_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
-    if let Some(found) = element.nonzero_number("springyield", cx) {
+    if let Some(found) = element.nonzero_attribute_number("springyield", cx) {
         let message = "`springyield` is not supported: a spring that yields has a state of its own";
         cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
     }

@@ -1,17 +1,18 @@
 //! Parameters of an actuator → its force, with the states of its activation.
 
 use super::activation::{
-    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_limit, requested_controls,
+    ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, report_controller_limit,
+    requested_controller_inputs,
 };
 use super::dc_motor;
 use super::defaults::Element;
 use super::muscle;
-use super::record::{ActuatorRecord, read_record};
+use super::record::{ActuatorRecord, read_actuator_record};
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, element_position};
+use crate::import::element::{Node, element_source_position};
 
 /// Force law of an MJCF actuator.
-pub(super) enum Force {
+pub(super) enum ActuatorForceLaw {
     /// Force `gain · u + bias · (1, length, rate)`.
     Affine {
         /// Factor of the input in the actuator's force.
@@ -25,13 +26,13 @@ pub(super) enum Force {
 
 /// Reads the force of an actuator with its defaults. `classes` contains the defaults from the outermost class
 /// to the actuator's own. Reports actuators that are not supported, and returns `None` for them.
-pub(super) fn read_force<'a>(
+pub(super) fn read_actuator_force<'a>(
     actuator: &Element<'a>,
     classes: &[Vec<Node<'a>>],
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
-) -> Option<Force> {
-    let record = read_record(actuator, classes, cx);
+) -> Option<ActuatorForceLaw> {
+    let record = read_actuator_record(actuator, classes, cx);
     if !check_actuator_type(actuator, &record, cx) {
         return None;
     }
@@ -40,15 +41,15 @@ pub(super) fn read_force<'a>(
     let plain = record.gain_kind == "fixed" || (record.gain_kind == "affine" && g1 == 0.0 && g2 == 0.0);
     if record.dynamics == "none" && plain && ["none", "affine"].contains(&record.bias_kind) {
         let bias = if record.bias_kind == "affine" { [b0, b1, b2] } else { [0.0; 3] };
-        return Some(Force::Affine { gain: g0, bias });
+        return Some(ActuatorForceLaw::Affine { gain: g0, bias });
     }
-    let mut law = ActuatorLaw::new(named, &element_position(actuator.node, cx));
+    let mut law = ActuatorLaw::new(named, &element_source_position(actuator.node, cx));
     match record.gain_kind {
         "dcmotor" => dc_motor::write_motor_law(&mut law, actuator, &record, named, cx)?,
         "pid" => write_pid_law(&mut law, actuator, &record, named, cx)?,
         _ => write_general_law(&mut law, actuator, &record, named, cx)?,
     }
-    Some(Force::Law(Box::new(law)))
+    Some(ActuatorForceLaw::Law(Box::new(law)))
 }
 
 /// Reports types that are not supported, and damping that depends on the inertia.
@@ -134,7 +135,7 @@ fn write_general_law(
             "m/s" => "m",
             other => other,
         };
-        law.add_state("activation", "Activation", unit, rate, named);
+        law.add_actuator_state("activation", "Activation", unit, rate, named);
     }
     let gain = match (record.gain_kind, &muscle) {
         ("muscle", Some(muscle)) => muscle.active_force(law),
@@ -159,15 +160,15 @@ fn write_pid_law(
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
-    let has_states = record.dynamics == "pid";
-    let integral = if has_states { record.gain[0] } else { 0.0 };
-    if has_states {
-        report_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
+    let has_vector_state = record.dynamics == "pid";
+    let integral = if has_vector_state { record.gain[0] } else { 0.0 };
+    if has_vector_state {
+        report_controller_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
     }
     if integral > 0.0 {
-        report_limit(actuator, "imax", "`imax`", record.dynprm[0], cx)?;
+        report_controller_limit(actuator, "imax", "`imax`", record.dynprm[0], cx)?;
     }
-    let controls = requested_controls(actuator, "pos vel", &CONTROLS[..3], cx)?;
+    let controls = requested_controller_inputs(actuator, "pos vel", &CONTROLS[..3], cx)?;
     let [_, proportional, damping, ..] = record.bias;
     let mut force = law.affine_formula(&record.bias);
     let mut error = -law.length();
@@ -201,7 +202,7 @@ fn write_pid_law(
         }
         force = force + law.state_value("integral", named) * integral;
         let unit = if named.length == "rad" { "rad·s" } else { "m·s" };
-        law.add_state("integral", "Integral of the error", unit, error, named);
+        law.add_actuator_state("integral", "Integral of the error", unit, error, named);
     }
     law.force = force;
     Some(())

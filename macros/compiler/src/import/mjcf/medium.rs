@@ -12,7 +12,7 @@ use super::reader::MjcfReader;
 use super::spatial::BodyFrame;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::element::element_position;
+use crate::import::element::element_source_position;
 use crate::import::pose::{FilePose, eigen_decomposition, transpose};
 use crate::syntax::{BinaryOp, Expr, ExprKind, GROUND, Name};
 use std::f64::consts::PI;
@@ -55,7 +55,7 @@ impl MjcfReader<'_> {
             .filter_map(|(link, mass)| {
                 let mass = mass.as_ref().filter(|mass| mass.mass > 0.0)?;
                 let text = format!("{}_medium", link.name.text);
-                let function = fluid_dissipation(&link.name.text, mass, [density, viscosity], &at);
+                let function = fluid_dissipation_function(&link.name.text, mass, [density, viscosity], &at);
                 Some((Name { text, place: at.clone() }, function))
             })
             .collect();
@@ -65,14 +65,19 @@ impl MjcfReader<'_> {
     /// Records a shape with an individual fluid model, which is not supported.
     pub(super) fn note_fluid_shape(&mut self, shape: &super::defaults::Element<'_>, cx: &Cx<'_>) {
         if shape.trimmed_text("fluidshape").is_some_and(|word| word != "none") {
-            self.shaped.get_or_insert(element_position(shape.node, cx));
+            self.shaped.get_or_insert(element_source_position(shape.node, cx));
         }
     }
 }
 
 /// Returns the Rayleigh dissipation function of the drag on a body: half of the dissipated power of linear
 /// terms plus a third of that of quadratic terms.
-fn fluid_dissipation(link: &str, mass: &BodyMass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
+fn fluid_dissipation_function(
+    link: &str,
+    mass: &BodyMass,
+    [density, viscosity]: [f64; 2],
+    at: &Place,
+) -> Expr {
     let (moments, axes) = eigen_decomposition(&mass.inertia);
     let sum: f64 = moments.iter().sum();
     let edges = moments.map(|moment| ((sum - 2.0 * moment).max(0.0) / mass.mass * 6.0).sqrt());
@@ -80,11 +85,16 @@ fn fluid_dissipation(link: &str, mass: &BodyMass, [density, viscosity]: [f64; 2]
     let name_expression = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
     let spot = BodyFrame { body: link.to_string(), pose: FilePose { at: mass.com, ..FilePose::ZERO } };
     let quotient = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
-    let path =
-        quotient(quotient(spot.position_of_spot(at), name_expression(GROUND)), name_expression(GROUND));
-    let v = Expr::function_call_at("v", vec![path], at);
-    let omega =
-        Expr::function_call_at("omega", vec![quotient(name_expression(link), name_expression(GROUND))], at);
+    let path = quotient(
+        quotient(spot.position_expression_of_spot(at), name_expression(GROUND)),
+        name_expression(GROUND),
+    );
+    let v = Expr::function_call_expression("v", vec![path], at);
+    let omega = Expr::function_call_expression(
+        "omega",
+        vec![quotient(name_expression(link), name_expression(GROUND))],
+        at,
+    );
     let scaled_expression =
         |factor: f64, e: Expr| Expr::binary_operation(BinaryOp::Mul, Expr::number_at(factor, at), e);
     let mut terms = Vec::new();
@@ -92,7 +102,7 @@ fn fluid_dissipation(link: &str, mass: &BodyMass, [density, viscosity]: [f64; 2]
         for (factor, of) in [(1.5 * PI * mean, &v), (0.5 * PI * mean * mean * mean, &omega)] {
             terms.push(scaled_expression(
                 factor * viscosity,
-                Expr::function_call_at("dot", vec![of.clone(), of.clone()], at),
+                Expr::function_call_expression("dot", vec![of.clone(), of.clone()], at),
             ));
         }
     }
@@ -100,10 +110,17 @@ fn fluid_dissipation(link: &str, mass: &BodyMass, [density, viscosity]: [f64; 2]
         for (k, axis) in transpose(&axes).into_iter().enumerate() {
             let [a, b, c] = [edges[k], edges[(k + 1) % 3], edges[(k + 2) % 3]];
             for (factor, of) in [(b * c / 6.0, &v), (a * (b * b * b * b + c * c * c * c) / 192.0, &omega)] {
-                let x = Expr::function_call_at("dot", vec![of.clone(), spot.vector_expression(axis, at)], at);
+                let x = Expr::function_call_expression(
+                    "dot",
+                    vec![of.clone(), spot.body_axes_vector_expression(axis, at)],
+                    at,
+                );
                 let square = Expr::binary_operation(BinaryOp::Mul, x.clone(), x.clone());
-                let cube =
-                    Expr::binary_operation(BinaryOp::Mul, Expr::function_call_at("abs", vec![x], at), square);
+                let cube = Expr::binary_operation(
+                    BinaryOp::Mul,
+                    Expr::function_call_expression("abs", vec![x], at),
+                    square,
+                );
                 terms.push(scaled_expression(factor * density, cube));
             }
         }

@@ -7,13 +7,13 @@
 
 use super::defaults::{Defaults, Element};
 use super::geometry::BodyMass;
-use super::settings::Settings;
+use super::settings::MjcfSettings;
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
+use crate::import::element::{Node, child_elements, element_source_position, read_name_attribute};
 use crate::import::mesh::{self, Triangle};
 use crate::import::pose::{
-    Matrix, Vector, add, cross, dot, length, matrix_times_vector, rotation_of_quaternion, scale_vector,
-    transpose,
+    Matrix, Vector, add, cross, dot, length, matrix_times_vector, rotation_of_quaternion, transpose,
+    vector_times_scalar,
 };
 use crate::syntax::{Mesh, MeshVertices, Name};
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ impl<'a> Meshes<'a> {
     pub(super) fn list_meshes(
         root: Node<'a>,
         folder: &Path,
-        settings: &Settings,
+        settings: &MjcfSettings,
         defaults: &Defaults<'a>,
         cx: &mut Cx<'_>,
     ) -> Meshes<'a> {
@@ -63,21 +63,25 @@ impl<'a> Meshes<'a> {
     }
 
     /// Returns the mass properties at density 1 of a mesh shape, in the axes of the mesh file.
-    pub(super) fn mass_of_mesh_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<BodyMass> {
+    pub(super) fn mass_properties_of_mesh_shape(
+        &mut self,
+        shape: &Element<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<BodyMass> {
         let (mesh, element) = self.mesh_of_shape(shape, cx)?;
         if let Some(known) = self.read.get(&mesh) {
             return *known;
         }
-        let found = self.mass_of_mesh(&element, cx);
+        let found = self.mass_properties_of_mesh(&element, cx);
         self.read.insert(mesh, found);
         found
     }
 
     /// Returns the name of a shape's mesh, and the mesh.
     fn mesh_of_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(String, Element<'a>)> {
-        let Some(mesh) = shape.name_of_attribute("mesh", cx) else {
+        let Some(mesh) = shape.attribute_text_with_span("mesh", cx) else {
             cx.report_error(
-                &element_position(shape.node, cx),
+                &element_source_position(shape.node, cx),
                 "a shape of type `mesh` without `mesh`",
                 |d| d,
             );
@@ -98,7 +102,7 @@ impl<'a> Meshes<'a> {
     pub(super) fn vertices_of_shape(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<MeshVertices> {
         let (mesh, element) = self.mesh_of_shape(shape, cx)?;
         let (linear, offset) = vertex_transformation(&element, cx);
-        let place = element_position(element.node, cx);
+        let place = element_source_position(element.node, cx);
         if element.node.has_attribute("file") {
             let name = read_name_attribute(element.node, "file", cx)?;
             return Some(MeshVertices {
@@ -136,11 +140,11 @@ impl<'a> Meshes<'a> {
         if element.node_with_any_attribute(&["refpos", "refquat"]).is_some() {
             return None;
         }
-        let scale = element.exact_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
+        let scale = element.read_exactly_n_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
         Some(Mesh { path: element.trimmed_text("file")?.to_string(), scale })
     }
 
-    fn mass_of_mesh(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<BodyMass> {
+    fn mass_properties_of_mesh(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) -> Option<BodyMass> {
         let exact = match element.trimmed_text("inertia") {
             None | Some("legacy") => false,
             Some("exact") => true,
@@ -154,7 +158,7 @@ impl<'a> Meshes<'a> {
         };
         if element.node.attribute("file").is_none() {
             let message = "the mass of a mesh without `file` is not computed";
-            cx.report_error(&element_position(element.node, cx), message, |d| {
+            cx.report_error(&element_source_position(element.node, cx), message, |d| {
                 d.add_help(super::geometry::NEEDS_INERTIAL)
             });
             return None;
@@ -164,7 +168,7 @@ impl<'a> Meshes<'a> {
         let mut triangles = read_mesh(&path, &file, cx)?;
         self.files.push(path);
         transform_triangles(element, &mut triangles, cx);
-        let found = solid_mass(&triangles, exact);
+        let found = triangulated_solid_mass_properties(&triangles, exact);
         if found.is_none() {
             let message = format!("mesh {} has no volume", quote_word(&file.text));
             cx.report_error(&file.place, message, |d| d.add_help(super::geometry::NEEDS_INERTIAL));
@@ -175,13 +179,14 @@ impl<'a> Meshes<'a> {
 
 /// Returns the map of vertices by `refpos`, `refquat` and `scale`, in this order: a matrix and an offset.
 fn vertex_transformation(element: &Element<'_>, cx: &mut Cx<'_>) -> (Matrix, Vector) {
-    let from = element.exact_numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
-    let factors = element.exact_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
-    let quat = element.exact_numbers::<4>("refquat", cx).map_or([1.0, 0.0, 0.0, 0.0], |found| found.value);
+    let from = element.read_exactly_n_numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
+    let factors = element.read_exactly_n_numbers("scale", cx).map_or([1.0; 3], |found| found.value);
+    let quat =
+        element.read_exactly_n_numbers::<4>("refquat", cx).map_or([1.0, 0.0, 0.0, 0.0], |found| found.value);
     let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
     let axes: Matrix = transpose(&rotation_of_quaternion(quat.map(|x| x / size)));
-    let linear: Matrix = std::array::from_fn(|k| scale_vector(axes[k], factors[k]));
-    (linear, scale_vector(matrix_times_vector(&linear, from), -1.0))
+    let linear: Matrix = std::array::from_fn(|k| vector_times_scalar(axes[k], factors[k]));
+    (linear, vector_times_scalar(matrix_times_vector(&linear, from), -1.0))
 }
 
 /// Transforms the vertices of a mesh by its `refpos`, `refquat` and `scale`.
@@ -197,34 +202,36 @@ fn transform_triangles(element: &Element<'_>, triangles: &mut [Triangle], cx: &m
 }
 
 /// Returns the mass properties at density 1 of a triangulated solid; `None` if its volume is zero.
-fn solid_mass(triangles: &[Triangle], exact: bool) -> Option<BodyMass> {
-    let counted_volume = |volume: f64| if exact { volume } else { volume.abs() };
+fn triangulated_solid_mass_properties(triangles: &[Triangle], exact: bool) -> Option<BodyMass> {
+    let signed_or_absolute_volume = |volume: f64| if exact { volume } else { volume.abs() };
     let (mut area, mut middle) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {
-        let one = length(cross(add(*b, scale_vector(*a, -1.0)), add(*c, scale_vector(*a, -1.0)))) / 2.0;
+        let one =
+            length(cross(add(*b, vector_times_scalar(*a, -1.0)), add(*c, vector_times_scalar(*a, -1.0))))
+                / 2.0;
         area += one;
-        middle = add(middle, scale_vector(add(add(*a, *b), *c), one / 3.0));
+        middle = add(middle, vector_times_scalar(add(add(*a, *b), *c), one / 3.0));
     }
     if area < NOTHING || !area.is_finite() {
         return None;
     }
-    let middle = scale_vector(middle, 1.0 / area);
+    let middle = vector_times_scalar(middle, 1.0 / area);
     let (mut volume, mut com) = (0.0, [0.0; 3]);
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|corner| add(corner, scale_vector(middle, -1.0)));
-        let one = counted_volume(dot(a, cross(b, c)) / 6.0);
+        let [a, b, c] = triangle.map(|corner| add(corner, vector_times_scalar(middle, -1.0)));
+        let one = signed_or_absolute_volume(dot(a, cross(b, c)) / 6.0);
         volume += one;
-        com = add(com, scale_vector(add(add(a, b), c), one / 4.0));
+        com = add(com, vector_times_scalar(add(add(a, b), c), one / 4.0));
     }
     if volume < NOTHING || !volume.is_finite() {
         return None;
     }
-    let com = add(middle, scale_vector(com, 1.0 / volume));
+    let com = add(middle, vector_times_scalar(com, 1.0 / volume));
     let (mut mass, mut products) = (0.0, [[0.0; 3]; 3]);
     for triangle in triangles {
-        let corners = triangle.map(|corner| add(corner, scale_vector(com, -1.0)));
+        let corners = triangle.map(|corner| add(corner, vector_times_scalar(com, -1.0)));
         let [a, b, c] = corners;
-        let one = counted_volume(dot(a, cross(b, c)) / 6.0);
+        let one = signed_or_absolute_volume(dot(a, cross(b, c)) / 6.0);
         mass += one;
         let sum = add(add(a, b), c);
         for (i, row) in products.iter_mut().enumerate() {
@@ -245,7 +252,11 @@ fn solid_mass(triangles: &[Triangle], exact: bool) -> Option<BodyMass> {
 impl BodyMass {
     /// Scales the mass properties to another total mass.
     pub(super) fn scaled_to_mass(&self, mass: f64) -> BodyMass {
-        BodyMass { mass, com: self.com, inertia: self.inertia.map(|row| scale_vector(row, mass / self.mass)) }
+        BodyMass {
+            mass,
+            com: self.com,
+            inertia: self.inertia.map(|row| vector_times_scalar(row, mass / self.mass)),
+        }
     }
 }
 
@@ -290,7 +301,7 @@ mod tests {
     fn triangulated_box_has_the_inertia_of_a_box() {
         let triangles = mesh::read_obj(BOX.as_bytes()).expect("a mesh");
         assert_eq!(triangles.len(), 12);
-        check_box_mass(&solid_mass(&triangles, true).expect("a solid"), 0.0);
-        check_box_mass(&solid_mass(&triangles, false).expect("a solid"), 0.0);
+        check_box_mass(&triangulated_solid_mass_properties(&triangles, true).expect("a solid"), 0.0);
+        check_box_mass(&triangulated_solid_mass_properties(&triangles, false).expect("a solid"), 0.0);
     }
 }

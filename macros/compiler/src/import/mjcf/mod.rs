@@ -4,16 +4,16 @@
 //! errors. Other contents are skipped and listed in the generated documentation.
 
 use super::context::{Cx, quote_word};
-use super::element::{Node, child_elements, element_position, quoted_tag};
+use super::element::{Node, child_elements, element_source_position, quoted_tag};
 use super::whole::import_composed_text;
 use crate::diag::Diagnostics;
-use crate::import::imported::Imported;
+use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, JointOrder};
-use crate::syntax::{DriveLaw, DriveOn, Expr, FileFormat, FileOptions, GROUND, JointKind};
+use crate::syntax::{DriveLaw, DriveTarget, Expr, FileFormat, FileOptions, GROUND, JointKind};
 use defaults::Defaults;
 use mesh::Meshes;
 use reader::MjcfReader;
-use settings::Settings;
+use settings::MjcfSettings;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -55,15 +55,20 @@ pub(super) fn import_file(
     path: &Path,
     options: &FileOptions,
     cx: &mut Diagnostics,
-) -> Option<Imported> {
+) -> Option<ImportedMechanism> {
     let whole = include::read_with_includes(text, path, &options.path, cx)?;
     let folder = path.parent().unwrap_or(path);
     import_composed_text(whole, &options.path, FileFormat::Mjcf, cx, |root, cx| {
-        read_root(root, folder, options, cx)
+        read_mjcf_root(root, folder, options, cx)
     })
 }
 
-fn read_root(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+fn read_mjcf_root(
+    root: Node<'_>,
+    folder: &Path,
+    options: &FileOptions,
+    cx: &mut Cx<'_>,
+) -> Option<ImportedMechanism> {
     if !check_root_element(root, cx) {
         return None;
     }
@@ -71,11 +76,11 @@ fn read_root(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'
     if let Some(node) = child_elements(root).find(|node| node.tag_name().name() == "deformable")
         && child_elements(node).next().is_some()
     {
-        cx.report_error(&element_position(node, cx), "deformable bodies are not supported", |d| {
+        cx.report_error(&element_source_position(node, cx), "deformable bodies are not supported", |d| {
             d.add_help("remove `<deformable>`")
         });
     }
-    let settings = Settings::read_settings(root, cx);
+    let settings = MjcfSettings::read_settings(root, cx);
     let defaults = Defaults::read_defaults(root, cx);
     let meshes = Meshes::list_meshes(root, folder, &settings, &defaults, cx);
     let mut reader = MjcfReader::new(options, settings, defaults, meshes);
@@ -89,7 +94,7 @@ fn read_root(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'
     reader.read_actuators(root, &tendons, cx);
     for (section, what) in ASIDE {
         let nodes = child_elements(root).filter(|node| node.tag_name().name() == section);
-        reader.count_skipped(what, nodes.map(|node| child_elements(node).count()).sum());
+        reader.count_skipped_contents(what, nodes.map(|node| child_elements(node).count()).sum());
     }
     let gravity = &reader.settings.gravity;
     reader.robot.gravity = Some(Expr::vector_at(gravity.value, &gravity.place));
@@ -98,10 +103,14 @@ fn read_root(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'
 }
 
 /// Assembles the imported mechanism from the contents that the reader collected.
-fn finish_import(reader: MjcfReader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+fn finish_import(
+    reader: MjcfReader<'_>,
+    options: &FileOptions,
+    cx: &mut Cx<'_>,
+) -> Option<ImportedMechanism> {
     let mut robot = reader.robot;
     robot::check_locked_names(&robot.joints, &options.lock, cx);
-    check_finite_values(&robot, cx);
+    report_infinite_values(&robot, cx);
     if cx.has_errors() {
         return None;
     }
@@ -116,7 +125,7 @@ fn finish_import(reader: MjcfReader<'_>, options: &FileOptions, cx: &mut Cx<'_>)
     let joints =
         children.filter_map(|(k, joint)| Some((k, *links.get(joint.child.text.as_str())?))).collect();
     let order = JointOrder { root: 0, joints };
-    let standing = fixed_links(&robot, options);
+    let standing = links_fixed_to_ground(&robot, options);
     let closing = std::mem::take(&mut robot.closing);
     let files = reader.meshes.files;
     let mut imported = robot::assemble_mechanism(robot, &order, motions, options, cx);
@@ -127,9 +136,9 @@ fn finish_import(reader: MjcfReader<'_>, options: &FileOptions, cx: &mut Cx<'_>)
 }
 
 /// Reports values of an MJCF file that overflow as products of finite numbers.
-fn check_finite_values(robot: &robot::Robot, cx: &mut Cx<'_>) {
+fn report_infinite_values(robot: &robot::Robot, cx: &mut Cx<'_>) {
     let has_finite_literals =
-        |e: &Expr| e.subexpressions().into_iter().filter_map(Expr::literal_number).all(f64::is_finite);
+        |e: &Expr| e.all_subexpressions().into_iter().filter_map(Expr::literal_number).all(f64::is_finite);
     for link in &robot.links {
         if ![&link.mass, &link.com, &link.inertia].into_iter().flatten().all(has_finite_literals) {
             let message = format!(
@@ -181,9 +190,9 @@ fn check_finite_values(robot: &robot::Robot, cx: &mut Cx<'_>) {
             DriveLaw::Input(_) => true,
         };
         let on = match &drive.on {
-            DriveOn::Sum(terms) => terms.iter().all(|(_, weight)| weight.is_finite()),
-            DriveOn::Length(e) => has_finite_literals(e),
-            DriveOn::Wrench(wrench) => wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite),
+            DriveTarget::Sum(terms) => terms.iter().all(|(_, weight)| weight.is_finite()),
+            DriveTarget::Length(e) => has_finite_literals(e),
+            DriveTarget::Wrench(wrench) => wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite),
         };
         if !law || !on {
             let message = format!(
@@ -196,7 +205,7 @@ fn check_finite_values(robot: &robot::Robot, cx: &mut Cx<'_>) {
 }
 
 /// Returns the names of the links that are fixed to the ground.
-fn fixed_links(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
+fn links_fixed_to_ground(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
     let mut standing = BTreeSet::from([GROUND]);
     for joint in &robot.joints {
         let held =
@@ -215,7 +224,7 @@ fn check_root_element(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
         return true;
     }
     let message = format!("expected `<mujoco>`, found {}", quoted_tag(node));
-    cx.report_error(&element_position(node, cx), message, |d| match name {
+    cx.report_error(&element_source_position(node, cx), message, |d| match name {
         "robot" => d.add_help("this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
         "sdf" => d.add_help("this is an SDF file: write `sdf = \"…\"` instead of `mjcf = \"…\"`"),
         "mujocoinclude" => d.add_help("this is a part of a model: name the file that includes it"),

@@ -3,7 +3,7 @@
 
 use super::activation::{ActuatorLaw, OTHER_INPUTS, TINY};
 use super::defaults::Element;
-use super::formula::Formula;
+use super::formula::ActuatorLawExpression;
 use super::record::ActuatorRecord;
 use crate::import::context::Cx;
 
@@ -24,15 +24,15 @@ impl Muscle {
         record: &ActuatorRecord<'_>,
         cx: &mut Cx<'_>,
     ) -> Option<Muscle> {
-        let first_parameters = |prm: &[f64; 10]| std::array::from_fn(|k| prm[k]);
+        let first_nine_parameters = |prm: &[f64; 10]| std::array::from_fn(|k| prm[k]);
         let (gain, bias): ([f64; 9], [f64; 9]) =
-            (first_parameters(&record.gain), first_parameters(&record.bias));
+            (first_nine_parameters(&record.gain), first_nine_parameters(&record.bias));
         let kinds = [(record.gain_kind, &gain), (record.bias_kind, &bias)];
         for (_, prm) in kinds.into_iter().filter(|(kind, _)| *kind == "muscle") {
             let [low, high, force, _, lmin, lmax, vmax, _, fvmax] = *prm;
             if force < 0.0 {
                 let help = "MuJoCo scales it by the inertia: write the `force` in newtons";
-                return report_unsupported_muscle(
+                return report_unsupported_muscle_attribute(
                     actuator,
                     "force",
                     "a muscle without `force` is not supported",
@@ -42,14 +42,21 @@ impl Muscle {
             }
             if low >= high || lmin >= 1.0 || lmax <= 1.0 || vmax <= 0.0 || fvmax <= 1.0 {
                 let message = "a muscle needs an increasing `range`, lmin < 1 < lmax, vmax > 0 and fvmax > 1";
-                return report_unsupported_muscle(actuator, "force", message, "correct these values", cx);
+                return report_unsupported_muscle_attribute(
+                    actuator,
+                    "force",
+                    message,
+                    "correct these values",
+                    cx,
+                );
             }
         }
-        let lengths = actuator.exact_numbers::<2>("lengthrange", cx).map_or([0.0; 2], |found| found.value);
+        let lengths =
+            actuator.read_exactly_n_numbers::<2>("lengthrange", cx).map_or([0.0; 2], |found| found.value);
         if kinds.iter().any(|(kind, _)| *kind == "muscle") && lengths[0] >= lengths[1] {
             let help =
                 "MuJoCo finds it by a simulation: write the `lengthrange` that MuJoCo saves in the file";
-            return report_unsupported_muscle(
+            return report_unsupported_muscle_attribute(
                 actuator,
                 "lengthrange",
                 "a muscle without `lengthrange` is not supported",
@@ -66,24 +73,24 @@ impl Muscle {
     }
 
     /// Returns the muscle length in units of its reference length, as an expression.
-    fn length(&self, prm: &[f64; 9], law: &ActuatorLaw) -> Formula {
+    fn length(&self, prm: &[f64; 9], law: &ActuatorLaw) -> ActuatorLawExpression {
         let unit = self.reference_length(prm);
         law.length() * (1.0 / unit) + (prm[0] - self.lengths[0] / unit)
     }
 
     /// Returns the muscle force at full activation, which is negative.
-    pub(super) fn active_force(&self, law: &ActuatorLaw) -> Formula {
+    pub(super) fn active_force(&self, law: &ActuatorLaw) -> ActuatorLawExpression {
         let [_, _, force, _, lmin, lmax, vmax, _, fvmax] = self.gain;
         let length = self.length(&self.gain, law);
         let speed = law.length_rate() * (1.0 / (self.reference_length(&self.gain) * vmax));
         let (low, high) = (0.5 * (lmin + 1.0), 0.5 * (1.0 + lmax));
         let half_squared_distance =
             |from: f64, width: f64| ((length.clone() + -from) * (1.0 / width)).square() * 0.5;
-        let hill_curve = |from: f64, width: f64| -half_squared_distance(from, width) + 1.0;
+        let length_force_parabola = |from: f64, width: f64| -half_squared_distance(from, width) + 1.0;
         let zero = || law.constant_formula(0.0);
         let beyond = length.clone().piecewise_choice(lmax, half_squared_distance(lmax, lmax - high), zero());
-        let falling = length.clone().piecewise_choice(high, hill_curve(1.0, high - 1.0), beyond);
-        let rising = length.clone().piecewise_choice(1.0, hill_curve(1.0, 1.0 - low), falling);
+        let falling = length.clone().piecewise_choice(high, length_force_parabola(1.0, high - 1.0), beyond);
+        let rising = length.clone().piecewise_choice(1.0, length_force_parabola(1.0, 1.0 - low), falling);
         let inside = length.clone().piecewise_choice(low, half_squared_distance(lmin, low - lmin), rising);
         let by_length = length.piecewise_choice(lmin, zero(), inside);
         let eccentric = fvmax - 1.0;
@@ -95,7 +102,7 @@ impl Muscle {
     }
 
     /// Returns the passive muscle force, which is negative.
-    pub(super) fn passive_force(&self, law: &ActuatorLaw) -> Formula {
+    pub(super) fn passive_force(&self, law: &ActuatorLaw) -> ActuatorLawExpression {
         let [_, _, force, _, _, lmax, _, fpmax, _] = self.bias;
         let length = self.length(&self.bias, law);
         let border = 0.5 * (1.0 + lmax);
@@ -108,7 +115,7 @@ impl Muscle {
 }
 
 /// Reports an attribute of a muscle that is not supported.
-fn report_unsupported_muscle<T>(
+fn report_unsupported_muscle_attribute<T>(
     actuator: &Element<'_>,
     attribute: &str,
     message: &str,
@@ -125,10 +132,10 @@ fn report_unsupported_muscle<T>(
 /// change; `dynprm` contains both, and the width over which they are blended.
 pub(super) fn activation_rate(
     law: &ActuatorLaw,
-    input: Formula,
-    state: Formula,
+    input: ActuatorLawExpression,
+    state: ActuatorLawExpression,
     record: &ActuatorRecord<'_>,
-) -> Formula {
+) -> ActuatorLawExpression {
     let [rise, fall, width, ..] = record.dynprm;
     let factor = state.clone().clamp_between(0.0, 1.0) * 1.5 + 0.5;
     let excess = input.clamp_between(0.0, 1.0) - state;

@@ -3,11 +3,11 @@
 use super::defaults::{Defaults, Element};
 use super::geometry::BodyMass;
 use super::mesh::Meshes;
-use super::settings::Settings;
+use super::settings::MjcfSettings;
 use super::touch::{CollisionShape, Plane};
 use crate::diag::Place;
 use crate::import::imported::Located;
-use crate::import::pose::{FilePose, roll_pitch_yaw, scale_vector};
+use crate::import::pose::{FilePose, roll_pitch_yaw, vector_times_scalar};
 use crate::import::robot::{FileOrigin, Robot};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// State of the reader of an MJCF file.
 pub(super) struct MjcfReader<'a> {
     pub(super) options: &'a FileOptions,
-    pub(super) settings: Settings,
+    pub(super) settings: MjcfSettings,
     pub(super) defaults: Defaults<'a>,
     /// Meshes of the MJCF file.
     pub(super) meshes: Meshes<'a>,
@@ -62,13 +62,13 @@ impl<'a> MjcfReader<'a> {
     /// Creates the reader of an MJCF file before any element is read.
     pub(super) fn new(
         options: &'a FileOptions,
-        settings: Settings,
+        settings: MjcfSettings,
         defaults: Defaults<'a>,
         meshes: Meshes<'a>,
     ) -> MjcfReader<'a> {
         let honour = options.honour_passive;
         let (passive, friction) =
-            (honour && settings.has_passive_forces(), honour && settings.has_dry_friction());
+            (honour && settings.has_passive_forces(), honour && settings.is_dry_friction_enabled());
         let (springs, dampers) = (honour && settings.springs, honour && settings.dampers);
         MjcfReader {
             options,
@@ -100,7 +100,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Adds `more` to the count of skipped contents of this kind.
-    pub(super) fn count_skipped(&mut self, what: &'static str, more: usize) {
+    pub(super) fn count_skipped_contents(&mut self, what: &'static str, more: usize) {
         *self.counts.entry(what).or_default() += more;
     }
 
@@ -115,15 +115,19 @@ impl<'a> MjcfReader<'a> {
         for (link, mass) in self.robot.links.iter_mut().zip(&self.masses) {
             if let Some(mass) = mass {
                 let place = link.mass.as_ref().map_or(link.name.place.clone(), |mass| mass.place.clone());
-                let inertia = mass.inertia.map(|row| scale_vector(row, factor));
-                set_mass(link, &BodyMass { mass: mass.mass * factor, inertia, ..*mass }, &place);
+                let inertia = mass.inertia.map(|row| vector_times_scalar(row, factor));
+                assign_mass_properties(
+                    link,
+                    &BodyMass { mass: mass.mass * factor, inertia, ..*mass },
+                    &place,
+                );
             }
         }
     }
 }
 
 /// Sets the mass properties of a link from numbers.
-pub(super) fn set_mass(link: &mut Body, mass: &BodyMass, place: &Place) {
+pub(super) fn assign_mass_properties(link: &mut Body, mass: &BodyMass, place: &Place) {
     link.mass = Some(Expr::number_at(mass.mass, place));
     link.com = (mass.com != [0.0; 3]).then(|| Expr::vector_at(mass.com, place));
     let rows: Vec<Expr> = (0..3)
@@ -139,6 +143,9 @@ pub(super) fn set_mass(link: &mut Body, mass: &BodyMass, place: &Place) {
 
 /// Converts a numeric pose to a [`FileOrigin`] with a source position.
 pub(super) fn origin_of_pose(pose: &FilePose, place: &Place) -> FileOrigin {
-    let placed_value = |value| Located { value, place: place.clone() };
-    FileOrigin { xyz: placed_value(pose.at.map(|x| x + 0.0)), rpy: placed_value(roll_pitch_yaw(&pose.axes)) }
+    let value_with_span = |value| Located { value, place: place.clone() };
+    FileOrigin {
+        xyz: value_with_span(pose.at.map(|x| x + 0.0)),
+        rpy: value_with_span(roll_pitch_yaw(&pose.axes)),
+    }
 }

@@ -51,7 +51,7 @@ pub(super) const fn padded_parameters(first: &[f64]) -> [f64; 10] {
 
 /// Returns the record of an actuator with its defaults. `classes` contains the defaults from the outermost
 /// class to the actuator's own.
-pub(super) fn read_record<'a>(
+pub(super) fn read_actuator_record<'a>(
     actuator: &Element<'a>,
     classes: &[Vec<Node<'a>>],
     cx: &mut Cx<'_>,
@@ -72,15 +72,15 @@ pub(super) fn read_record<'a>(
 /// to the parent classes.
 fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
     let kind = node.tag_name().name();
-    let is_readable = |record: &&ActuatorRecord<'a>| {
+    let is_record_of_kind = |record: &&ActuatorRecord<'a>| {
         record.written == kind || (record.written == "general" && record.gain_kind == "fixed")
     };
-    let usual = records.iter().rev().find(is_readable).copied().unwrap_or(PLAIN);
+    let usual = records.iter().rev().find(is_record_of_kind).copied().unwrap_or(PLAIN);
     // The parameters of these are not those of `<general>`.
     let own = if usual.written == kind { usual } else { PLAIN };
     let Some(record) = records.last_mut() else { return };
     let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
-    let shortcut_record = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| ActuatorRecord {
+    let actuator_shortcut_record = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| ActuatorRecord {
         written: kind,
         dynamics,
         gain_kind,
@@ -91,10 +91,10 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
     };
     *record = match kind {
         "general" => {
-            record.write_general_actuator(node, cx);
+            record.record_general_actuator(node, cx);
             return;
         }
-        "motor" => shortcut_record("none", "fixed", 1.0, "none", [0.0; 3]),
+        "motor" => actuator_shortcut_record("none", "fixed", 1.0, "none", [0.0; 3]),
         "position" | "intvelocity" => {
             let stiffness = said("kp").unwrap_or(usual.gain[0]);
             let damping = said("kv").map(|kv| -kv).or_else(|| said("dampratio")).unwrap_or(usual.bias[2]);
@@ -108,15 +108,16 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
                 (_, true) => "filterexact",
                 _ => "none",
             };
-            let written = shortcut_record(dynamics, "fixed", stiffness, "affine", [0.0, -stiffness, damping]);
+            let written =
+                actuator_shortcut_record(dynamics, "fixed", stiffness, "affine", [0.0, -stiffness, damping]);
             ActuatorRecord { dynprm: padded_parameters(&[lag]), ..written }
         }
         "velocity" => {
             let gain = said("kv").unwrap_or(usual.gain[0]);
-            shortcut_record("none", "fixed", gain, "affine", [0.0, 0.0, -gain])
+            actuator_shortcut_record("none", "fixed", gain, "affine", [0.0, 0.0, -gain])
         }
         "damper" => {
-            let mut record = shortcut_record("none", "affine", 0.0, "none", [0.0; 3]);
+            let mut record = actuator_shortcut_record("none", "affine", 0.0, "none", [0.0; 3]);
             record.gain[2] = said("kv").map_or(usual.gain[2], |kv| -kv);
             record
         }
@@ -126,14 +127,15 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
             let area = said("diameter").map_or(area, |diameter| PI / 4.0 * diameter * diameter);
             let bias = numbers_with_defaults(node, "bias", [0.0; 3], cx).map(|found| found.value);
             let [b0, b1, b2, ..] = usual.bias;
-            let written = shortcut_record("filter", "fixed", area, "affine", bias.unwrap_or([b0, b1, b2]));
+            let written =
+                actuator_shortcut_record("filter", "fixed", area, "affine", bias.unwrap_or([b0, b1, b2]));
             ActuatorRecord { dynprm: padded_parameters(&[lag]), ..written }
         }
-        "muscle" => write_muscle(own, node, cx),
+        "muscle" => record_of_muscle(own, node, cx),
         "adhesion" => {
-            shortcut_record("none", "fixed", said("gain").unwrap_or(usual.gain[0]), "none", [0.0; 3])
+            actuator_shortcut_record("none", "fixed", said("gain").unwrap_or(usual.gain[0]), "none", [0.0; 3])
         }
-        "orientation" => shortcut_record("none", "so3", 1.0, "affine", [0.0; 3]),
+        "orientation" => actuator_shortcut_record("none", "so3", 1.0, "affine", [0.0; 3]),
         "dcmotor" => {
             let known = own.gain_kind == "dcmotor";
             let [dynprm, gain, bias] = if known { [own.dynprm, own.gain, own.bias] } else { [[0.0; 10]; 3] };
@@ -142,7 +144,7 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
                 dynprm,
                 gain,
                 bias,
-                ..shortcut_record("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3])
+                ..actuator_shortcut_record("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3])
             }
         }
         "pid" => {
@@ -154,34 +156,39 @@ fn write_last_record<'a>(records: &mut [ActuatorRecord<'a>], node: Node<'a>, cx:
             let limits = [("imax", limits[0]), ("slewmax", limits[1])];
             let [imax, slew] = limits.map(|(attribute, usual)| said(attribute).unwrap_or(usual));
             let dynamics = if integral != 0.0 || slew != 0.0 { "pid" } else { "none" };
-            let written = shortcut_record(dynamics, "pid", integral, "affine", [0.0, -stiffness, damping]);
+            let written =
+                actuator_shortcut_record(dynamics, "pid", integral, "affine", [0.0, -stiffness, damping]);
             ActuatorRecord { dynprm: padded_parameters(&[imax, slew]), ..written }
         }
-        _ => shortcut_record("none", kind, 1.0, "affine", [0.0; 3]),
+        _ => actuator_shortcut_record("none", kind, 1.0, "affine", [0.0; 3]),
     };
 }
 
 /// Returns the parameters of a muscle. `own` are those of its defaults.
-fn write_muscle<'a>(own: ActuatorRecord<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> ActuatorRecord<'a> {
+fn record_of_muscle<'a>(own: ActuatorRecord<'a>, node: Node<'a>, cx: &mut Cx<'_>) -> ActuatorRecord<'a> {
     let known = own.gain_kind == "muscle";
     let (times, mut gain) =
         if known { (own.dynprm, own.gain) } else { (padded_parameters(&[0.01, 0.04]), MUSCLE) };
     let [rise, fall, width, ..] = times;
     // Negative values leave those of the defaults.
-    let nonnegative_or = |found: f64, usual: f64| if found >= 0.0 { found } else { usual };
+    let nonnegative_or_default = |found: f64, usual: f64| if found >= 0.0 { found } else { usual };
     let times =
         numbers_with_defaults(node, "timeconst", [rise, fall], cx).map_or([rise, fall], |found| found.value);
     let range = numbers_with_defaults(node, "range", [gain[0], gain[1]], cx)
         .map_or([gain[0], gain[1]], |found| found.value);
-    gain[0] = nonnegative_or(range[0], gain[0]);
-    gain[1] = nonnegative_or(range[1], gain[1]);
+    gain[0] = nonnegative_or_default(range[0], gain[0]);
+    gain[1] = nonnegative_or_default(range[1], gain[1]);
     let mut said = |attribute: &str| read_number_attribute(node, attribute, cx).map(|found| found.value);
     for (k, attribute) in ["force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"].into_iter().enumerate()
     {
-        gain[k + 2] = nonnegative_or(said(attribute).unwrap_or(-1.0), gain[k + 2]);
+        gain[k + 2] = nonnegative_or_default(said(attribute).unwrap_or(-1.0), gain[k + 2]);
     }
     let width = said("tausmooth").unwrap_or(width);
-    let dynprm = padded_parameters(&[nonnegative_or(times[0], rise), nonnegative_or(times[1], fall), width]);
+    let dynprm = padded_parameters(&[
+        nonnegative_or_default(times[0], rise),
+        nonnegative_or_default(times[1], fall),
+        width,
+    ]);
     ActuatorRecord {
         written: "muscle",
         dynamics: "muscle",
@@ -194,7 +201,7 @@ fn write_muscle<'a>(own: ActuatorRecord<'a>, node: Node<'a>, cx: &mut Cx<'_>) ->
 }
 
 impl<'a> ActuatorRecord<'a> {
-    fn write_general_actuator(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
+    fn record_general_actuator(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
         let trimmed_or_default =
             |attribute: &str, usual: &'a str| node.attribute(attribute).map_or(usual, str::trim);
         (self.written, self.dynamics) = ("general", trimmed_or_default("dyntype", self.dynamics));

@@ -3,14 +3,14 @@
 
 use super::reader::MjcfReader;
 use super::spatial::Poses;
-use crate::import::pose::{FilePose, axis_rotation, matrix_product, scale_vector};
+use crate::import::pose::{FilePose, axis_rotation, matrix_product, vector_times_scalar};
 use crate::import::robot::FileOrigin;
 use crate::syntax::{GROUND, JointKind};
 
 impl MjcfReader<'_> {
     /// Returns the pose of each body relative to the world with all joint springs relaxed. Ball and free
     /// joints are as in the configuration of the file.
-    pub(super) fn poses_at_rest(&self) -> Poses {
+    pub(super) fn poses_with_relaxed_springs(&self) -> Poses {
         let mut poses = Poses::from([(GROUND.to_string(), FilePose::ZERO)]);
         // The joint of the parent precedes each joint.
         for joint in &self.robot.joints {
@@ -18,11 +18,11 @@ impl MjcfReader<'_> {
             let axis = joint.axis.value;
             let motion = match joint.kind.rotates_about_one_axis() {
                 Some(true) => FilePose { axes: axis_rotation(axis, rest), ..FilePose::ZERO },
-                Some(false) => FilePose { at: scale_vector(axis, rest), ..FilePose::ZERO },
+                Some(false) => FilePose { at: vector_times_scalar(axis, rest), ..FilePose::ZERO },
                 None => FilePose::ZERO,
             };
             let parent = poses.get(&joint.parent.text).copied().unwrap_or(FilePose::ZERO);
-            let back = FilePose { at: scale_vector(joint.anchor, -1.0), ..FilePose::ZERO };
+            let back = FilePose { at: vector_times_scalar(joint.anchor, -1.0), ..FilePose::ZERO };
             let pose = if joint.kind == JointKind::Free {
                 self.poses.get(&joint.child.text).copied().unwrap_or(FilePose::ZERO)
             } else {

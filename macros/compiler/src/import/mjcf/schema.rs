@@ -1,9 +1,9 @@
 //! Schema of the elements and attributes of MJCF, and the check of files against it.
 
 use super::super::context::{Cx, quote_word};
-use super::super::element::{Node, child_elements, element_position, quoted_tag, read_name_attribute};
+use super::super::element::{Node, child_elements, element_source_position, quoted_tag, read_name_attribute};
 use crate::diag::nearest_candidate;
-use crate::import::robot::check_unique;
+use crate::import::robot::report_repeated_names;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
@@ -157,7 +157,7 @@ pub(in crate::import) const WHOLE: [&str; 10] = [
 
 /// Attributes of an element, divided by their influence on the motion.
 #[derive(Clone, Default)]
-pub(in crate::import) struct Attributes {
+pub(in crate::import) struct AttributesByMotionInfluence {
     /// Attributes of an MJCF element that may change the motion.
     pub(in crate::import) moving: Vec<&'static str>,
     /// Attributes of an MJCF element without effect on the motion.
@@ -166,17 +166,17 @@ pub(in crate::import) struct Attributes {
 
 /// Returns the attributes of every element. Keys are `parent/element`, or only the name for children of the
 /// root.
-pub(in crate::import) fn read_schema() -> BTreeMap<String, Attributes> {
+pub(in crate::import) fn read_schema() -> BTreeMap<String, AttributesByMotionInfluence> {
     let mut lists: BTreeMap<&str, Vec<&'static str>> = BTreeMap::new();
     let mut all = BTreeMap::new();
     for line in SCHEMA.lines() {
         let Some((key, attributes)) = line.split_once(':') else { continue };
         let (moving, idle) = attributes.split_once('|').unwrap_or((attributes, ""));
-        let expand_names = |text: &'static str| -> Vec<&'static str> {
+        let expand_schema_lists = |text: &'static str| -> Vec<&'static str> {
             let words = text.split_ascii_whitespace();
             words.flat_map(|word| lists.get(word).cloned().unwrap_or_else(|| vec![word])).collect()
         };
-        let (moving, idle) = (expand_names(moving), expand_names(idle));
+        let (moving, idle) = (expand_schema_lists(moving), expand_schema_lists(idle));
         if key.starts_with('@') {
             lists.insert(key, moving);
             continue;
@@ -184,7 +184,7 @@ pub(in crate::import) fn read_schema() -> BTreeMap<String, Attributes> {
         let (parent, tags) = key.split_once('/').map_or((None, key), |(parent, tags)| (Some(parent), tags));
         for name in tags.split(',') {
             let path = parent.map_or_else(|| name.to_string(), |parent| format!("{parent}/{name}"));
-            all.insert(path, Attributes { moving: moving.clone(), idle: idle.clone() });
+            all.insert(path, AttributesByMotionInfluence { moving: moving.clone(), idle: idle.clone() });
         }
     }
     all
@@ -220,14 +220,15 @@ const NAMED: [&str; 6] = ["site", "geom", "tendon", "equality", "actuator", "sen
 /// Reports repeated names of MJCF elements of one kind.
 fn check_unique_names(root: Node<'_>, cx: &mut Cx<'_>) {
     for kind in NAMED {
-        let is_kind = |node: &Node<'_>| {
+        let belongs_to_schema_kind = |node: &Node<'_>| {
             let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
             parent == kind
                 || (node.tag_name().name() == kind && ["worldbody", "body", "frame"].contains(&parent))
         };
-        let named = root.descendants().filter(|node| node.has_attribute("name") && is_kind(node));
+        let named =
+            root.descendants().filter(|node| node.has_attribute("name") && belongs_to_schema_kind(node));
         let names: Vec<Name> = named.filter_map(|node| read_name_attribute(node, "name", cx)).collect();
-        check_unique(names.iter(), kind, cx);
+        report_repeated_names(names.iter(), kind, cx);
     }
 }
 
@@ -259,7 +260,7 @@ const OWN: [&str; 10] = [
     "body",
 ];
 
-fn check_attributes(node: Node<'_>, schema: &BTreeMap<String, Attributes>, cx: &mut Cx<'_>) {
+fn check_attributes(node: Node<'_>, schema: &BTreeMap<String, AttributesByMotionInfluence>, cx: &mut Cx<'_>) {
     let parent = node.parent_element();
     let name = node.tag_name().name();
     let path = parent.map_or_else(|| name.to_string(), |parent| schema_key(parent, name));
@@ -285,7 +286,7 @@ fn check_attributes(node: Node<'_>, schema: &BTreeMap<String, Attributes>, cx: &
 fn report_unknown_element(
     node: Node<'_>,
     parent: &str,
-    schema: &BTreeMap<String, Attributes>,
+    schema: &BTreeMap<String, AttributesByMotionInfluence>,
     cx: &mut Cx<'_>,
 ) {
     let name = node.tag_name().name();
@@ -295,8 +296,10 @@ fn report_unknown_element(
     });
     let siblings: Vec<&str> = siblings.collect();
     let message = format!("unknown element {}", quoted_tag(node));
-    cx.report_error(&element_position(node, cx), message, |d| match nearest_candidate(name, &siblings) {
-        Some(best) => d.add_help(format!("did you mean `<{best}>`?")),
-        None => d.add_help("MuJoCo 4.0 does not know it here either: remove it"),
+    cx.report_error(&element_source_position(node, cx), message, |d| {
+        match nearest_candidate(name, &siblings) {
+            Some(best) => d.add_help(format!("did you mean `<{best}>`?")),
+            None => d.add_help("MuJoCo 4.0 does not know it here either: remove it"),
+        }
     });
 }

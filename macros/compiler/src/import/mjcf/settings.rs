@@ -3,7 +3,7 @@
 use super::defaults::{boolean_choice, numbers_with_defaults};
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, child_elements, element_position, read_number_attribute, read_numbers_attribute,
+    Node, child_elements, element_source_position, read_number_attribute, read_numbers_attribute,
 };
 use crate::import::imported::Located;
 
@@ -19,7 +19,7 @@ pub(super) enum MassSource {
 }
 
 /// Settings of an MJCF file: its `<compiler>` and `<option>` elements.
-pub(super) struct Settings {
+pub(super) struct MjcfSettings {
     /// Whether angles of the file are in degrees.
     pub(super) degrees: bool,
     /// Axes of the Euler angles in order; capital letters for fixed axes.
@@ -71,10 +71,10 @@ pub(super) struct Settings {
     pub(super) strip_paths: bool,
 }
 
-impl Settings {
+impl MjcfSettings {
     /// Reads the `<compiler>` and `<option>` elements of an MJCF file.
-    pub(super) fn read_settings(root: Node<'_>, cx: &mut Cx<'_>) -> Settings {
-        let mut all = Settings {
+    pub(super) fn read_settings(root: Node<'_>, cx: &mut Cx<'_>) -> MjcfSettings {
+        let mut all = MjcfSettings {
             degrees: true,
             euler: ['x', 'y', 'z'],
             autolimits: true,
@@ -85,7 +85,7 @@ impl Settings {
             least_inertia: 0.0,
             total_mass: None,
             meshes: String::new(),
-            gravity: Located { value: [0.0, 0.0, -9.81], place: element_position(root, cx) },
+            gravity: Located { value: [0.0, 0.0, -9.81], place: element_source_position(root, cx) },
             gravitates: true,
             medium: Vec::new(),
             springs: true,
@@ -119,7 +119,7 @@ impl Settings {
     }
 
     fn read_compiler_settings(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
-        let word = |attribute: &str| node.attribute(attribute).map(str::trim);
+        let trimmed_attribute_word = |attribute: &str| node.attribute(attribute).map(str::trim);
         let mut unknown = |attribute: &str, expected: &str| {
             let value = node.attribute_node(attribute);
             let at = value.map_or(node.range().start, |value| value.range_value().start);
@@ -127,19 +127,21 @@ impl Settings {
             let message = format!("unknown `{attribute}` {found}");
             cx.report_error(&cx.source_position(at), message, |d| d.add_help(format!("expected {expected}")));
         };
-        match word("angle") {
+        match trimmed_attribute_word("angle") {
             Some("radian") => self.degrees = false,
             Some("degree") => self.degrees = true,
             Some(_) => unknown("angle", "`degree` or `radian`"),
             None => {}
         }
-        if word("coordinate").is_some_and(|word| word != "local") {
+        if trimmed_attribute_word("coordinate")
+            .is_some_and(|trimmed_attribute_word| trimmed_attribute_word != "local")
+        {
             unknown(
                 "coordinate",
                 "`local`: MuJoCo has no other since version 2.3.4; let an older one convert the file",
             );
         }
-        if let Some(order) = word("eulerseq") {
+        if let Some(order) = trimmed_attribute_word("eulerseq") {
             let mut axes = order.chars();
             match [axes.next(), axes.next(), axes.next(), axes.next()] {
                 [Some(a), Some(b), Some(c), None]
@@ -150,8 +152,8 @@ impl Settings {
                 _ => unknown("eulerseq", "three letters of `x`, `y`, `z`, capital about fixed axes"),
             }
         }
-        if let Some(word) = word("inertiafromgeom") {
-            match word {
+        if let Some(trimmed_attribute_word) = trimmed_attribute_word("inertiafromgeom") {
+            match trimmed_attribute_word {
                 "auto" => self.source = MassSource::Auto,
                 "true" => self.source = MassSource::Geometry,
                 "false" => self.source = MassSource::Inertial,
@@ -176,10 +178,12 @@ impl Settings {
             .map(|mass| mass.value)
             .or(self.total_mass)
             .filter(|mass| *mass > 0.0);
-        if let Some(folder) = word("assetdir").filter(|_| word("meshdir").is_none()) {
+        if let Some(folder) =
+            trimmed_attribute_word("assetdir").filter(|_| trimmed_attribute_word("meshdir").is_none())
+        {
             self.meshes = folder.to_string();
         }
-        if let Some(folder) = word("meshdir") {
+        if let Some(folder) = trimmed_attribute_word("meshdir") {
             self.meshes = folder.to_string();
         }
     }
@@ -197,7 +201,10 @@ impl Settings {
         }
         if let Some(found) = node.attribute_node("actuatorgroupdisable") {
             let place = cx.source_position(found.range_value().start);
-            let groups = found.value().split_ascii_whitespace().map(|word| word.parse::<u8>().ok());
+            let groups = found
+                .value()
+                .split_ascii_whitespace()
+                .map(|trimmed_attribute_word| trimmed_attribute_word.parse::<u8>().ok());
             match groups.map(|group| group.filter(|group| *group <= 30).map(f64::from)).collect() {
                 Some(groups) => self.disabled_groups = groups,
                 None => {
@@ -239,12 +246,12 @@ impl Settings {
     }
 
     /// Whether dry friction of joints and tendons acts.
-    pub(super) fn has_dry_friction(&self) -> bool {
+    pub(super) fn is_dry_friction_enabled(&self) -> bool {
         self.constraints && self.friction
     }
 
     /// Whether couplings and loop constraints act.
-    pub(super) fn has_equalities(&self) -> bool {
+    pub(super) fn are_equalities_enabled(&self) -> bool {
         self.constraints && self.equality
     }
 

@@ -7,7 +7,7 @@ use super::reader::MjcfReader;
 use super::spatial::BodyFrame;
 use crate::import::context::{Cx, quote_word};
 use crate::import::pose::{Vector, matrix_times_vector};
-use crate::syntax::{BinaryOp, DriveOn, Expr, ExprKind, GROUND, Name, Wrench};
+use crate::syntax::{BinaryOp, DriveTarget, Expr, ExprKind, GROUND, Name, Wrench};
 
 impl<'a> MjcfReader<'a> {
     /// Returns what an actuator on a site acts on, and whether its force is a torque. Without a reference
@@ -18,7 +18,7 @@ impl<'a> MjcfReader<'a> {
         element: &Element<'a>,
         servo: bool,
         cx: &mut Cx<'_>,
-    ) -> Option<(DriveOn, bool)> {
+    ) -> Option<(DriveTarget, bool)> {
         let spot = self.find_site(site, cx)?;
         let usual = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let [x, y, z, a, b, c] =
@@ -26,11 +26,11 @@ impl<'a> MjcfReader<'a> {
         let (force, torque) = ([x, y, z], [a, b, c]);
         let turns = force == [0.0; 3];
         let at = &site.place;
-        let Some(other) = element.name_of_attribute("refsite", cx) else {
+        let Some(other) = element.attribute_text_with_span("refsite", cx) else {
             let vector_in_body = |vector| matrix_times_vector(&spot.pose.axes, vector);
             let (force, torque) = (vector_in_body(force), vector_in_body(torque));
-            let wrench = Wrench { on: spot.position_of_spot(at), force, torque, against: None };
-            return Some((DriveOn::Wrench(wrench), turns));
+            let wrench = Wrench { on: spot.position_expression_of_spot(at), force, torque, against: None };
+            return Some((DriveTarget::Wrench(wrench), turns));
         };
         let against = self.find_site(&other, cx)?;
         if !self.is_ancestor_or_same(&against.body, &spot.body) {
@@ -51,21 +51,24 @@ impl<'a> MjcfReader<'a> {
         if torque == [0.0; 3] {
             let path = Expr::binary_operation(
                 BinaryOp::Div,
-                spot.position_of_spot(at),
-                against.position_of_spot(at),
+                spot.position_expression_of_spot(at),
+                against.position_expression_of_spot(at),
             );
-            let path = Expr::function_call_at("r", vec![path], at);
+            let path = Expr::function_call_expression("r", vec![path], at);
             return Some((
-                DriveOn::Length(Expr::function_call_at(
+                DriveTarget::Length(Expr::function_call_expression(
                     "dot",
-                    vec![path, against.vector_expression(force, at)],
+                    vec![path, against.body_axes_vector_expression(force, at)],
                     at,
                 )),
                 turns,
             ));
         }
-        let against = Some(against.position_of_spot(at));
-        Some((DriveOn::Wrench(Wrench { on: spot.position_of_spot(at), force, torque, against }), turns))
+        let against = Some(against.position_expression_of_spot(at));
+        Some((
+            DriveTarget::Wrench(Wrench { on: spot.position_expression_of_spot(at), force, torque, against }),
+            turns,
+        ))
     }
 
     /// Returns true if the bodies are equal or `carrier` is an ancestor of `carried`.
@@ -83,15 +86,15 @@ impl<'a> MjcfReader<'a> {
 
 impl BodyFrame {
     /// Returns the expression of a vector whose components are given in the axes of the body.
-    pub(super) fn vector_expression(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
-        let axis_expression = |k: usize| {
+    pub(super) fn body_axes_vector_expression(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
+        let axis_of_body_expression = |k: usize| {
             let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
             let name = Name { text: ["x", "y", "z"][k].to_string(), place: at.clone() };
             Expr { kind: ExprKind::Field(Box::new(body), name), place: at.clone() }
         };
         let terms = (0..3).filter(|k| vector[*k] != 0.0);
         let terms = terms.map(|k| {
-            Expr::binary_operation(BinaryOp::Mul, Expr::number_at(vector[k], at), axis_expression(k))
+            Expr::binary_operation(BinaryOp::Mul, Expr::number_at(vector[k], at), axis_of_body_expression(k))
         });
         terms
             .reduce(|a, b| Expr::binary_operation(BinaryOp::Add, a, b))

@@ -6,15 +6,17 @@
 //! in MuJoCo 4.0.
 
 use super::defaults::Element;
-use super::geometry::shape_dimensions;
+use super::geometry::shape_pose_and_dimensions;
 use super::reader::MjcfReader;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_position, quoted_tag, read_name_attribute,
+    Node, check_attributes, child_elements, element_source_position, quoted_tag, read_name_attribute,
     read_number_attribute,
 };
-use crate::import::pose::{FilePose, Vector, add, cross, dot, length, matrix_times_vector, scale_vector};
+use crate::import::pose::{
+    FilePose, Vector, add, cross, dot, length, matrix_times_vector, vector_times_scalar,
+};
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -28,7 +30,7 @@ pub(super) struct BodyFrame {
 
 /// Path of a tendon around a surface.
 #[derive(Clone, Copy, PartialEq)]
-enum CablePath {
+enum TendonPathAroundSurface {
     /// Shortest path of a tendon around a sphere.
     Ball,
     /// Shortest path of a tendon around a cylinder.
@@ -42,7 +44,7 @@ enum CablePath {
 struct WrappedSurface {
     frame: BodyFrame,
     radius: f64,
-    way: CablePath,
+    way: TendonPathAroundSurface,
 }
 
 /// Segment of a tendon path between two sites.
@@ -55,7 +57,7 @@ struct PathSegment {
 
 /// Error for an unsupported tendon path, reported only if something acts on the tendon.
 #[derive(Clone)]
-pub(super) struct Refusal {
+pub(super) struct ErrorTextWithHelp {
     pub(super) place: Place,
     pub(super) message: String,
 }
@@ -72,10 +74,14 @@ pub(super) type Poses = BTreeMap<String, FilePose>;
 impl<'a> MjcfReader<'a> {
     /// Reads the path of a tendon. The outer `None` means an error in the file, the inner `Err` an
     /// unsupported path.
-    pub(super) fn read_path(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Path, Refusal>> {
+    pub(super) fn read_path(
+        &self,
+        node: Node<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<Result<Path, ErrorTextWithHelp>> {
         let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<BodyFrame>, None, 1.0);
         let mut refused = None;
-        check_path_length(node, cx)?;
+        report_elements_without_length(node, cx)?;
         for child in child_elements(node) {
             match child.tag_name().name() {
                 "site" => {
@@ -88,9 +94,9 @@ impl<'a> MjcfReader<'a> {
                 "geom" => {
                     check_attributes(child, &["geom"], &["sidesite"], cx);
                     if last.is_none() || pending.is_some() {
-                        return report_unfinished_path(child, cx);
+                        return report_surface_without_end_site(child, cx);
                     }
-                    match self.wrapped_surface(child, cx)? {
+                    match self.surface_wrapped_by_path(child, cx)? {
                         Ok(around) => pending = Some(around),
                         Err(refusal) => refused = refused.or(Some(refusal)),
                     }
@@ -98,7 +104,7 @@ impl<'a> MjcfReader<'a> {
                 "pulley" => {
                     check_attributes(child, &["divisor"], &[], cx);
                     if pending.is_some() {
-                        return report_unfinished_path(child, cx);
+                        return report_surface_without_end_site(child, cx);
                     }
                     let divisor = read_number_attribute(child, "divisor", cx)?;
                     if divisor.value <= 0.0 {
@@ -113,7 +119,7 @@ impl<'a> MjcfReader<'a> {
                 _ => {
                     let message = format!("unknown element {}", quoted_tag(child));
                     let known = ["site", "geom", "pulley"];
-                    cx.report_error(&element_position(child, cx), message, |d| {
+                    cx.report_error(&element_source_position(child, cx), message, |d| {
                         d.suggest_name(child.tag_name().name(), known)
                     });
                     return None;
@@ -121,9 +127,9 @@ impl<'a> MjcfReader<'a> {
             }
         }
         if pending.is_some() {
-            return report_unfinished_path(node, cx);
+            return report_surface_without_end_site(node, cx);
         }
-        let mut path = Path { pieces, place: element_position(node, cx) };
+        let mut path = Path { pieces, place: element_source_position(node, cx) };
         for piece in &mut path.pieces {
             refused = refused.or(self.choose_wrapping_side(piece, &path.place));
         }
@@ -144,7 +150,11 @@ impl<'a> MjcfReader<'a> {
     /// Returns the surface that a segment of a path wraps around. For a cylinder with a `sidesite`,
     /// `Way::Turning` temporarily contains the polar angle of that site; `choose_side` replaces it by the
     /// direction.
-    fn wrapped_surface(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<WrappedSurface, Refusal>> {
+    fn surface_wrapped_by_path(
+        &self,
+        node: Node<'a>,
+        cx: &mut Cx<'_>,
+    ) -> Option<Result<WrappedSurface, ErrorTextWithHelp>> {
         let said = read_name_attribute(node, "geom", cx)?;
         let Some((body, shape, outer)) = self.named_shapes.get(&said.text) else {
             let known = self.named_shapes.keys().map(String::as_str);
@@ -161,17 +171,21 @@ impl<'a> MjcfReader<'a> {
             cx.report_error(&said.place, message, |d| d);
             return None;
         }
-        let (pose, [radius, ..]) = shape_dimensions(kind, shape, &self.settings, cx)?;
+        let (pose, [radius, ..]) = shape_pose_and_dimensions(kind, shape, &self.settings, cx)?;
         let frame = BodyFrame { body: body.clone(), pose: outer.compose_with(&pose) };
         let Some(side) =
             node.has_attribute("sidesite").then(|| read_name_attribute(node, "sidesite", cx)).flatten()
         else {
-            let way = if kind == "sphere" { CablePath::Ball } else { CablePath::Shorter };
+            let way = if kind == "sphere" {
+                TendonPathAroundSurface::Ball
+            } else {
+                TendonPathAroundSurface::Shorter
+            };
             return Some(Ok(WrappedSurface { frame, radius, way }));
         };
         let spot = self.find_site(&side, cx)?;
         let refusal_at_side_site =
-            |message: String| Some(Err(Refusal { place: side.place.clone(), message }));
+            |message: String| Some(Err(ErrorTextWithHelp { place: side.place.clone(), message }));
         if kind == "sphere" {
             return refusal_at_side_site(format!(
                 "the side on which a tendon passes the sphere {}",
@@ -186,7 +200,7 @@ impl<'a> MjcfReader<'a> {
             ));
         }
         // Polar angle of the side, until the ends of the segment are known.
-        Some(Ok(WrappedSurface { frame, radius, way: CablePath::Turning(libm::atan2(y, x)) }))
+        Some(Ok(WrappedSurface { frame, radius, way: TendonPathAroundSurface::Turning(libm::atan2(y, x)) }))
     }
 
     /// Returns the position of a spot relative to a frame, in the configuration of the file.
@@ -196,19 +210,21 @@ impl<'a> MjcfReader<'a> {
 
     /// Determines the direction in which a segment passes a cylinder with a `sidesite`: the direction of
     /// rotation of the path through that site.
-    fn choose_wrapping_side(&self, piece: &mut PathSegment, place: &Place) -> Option<Refusal> {
-        let Some(WrappedSurface { frame, radius, way: CablePath::Turning(side) }) = &mut piece.around else {
+    fn choose_wrapping_side(&self, piece: &mut PathSegment, place: &Place) -> Option<ErrorTextWithHelp> {
+        let Some(WrappedSurface { frame, radius, way: TendonPathAroundSurface::Turning(side) }) =
+            &mut piece.around
+        else {
             return None;
         };
         let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.position_relative_to(frame, end));
         let [far_a, far_b] = [a, b].map(|[x, y, _]| libm::hypot(x, y));
         if far_a < *radius || far_b < *radius {
             let message = "a tendon that begins inside of a cylinder in the pose of the file".to_string();
-            return Some(Refusal { place: place.clone(), message });
+            return Some(ErrorTextWithHelp { place: place.clone(), message });
         }
         let angle = |[x, y, _]: Vector| libm::atan2(y, x);
-        let wrapped_angle = |angle: f64| libm::atan2(libm::sin(angle), libm::cos(angle));
-        let winding = wrapped_angle(*side - angle(a)) + wrapped_angle(angle(b) - *side);
+        let angle_within_half_turn = |angle: f64| libm::atan2(libm::sin(angle), libm::cos(angle));
+        let winding = angle_within_half_turn(*side - angle(a)) + angle_within_half_turn(angle(b) - *side);
         *side = if winding >= 0.0 { 1.0 } else { -1.0 };
         None
     }
@@ -233,7 +249,7 @@ fn position_in_frame(poses: &Poses, frame: &BodyFrame, spot: &BodyFrame) -> Vect
 
 /// Reports elements that add no length to a tendon path, as MuJoCo does: sites without a neighbour, pulleys
 /// without a following site, and paths without elements.
-fn check_path_length(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
+fn report_elements_without_length(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
     let parts: Vec<Node<'_>> = child_elements(node).collect();
     let is_end_of_path = |part: Option<&Node<'_>>| part.is_none_or(|part| part.tag_name().name() == "pulley");
     let is_isolated_site = |k: &usize| match parts[*k].tag_name().name() {
@@ -246,17 +262,19 @@ fn check_path_length(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
     let found = (0..parts.len()).find(is_isolated_site).map(|k| parts[k]);
     let Some(found) = found.or(parts.is_empty().then_some(node)) else { return Some(()) };
     let message = format!("{} adds nothing to the length of the tendon", quoted_tag(found));
-    cx.report_error(&element_position(found, cx), message, |d| {
+    cx.report_error(&element_source_position(found, cx), message, |d| {
         d.add_help("a tendon and each part behind a pulley has two sites")
     });
     None
 }
 
 /// Reports a surface in a path that is not between two sites.
-fn report_unfinished_path<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
-    cx.report_error(&element_position(node, cx), "a tendon runs around a shape between two sites", |d| {
-        d.add_help("write `<site/>`, `<geom/>`, `<site/>`")
-    });
+fn report_surface_without_end_site<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
+    cx.report_error(
+        &element_source_position(node, cx),
+        "a tendon runs around a shape between two sites",
+        |d| d.add_help("write `<site/>`, `<geom/>`, `<site/>`"),
+    );
     None
 }
 
@@ -270,12 +288,12 @@ impl Path {
     pub(super) fn path_length(&self) -> Expr {
         let at = &self.place;
         let sum = self.pieces.iter().map(|piece| {
-            let whole = piece.length_of_piece(at);
-            let share_literal = || Expr::number_at(piece.share, at);
+            let whole = piece.length_of_path_segment(at);
+            let share_factor_expression = || Expr::number_at(piece.share, at);
             if piece.share == 1.0 {
                 whole
             } else {
-                Expr::binary_operation(BinaryOp::Mul, share_literal(), whole)
+                Expr::binary_operation(BinaryOp::Mul, share_factor_expression(), whole)
             }
         });
         sum.reduce(|a, b| Expr::binary_operation(BinaryOp::Add, a, b))
@@ -292,27 +310,27 @@ impl PathSegment {
         }
     }
 
-    fn length_of_piece(&self, at: &Place) -> Expr {
-        let [a, b] = [&self.ends[0], &self.ends[1]].map(|end| end.position_of_spot(at));
-        let relative_ends = || Expr::binary_operation(BinaryOp::Div, a.clone(), b.clone());
+    fn length_of_path_segment(&self, at: &Place) -> Expr {
+        let [a, b] = [&self.ends[0], &self.ends[1]].map(|end| end.position_expression_of_spot(at));
+        let vector_between_ends = || Expr::binary_operation(BinaryOp::Div, a.clone(), b.clone());
         let Some(around) = &self.around else {
-            return Expr::function_call_at(
+            return Expr::function_call_expression(
                 "norm",
-                vec![Expr::function_call_at("r", vec![relative_ends()], at)],
+                vec![Expr::function_call_expression("r", vec![vector_between_ends()], at)],
                 at,
             );
         };
         let cable_call = |word: &str, mut arguments: Vec<Expr>| {
             arguments.insert(0, Expr::number_at(around.radius, at));
-            let surface = Expr::method_call(around.frame.position_of_spot(at), word, arguments);
-            Expr::function_call_at("cable", vec![relative_ends(), surface], at)
+            let surface = Expr::method_call(around.frame.position_expression_of_spot(at), word, arguments);
+            Expr::function_call_expression("cable", vec![vector_between_ends(), surface], at)
         };
         let axis_vector =
             |sign: f64| Expr::vector_at(matrix_times_vector(&around.frame.pose.axes, [0.0, 0.0, sign]), at);
         match around.way {
-            CablePath::Ball => cable_call("sphere", Vec::new()),
-            CablePath::Turning(sign) => cable_call("cylinder", vec![axis_vector(sign)]),
-            CablePath::Shorter => Expr::function_call_at(
+            TendonPathAroundSurface::Ball => cable_call("sphere", Vec::new()),
+            TendonPathAroundSurface::Turning(sign) => cable_call("cylinder", vec![axis_vector(sign)]),
+            TendonPathAroundSurface::Shorter => Expr::function_call_expression(
                 "min",
                 [1.0, -1.0].map(|sign| cable_call("cylinder", vec![axis_vector(sign)])).into(),
                 at,
@@ -326,28 +344,30 @@ impl WrappedSurface {
     /// counterpart of `Scope::cable`.
     fn length(&self, [a, b]: [Vector; 2]) -> f64 {
         let planar_components = |[x, y, _]: Vector| [x, y, 0.0];
-        let length_around = |a: Vector, b: Vector, angle: f64| {
+        let wrapped_path_length = |a: Vector, b: Vector, angle: f64| {
             let tangents = [a, b].map(|p| (dot(p, p) - self.radius * self.radius).max(0.0).sqrt());
             let touched = tangents.iter().fold(angle, |angle, t| angle - libm::atan2(*t, self.radius));
-            let straight = length(add(a, scale_vector(b, -1.0)));
+            let straight = length(add(a, vector_times_scalar(b, -1.0)));
             if touched > 0.0 { tangents[0] + tangents[1] + self.radius * touched } else { straight }
         };
         let length_of_turn = |sign: f64| {
             let angle =
                 libm::atan2(-sign * cross(a, b)[2], -dot(planar_components(a), planar_components(b))) + PI;
-            libm::hypot(length_around(planar_components(a), planar_components(b), angle), a[2] - b[2])
+            libm::hypot(wrapped_path_length(planar_components(a), planar_components(b), angle), a[2] - b[2])
         };
         match self.way {
-            CablePath::Ball => length_around(a, b, libm::atan2(length(cross(a, b)), dot(a, b))),
-            CablePath::Turning(sign) => length_of_turn(sign),
-            CablePath::Shorter => length_of_turn(1.0).min(length_of_turn(-1.0)),
+            TendonPathAroundSurface::Ball => {
+                wrapped_path_length(a, b, libm::atan2(length(cross(a, b)), dot(a, b)))
+            }
+            TendonPathAroundSurface::Turning(sign) => length_of_turn(sign),
+            TendonPathAroundSurface::Shorter => length_of_turn(1.0).min(length_of_turn(-1.0)),
         }
     }
 }
 
 impl BodyFrame {
     /// Returns the expression `body.at(vector)`.
-    pub(super) fn position_of_spot(&self, at: &Place) -> Expr {
+    pub(super) fn position_expression_of_spot(&self, at: &Place) -> Expr {
         let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
         if self.pose.at == [0.0; 3] {
             return body;

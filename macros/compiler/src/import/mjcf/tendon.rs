@@ -3,20 +3,20 @@
 use super::defaults::{Element, numbers_with_defaults};
 use super::joint::{IGNORE_PASSIVE, report_spring_yield};
 use super::reader::MjcfReader;
-use super::spatial::Refusal;
+use super::spatial::ErrorTextWithHelp;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_position, quoted_tag, read_name_attribute,
+    Node, check_attributes, child_elements, element_source_position, quoted_tag, read_name_attribute,
     read_number_attribute,
 };
 use crate::import::robot::has_coordinate;
-use crate::syntax::{Drive, DriveLaw, DriveOn, Name};
+use crate::syntax::{Drive, DriveLaw, DriveTarget, Name};
 use std::collections::BTreeSet;
 
 /// Tendon of an MJCF file. An unsupported spatial tendon is an error only if something acts on it.
 pub(super) struct Tendon {
     pub(super) name: Name,
-    path: Result<DriveOn, Refusal>,
+    path: Result<DriveTarget, ErrorTextWithHelp>,
 }
 
 impl Tendon {
@@ -39,7 +39,7 @@ impl Tendon {
         cx: &mut Cx<'_>,
     ) -> Option<Vec<(Name, f64)>> {
         match &Tendon::find_tendon(name, tendons, cx)?.path {
-            Ok(DriveOn::Sum(terms)) => Some(terms.clone()),
+            Ok(DriveTarget::Sum(terms)) => Some(terms.clone()),
             _ => {
                 let message = format!("tendon {} is spatial and cannot be coupled", quote_word(&name.text));
                 cx.report_error(&name.place, message, |d| d.add_help(help));
@@ -49,22 +49,22 @@ impl Tendon {
     }
 
     /// Returns the coordinate or length that forces on a tendon act on.
-    pub(super) fn drive_target(
+    pub(super) fn tendon_drive_target(
         name: &Name,
         tendons: &[Tendon],
         help: &'static str,
         cx: &mut Cx<'_>,
-    ) -> Option<DriveOn> {
-        target_or_refusal(&Tendon::find_tendon(name, tendons, cx)?.path, help, cx).cloned()
+    ) -> Option<DriveTarget> {
+        target_or_reported_error(&Tendon::find_tendon(name, tendons, cx)?.path, help, cx).cloned()
     }
 }
 
 /// Returns the coordinate or length that forces on a tendon act on, or reports an unsupported path.
-fn target_or_refusal<'t>(
-    path: &'t Result<DriveOn, Refusal>,
+fn target_or_reported_error<'t>(
+    path: &'t Result<DriveTarget, ErrorTextWithHelp>,
     help: &'static str,
     cx: &mut Cx<'_>,
-) -> Option<&'t DriveOn> {
+) -> Option<&'t DriveTarget> {
     match path {
         Ok(on) => Some(on),
         Err(refusal) => {
@@ -93,17 +93,17 @@ impl<'a> MjcfReader<'a> {
         };
         let element = self.defaults.element_with_defaults(node, &["tendon"], 0, cx);
         let said = node.has_attribute("name").then(|| read_name_attribute(node, "name", cx)).flatten();
-        let named =
-            said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: element_position(node, cx) });
+        let named = said
+            .unwrap_or_else(|| Name { text: "tendon".to_string(), place: element_source_position(node, cx) });
         let (path, rest) = if fixed {
-            let terms = self.read_terms(node, cx);
-            let rest_position = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
-            let rest = terms.iter().map(|(joint, weight)| weight * rest_position(joint)).sum();
-            (Ok(DriveOn::Sum(terms)), rest)
+            let terms = self.read_tendon_terms(node, cx);
+            let rest_coordinate_of_joint = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
+            let rest = terms.iter().map(|(joint, weight)| weight * rest_coordinate_of_joint(joint)).sum();
+            (Ok(DriveTarget::Sum(terms)), rest)
         } else {
             let path = self.read_path(node, cx)?;
-            let rest = path.as_ref().map_or(0.0, |path| path.length(&self.poses_at_rest()));
-            (path.map(|path| DriveOn::Length(path.path_length())), rest)
+            let rest = path.as_ref().map_or(0.0, |path| path.length(&self.poses_with_relaxed_springs()));
+            (path.map(|path| DriveTarget::Length(path.path_length())), rest)
         };
         for (limited, range, what) in
             [("limited", "range", "limits"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
@@ -113,7 +113,7 @@ impl<'a> MjcfReader<'a> {
             }
         }
         let mut laws = Vec::new();
-        if let Some(found) = element.nonzero_number("armature", cx) {
+        if let Some(found) = element.nonzero_attribute_number("armature", cx) {
             if found.value < 0.0 {
                 cx.report_error(&found.place, format!("negative armature `{}`", found.value), |d| d);
             }
@@ -121,19 +121,19 @@ impl<'a> MjcfReader<'a> {
         }
         if self.springs {
             report_spring_yield(&element, cx);
-            let stiffness = element.polynomial_coefficients("stiffness", cx);
+            let stiffness = element.polynomial_force_coefficients("stiffness", cx);
             laws.extend(stiffness.map(|k| (read_tendon_spring(k.value, &element, rest, cx), IGNORE_PASSIVE)));
         }
         if self.dampers {
-            let damping = element.polynomial_coefficients("damping", cx);
+            let damping = element.polynomial_force_coefficients("damping", cx);
             laws.extend(damping.map(|found| (DriveLaw::damper(found.value), IGNORE_PASSIVE)));
         }
         if self.friction {
-            let loss = element.nonzero_number("frictionloss", cx);
+            let loss = element.nonzero_attribute_number("frictionloss", cx);
             laws.extend(loss.map(|found| (DriveLaw::Friction(found.value), IGNORE_PASSIVE)));
         }
         if let Some((_, help)) = laws.first()
-            && let Some(on) = target_or_refusal(&path, help, cx)
+            && let Some(on) = target_or_reported_error(&path, help, cx)
         {
             let drive_on_tendon = |law| Drive { name: named.clone(), on: on.clone(), law };
             self.robot.drives.extend(laws.iter().map(|(law, _)| drive_on_tendon(law.clone())));
@@ -141,18 +141,18 @@ impl<'a> MjcfReader<'a> {
         Some(Tendon { name: named, path })
     }
 
-    fn read_terms(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Vec<(Name, f64)> {
+    fn read_tendon_terms(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Vec<(Name, f64)> {
         let (mut terms, mut known) = (Vec::new(), BTreeSet::new());
         if child_elements(node).next().is_none() {
             let message = format!("{} without a joint", quoted_tag(node));
-            cx.report_error(&element_position(node, cx), message, |d| {
+            cx.report_error(&element_source_position(node, cx), message, |d| {
                 d.add_help("expected `<joint joint=\"…\" coef=\"…\"/>`")
             });
         }
         for child in child_elements(node) {
             check_attributes(child, &["joint", "coef"], &[], cx);
             let joint = read_name_attribute(child, "joint", cx)
-                .filter(|joint| self.check_coupled_joint(joint, "pull on", cx));
+                .filter(|joint| self.check_single_coordinate_joint(joint, "pull on", cx));
             if let Some(joint) = &joint
                 && !known.insert(joint.text.clone())
             {
@@ -167,7 +167,7 @@ impl<'a> MjcfReader<'a> {
 
     /// Returns true for a joint with exactly one coordinate; reports unknown joints and joints of other
     /// types.
-    pub(super) fn check_coupled_joint(&self, joint: &Name, verb: &str, cx: &mut Cx<'_>) -> bool {
+    pub(super) fn check_single_coordinate_joint(&self, joint: &Name, verb: &str, cx: &mut Cx<'_>) -> bool {
         let Some(found) = self.robot.joints.iter().find(|known| known.name.text == joint.text) else {
             let known = self.robot.joints.iter().filter(|joint| has_coordinate(joint.kind));
             let known: Vec<&str> = known.map(|joint| joint.name.text.as_str()).collect();

@@ -1,10 +1,10 @@
 //! Geometry → shapes to draw. They appear in no equation, so unsupported shapes are skipped without an error.
 
-use super::body::Shaped;
+use super::body::ElementWithPose;
 use super::defaults::Element;
 use super::reader::{MjcfReader, origin_of_pose};
 use crate::import::context::Cx;
-use crate::import::element::element_position;
+use crate::import::element::element_source_position;
 use crate::import::pose::FilePose;
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Shape};
@@ -12,20 +12,20 @@ use crate::syntax::{Mesh, Shape};
 impl<'a> MjcfReader<'a> {
     /// Adds the shapes of a link that are drawn: shapes without contact, which files contain for this
     /// purpose, or else all shapes.
-    pub(super) fn add_visual_shapes(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
+    pub(super) fn add_visual_shapes(&mut self, link: usize, shapes: &[ElementWithPose<'a>], cx: &mut Cx<'_>) {
         if !self.options.visuals {
             return;
         }
         let mut touches = |shape: &Element<'a>| {
             let mut bits =
-                |attribute: &str| shape.finite_number(attribute, cx).map_or(1.0, |bits| bits.value);
+                |attribute: &str| shape.read_finite_attribute(attribute, cx).map_or(1.0, |bits| bits.value);
             bits("contype") != 0.0 || bits("conaffinity") != 0.0
         };
-        let seen: Vec<&Shaped<'a>> = shapes.iter().filter(|(shape, _)| !touches(shape)).collect();
+        let seen: Vec<&ElementWithPose<'a>> = shapes.iter().filter(|(shape, _)| !touches(shape)).collect();
         let seen = if seen.is_empty() { shapes.iter().collect() } else { seen };
         for (shape, outer) in seen {
             let Some((kind, mesh, pose)) = self.visual_shape(shape, cx) else { continue };
-            let at = element_position(shape.node, cx);
+            let at = element_source_position(shape.node, cx);
             let part =
                 FileVisual { origin: origin_of_pose(&outer.compose_with(&pose), &at), shape: kind, mesh };
             self.robot.visuals.push((link, part));

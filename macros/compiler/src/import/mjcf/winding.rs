@@ -5,10 +5,14 @@ use crate::import::context::Cx;
 use crate::import::element::{Node, read_number_attribute};
 
 /// Parameters of an actuator's dynamics, gain and bias in MuJoCo's order.
-type Parameters = [[f64; 10]; 3];
+type ActuatorParameters = [[f64; 10]; 3];
 
 /// Returns the parameters of a DC motor. `usual` are the parameters of its defaults.
-pub(super) fn motor_parameters(usual: Parameters, node: Node<'_>, cx: &mut Cx<'_>) -> Parameters {
+pub(super) fn motor_parameters(
+    usual: ActuatorParameters,
+    node: Node<'_>,
+    cx: &mut Cx<'_>,
+) -> ActuatorParameters {
     let [mut dynprm, mut gain, mut bias] = usual;
     macro_rules! read {
         ($attribute:literal, $usual:expr) => {{
@@ -20,7 +24,7 @@ pub(super) fn motor_parameters(usual: Parameters, node: Node<'_>, cx: &mut Cx<'_
     let resistance = read_number_attribute(node, "resistance", cx).map_or(gain[0], |found| found.value);
     let nominal = read!("nominal", [0.0; 3]);
     let friction = read!("damping", [0.0; 3])[0];
-    [gain[0], gain[1]] = winding_constants([torque, emf], resistance, nominal, friction);
+    [gain[0], gain[1]] = motor_resistance_and_constant([torque, emf], resistance, nominal, friction);
     let controller = read!("controller", [gain[4], gain[5], gain[6], dynprm[7], dynprm[8], gain[7]]);
     [gain[4], gain[5], gain[6], dynprm[7], dynprm[8], gain[7]] = controller;
     let [_, _, current_rate] = read!("saturation", [0.0, 0.0, dynprm[1]]);
@@ -42,7 +46,7 @@ pub(super) fn motor_parameters(usual: Parameters, node: Node<'_>, cx: &mut Cx<'_
 
 /// Returns resistance and motor constant from those of the file, nominal voltage, stall torque and
 /// no-load speed.
-fn winding_constants(
+fn motor_resistance_and_constant(
     [torque, mut emf]: [f64; 2],
     resistance: f64,
     nominal: [f64; 3],

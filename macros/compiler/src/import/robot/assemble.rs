@@ -9,9 +9,9 @@ use super::names::unused_name;
 use super::parts::Robot;
 use super::tree::JointOrder;
 use crate::import::context::{Cx, quote_word};
-use crate::import::imported::Imported;
+use crate::import::imported::ImportedMechanism;
 use crate::syntax::{
-    Base, Body, Endpoint, Expr, FileOptions, GROUND, InputOption, Joint, JointKind, LimitOption, Name,
+    Base, Body, Endpoint, Expr, FileInputSource, FileOptions, GROUND, Joint, JointKind, LimitOption, Name,
     ROOT_JOINT,
 };
 
@@ -22,15 +22,17 @@ pub(in crate::import) fn assemble_mechanism(
     motions: Vec<JointMotion>,
     options: &FileOptions,
     cx: &mut Cx<'_>,
-) -> Imported {
+) -> ImportedMechanism {
     let is_ground = robot.links[order.root].name.text == GROUND;
     let collisions = robot
         .collisions
         .iter()
-        .filter_map(|(link, part)| Some(part.attached_to(&robot.links.get(*link)?.name)));
+        .filter_map(|(link, part)| Some(part.part_on_link(&robot.links.get(*link)?.name)));
     let collisions = collisions.collect();
-    let visuals =
-        robot.visuals.iter().filter_map(|(link, part)| Some(part.attached_to(&robot.links.get(*link)?.name)));
+    let visuals = robot
+        .visuals
+        .iter()
+        .filter_map(|(link, part)| Some(part.part_on_link(&robot.links.get(*link)?.name)));
     let visuals = visuals.collect();
     let root = root_joint(&robot, order.root, options.base);
     let mut links: Vec<Option<Body>> = robot.links.into_iter().map(Some).collect();
@@ -38,8 +40,8 @@ pub(in crate::import) fn assemble_mechanism(
         robot.joints.into_iter().zip(motions).map(Some).collect();
     let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
     let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
-    let drives = drives::resolve_drives(robot.drives, &given);
-    let constraints = couplings::resolve_constraints(robot.constraints, &given, cx);
+    let drives = drives::drives_of_moving_joints(robot.drives, &given);
+    let constraints = couplings::constraints_on_moving_joints(robot.constraints, &given, cx);
     let (mut limits, stops) = (Vec::new(), options.limits == LimitOption::Stops);
     let mut left_out = robot.left_out;
     for (joint, child) in &order.joints {
@@ -51,8 +53,8 @@ pub(in crate::import) fn assemble_mechanism(
         }
         limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
             JointMotion::Frozen(_) => None,
-            JointMotion::Own => joint.limits.limit_of_joint(&joint.name, false, stops),
-            JointMotion::Follows(_) => joint.limits.limit_of_joint(&joint.name, true, stops),
+            JointMotion::Own => joint.limits.convert_joint_limits(&joint.name, false, stops),
+            JointMotion::Follows(_) => joint.limits.convert_joint_limits(&joint.name, true, stops),
         }));
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
@@ -68,7 +70,7 @@ pub(in crate::import) fn assemble_mechanism(
     // The order has all of them.
     links.iter().flatten().for_each(|link| cx.report_lost_element(&link.name));
     given.iter().flatten().for_each(|(joint, _)| cx.report_lost_element(&joint.name));
-    Imported {
+    ImportedMechanism {
         bodies,
         joints,
         drives,
@@ -94,16 +96,16 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     let names_in_robot =
         || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
     let text = unused_name(ROOT_JOINT, |text| names_in_robot().any(|name| name == text));
-    let name_at_link = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
+    let name_with_link_span = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
     let kind = match base {
         Base::Fixed => JointKind::Weld,
         Base::Free => JointKind::Free,
     };
-    let mut ground = endpoint_at_origin(name_at_link(GROUND));
+    let mut ground = endpoint_at_origin(name_with_link_span(GROUND));
     if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
         (ground.at, ground.rotated) = (origin.nonzero_position(), origin.nonzero_rotations());
     }
-    plain_joint(name_at_link(&text), kind, ground, endpoint_at_origin(link.clone()))
+    plain_joint(name_with_link_span(&text), kind, ground, endpoint_at_origin(link.clone()))
 }
 
 /// Returns an endpoint at the origin of a body.
@@ -153,21 +155,21 @@ fn endpoint_of_parent(given: &FileJoint) -> Endpoint {
 fn build_joint(given: FileJoint, motion: JointMotion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {
     if let JointMotion::Frozen(coordinate) = motion {
         let mut parent = endpoint_of_parent(&given);
-        move_end(&mut parent, &given, coordinate, cx);
+        move_parent_endpoint(&mut parent, &given, coordinate, cx);
         let child = endpoint_of_child(given.anchor, &given);
         return plain_joint(given.name, JointKind::Weld, parent, child);
     }
     let alone = given.has_coordinate();
-    let mut joint = converted_joint(given);
+    let mut joint = convert_file_joint(given);
     match motion {
         JointMotion::Follows(mimic) => joint.mimic = Some(mimic),
-        _ => joint.driven = options.inputs == InputOption::Joints && alone,
+        _ => joint.driven = options.inputs == FileInputSource::Joints && alone,
     }
     joint
 }
 
 /// Converts a joint with its endpoints, axis, lead, damping and friction.
-pub(in crate::import) fn converted_joint(given: FileJoint) -> Joint {
+pub(in crate::import) fn convert_file_joint(given: FileJoint) -> Joint {
     let (parent, child) = (endpoint_of_parent(&given), endpoint_of_child(given.anchor, &given));
     let has_axis = given.has_axis();
     let mut joint = plain_joint(given.name, given.kind, parent, child);
@@ -185,7 +187,7 @@ pub(in crate::import) fn converted_joint(given: FileJoint) -> Joint {
 }
 
 /// Moves the parent's endpoint of a locked joint by the joint's displacement at `coordinate`.
-fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<'_>) {
+fn move_parent_endpoint(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<'_>) {
     if coordinate == 0.0 {
         return;
     }
@@ -216,10 +218,10 @@ fn rotation_about_axis(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
         [0.0, 0.0, s] => ("z", s),
         _ => {
             let arguments = vec![Expr::vector_at(axis, place), Expr::number_at(angle, place)];
-            return Expr::function_call_at("eigenaxis", arguments, place);
+            return Expr::function_call_expression("eigenaxis", arguments, place);
         }
     };
-    Expr::function_call_at(word, vec![Expr::number_at(sign * angle, place)], place)
+    Expr::function_call_expression(word, vec![Expr::number_at(sign * angle, place)], place)
 }
 
 /// Normalises a vector. Scaling by the largest component first prevents overflow and underflow of the

@@ -1,6 +1,6 @@
 //! Detection of joints that close kinematic loops.
 
-use super::assemble::converted_joint;
+use super::assemble::convert_file_joint;
 use super::joint::FileJoint;
 use super::parts::Robot;
 use crate::import::context::{Cx, quote_word};
@@ -12,8 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 ///
 /// Loop-closing joints have no coordinates, so nothing can act on one: drives, damping, friction and `mimic`
 /// of such joints are reported.
-pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
-    for joint in take_closing(robot) {
+pub(in crate::import) fn separate_loop_closing_joints(robot: &mut Robot, cx: &mut Cx<'_>) {
+    for joint in take_loop_closing_joints(robot) {
         let driven = robot.drives.iter().any(|drive| drive.name.text == joint.name.text);
         if driven || joint.damping.is_some() || joint.friction.is_some() || joint.mimic.is_some() {
             let message = format!(
@@ -28,13 +28,13 @@ pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
         if joint.limits.has_limits() {
             robot.left_out.push(format!("limits of {}, which closes a loop", joint.name.text));
         }
-        robot.closing.push(converted_joint(joint));
+        robot.closing.push(convert_file_joint(joint));
     }
 }
 
 /// Removes the joints that close loops, and lists them among what the mechanism does not represent.
-pub(in crate::import) fn open_loops(robot: &mut Robot) {
-    for joint in take_closing(robot) {
+pub(in crate::import) fn remove_loop_closing_joints(robot: &mut Robot) {
+    for joint in take_loop_closing_joints(robot) {
         robot.left_out.push(format!("joint {}, which closes a loop", joint.name.text));
     }
 }
@@ -53,7 +53,7 @@ const CLOSE: &str = "to close it, write `#[mechanism(…, loops = close)]`";
 const OPEN: &str = "to leave it open, write `#[mechanism(…, loops = ignore)]`";
 
 /// Removes the joints that close loops from the tree and returns them.
-fn take_closing(robot: &mut Robot) -> Vec<FileJoint> {
+fn take_loop_closing_joints(robot: &mut Robot) -> Vec<FileJoint> {
     let chosen = loop_closing_joints(robot);
     let joints = std::mem::take(&mut robot.joints).into_iter().enumerate();
     let (closing, tree): (Vec<_>, Vec<_>) = joints.partition(|(k, _)| chosen.contains(k));

@@ -5,7 +5,7 @@ use crate::diag::Place;
 use crate::syntax::{Collision, Endpoint, MeshVertices, Name, Shape};
 
 /// Collision shape of a link.
-pub(in crate::import) struct FileCollision {
+pub(in crate::import) struct FileCollisionShape {
     /// Pose of the collision shape's centre relative to the link.
     pub(in crate::import) origin: FileOrigin,
     /// Shape of the collision geometry with its lengths, m.
@@ -16,9 +16,9 @@ pub(in crate::import) struct FileCollision {
     pub(in crate::import) place: Place,
 }
 
-impl FileCollision {
+impl FileCollisionShape {
     /// Converts the shape to collision geometry of the link with this name.
-    pub(in crate::import) fn attached_to(&self, link: &Name) -> Collision {
+    pub(in crate::import) fn part_on_link(&self, link: &Name) -> Collision {
         let (at, rotated) = (self.origin.nonzero_position(), self.origin.nonzero_rotations());
         let on = Endpoint { body: link.clone(), at, rotated };
         let (shape, mesh) = (self.shape, self.mesh.clone());

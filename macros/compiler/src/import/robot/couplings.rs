@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Returns the constraints on moving joints. A constraint on locked joints alone is dropped if it is
 /// satisfied and reported otherwise.
-pub(in crate::import) fn resolve_constraints(
+pub(in crate::import) fn constraints_on_moving_joints(
     constraints: Vec<Constraint>,
     joints: &[Option<(FileJoint, JointMotion)>],
     cx: &mut Cx<'_>,

@@ -3,12 +3,15 @@
 
 use super::joint::FileJoint;
 use super::motion::{JointMotion, locked_coordinates};
-use crate::syntax::{Drive, DriveLaw, DriveOn};
+use crate::syntax::{Drive, DriveLaw, DriveTarget};
 use std::collections::BTreeMap;
 
 /// Returns the elements that act on at least one moving joint. Inputs without a joint are preserved, because
 /// callers rely on the input's index.
-pub(super) fn resolve_drives(drives: Vec<Drive>, joints: &[Option<(FileJoint, JointMotion)>]) -> Vec<Drive> {
+pub(super) fn drives_of_moving_joints(
+    drives: Vec<Drive>,
+    joints: &[Option<(FileJoint, JointMotion)>],
+) -> Vec<Drive> {
     let frozen = locked_coordinates(joints);
     drives.into_iter().filter_map(|drive| without_locked_joints(drive, &frozen)).collect()
 }
@@ -16,7 +19,7 @@ pub(super) fn resolve_drives(drives: Vec<Drive>, joints: &[Option<(FileJoint, Jo
 /// Returns the element without the locked joints. Their contributions are subtracted from free lengths and
 /// ranges.
 fn without_locked_joints(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Drive> {
-    let DriveOn::Sum(terms) = &mut drive.on else { return Some(drive) };
+    let DriveTarget::Sum(terms) = &mut drive.on else { return Some(drive) };
     let mut offset = 0.0;
     terms.retain(|(joint, weight)| match frozen.get(joint.text.as_str()) {
         Some(at) => {

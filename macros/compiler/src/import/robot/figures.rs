@@ -4,7 +4,7 @@
 use super::names::unused_name;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
-use crate::import::imported::Imported;
+use crate::import::imported::ImportedMechanism;
 use crate::import::pose::{
     IDENTITY, Matrix, Vector, axis_rotation, matrix_product, roll_pitch_yaw, transpose,
 };
@@ -16,17 +16,17 @@ use crate::syntax::{Body, Expr, ExprKind, FileOptions, Joint, JointKind, Name};
 /// Creates the fields of all requested values. `standing` are the names of links that are fixed to the
 /// ground, whose mass properties appear in no equation.
 pub(in crate::import) fn make_value_fields(
-    imported: &mut Imported,
+    imported: &mut ImportedMechanism,
     standing: &[String],
     options: &FileOptions,
     cx: &mut Cx<'_>,
 ) {
-    let Imported { bodies, joints, fields, .. } = imported;
+    let ImportedMechanism { bodies, joints, fields, .. } = imported;
     for figures in &options.parameters {
         if figures.word.text == INERTIAL {
-            add_inertial_fields(bodies, standing, figures, (fields, options.format.body_term()), cx);
+            add_inertial_fields(bodies, standing, figures, (fields, options.format.word_for_body()), cx);
         } else {
-            make_joint_fields(joints, figures, (fields, options.format.body_term()), cx);
+            add_joint_fields(joints, figures, (fields, options.format.word_for_body()), cx);
         }
     }
 }
@@ -40,7 +40,7 @@ fn add_inertial_fields(
 ) {
     let is_fixed_to_ground = |body: &Body| standing.contains(&body.name.text);
     let names: Vec<String> = bodies.iter().map(|body| body.name.text.clone()).collect();
-    let chosen = requested_names(figures, &names, link, cx);
+    let chosen = requested_link_or_joint_names(figures, &names, link, cx);
     let mut found = false;
     for body in bodies {
         let Some(name) = chosen.iter().find(|name| name.text == body.name.text) else { continue };
@@ -88,7 +88,7 @@ fn add_inertial_fields(
     }
 }
 
-fn make_joint_fields(
+fn add_joint_fields(
     joints: &mut [Joint],
     figures: &FileParameters,
     (fields, link): (&mut Vec<FileField>, &str),
@@ -103,7 +103,7 @@ fn make_joint_fields(
         _ => matches!(joint.kind, JointKind::Pin | JointKind::Sleeve),
     };
     let names: Vec<String> = joints.iter().map(|joint| joint.name.text.clone()).collect();
-    let chosen = requested_names(figures, &names, "joint", cx);
+    let chosen = requested_link_or_joint_names(figures, &names, "joint", cx);
     for joint in joints {
         let Some(name) = chosen.iter().find(|name| name.text == joint.name.text) else { continue };
         if !is_supported_joint(joint) {
@@ -132,8 +132,9 @@ fn make_joint_fields(
             let expression_at_name = |e| Expr { kind: e, place: name.place.clone() };
             joint.parent.at = Some(expression_at_name(ExprKind::Array(e[..3].to_vec())));
             let turns = [("z", 5), ("y", 4), ("x", 3)];
-            joint.parent.rotated =
-                turns.map(|(axis, k)| Expr::function_call_at(axis, vec![e[k].clone()], &name.place)).to_vec();
+            joint.parent.rotated = turns
+                .map(|(axis, k)| Expr::function_call_expression(axis, vec![e[k].clone()], &name.place))
+                .to_vec();
             continue;
         }
         let turns = joint.kind == JointKind::Pin;
@@ -163,10 +164,16 @@ fn make_joint_fields(
 
 /// Returns the requested links or joints, or all of them if none are named. Reports unknown and repeated
 /// names.
-fn requested_names(figures: &FileParameters, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
+fn requested_link_or_joint_names(
+    figures: &FileParameters,
+    known: &[String],
+    what: &str,
+    cx: &mut Cx<'_>,
+) -> Vec<Name> {
     let Some(of) = &figures.of else {
-        let name_at_option = |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
-        return known.iter().map(name_at_option).collect();
+        let name_with_option_span =
+            |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
+        return known.iter().map(name_with_option_span).collect();
     };
     for (k, name) in of.iter().enumerate() {
         if !known.contains(&name.text) {
@@ -196,7 +203,7 @@ fn add(
     });
     let field = FileField { ident, kind, of: of.to_string(), about, values, units };
     let name_expression = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
-    let expressions = field.member_accesses().into_iter().map(name_expression).collect();
+    let expressions = field.value_access_paths().into_iter().map(name_expression).collect();
     fields.push(field);
     expressions
 }
@@ -204,8 +211,8 @@ fn add(
 /// Returns an identifier from a name of a file and a word. The `kind` of the named element distinguishes it
 /// from numbers and keywords.
 pub(in crate::import) fn identifier_of_names(of: &str, word: &str, kind: &str) -> String {
-    let identifier_character = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    let mut name: String = of.chars().map(identifier_character).collect();
+    let replace_nonidentifier_character = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let mut name: String = of.chars().map(replace_nonidentifier_character).collect();
     if !word.is_empty() {
         name = format!("{name}_{word}");
     }
@@ -250,7 +257,7 @@ fn inertia_matrix(e: &Expr) -> Option<Matrix> {
 }
 
 /// Returns axis index and angle of a rotation about a coordinate axis; `None` for another axis.
-fn coordinate_rotation(e: &Expr) -> Option<(usize, f64)> {
+fn axis_and_angle_of_rotation(e: &Expr) -> Option<(usize, f64)> {
     let ExprKind::Call(axis, arguments) = &e.kind else { return None };
     let axis = ["x", "y", "z"].iter().position(|known| *known == axis.text)?;
     Some((axis, arguments.first()?.literal_number()?))
@@ -258,12 +265,14 @@ fn coordinate_rotation(e: &Expr) -> Option<(usize, f64)> {
 
 /// Returns the matrix of successive rotations about moving axes.
 fn rotation_matrix(rotations: &[Expr]) -> Option<Matrix> {
-    rotations.iter().try_fold(IDENTITY, |whole, e| Some(matrix_product(&whole, &matrix_of_rotation(e)?)))
+    rotations
+        .iter()
+        .try_fold(IDENTITY, |whole, e| Some(matrix_product(&whole, &matrix_of_rotation_expression(e)?)))
 }
 
 /// Returns the matrix of one rotation: about a coordinate axis, or about a unit vector.
-fn matrix_of_rotation(e: &Expr) -> Option<Matrix> {
-    let Some((axis, angle)) = coordinate_rotation(e) else {
+fn matrix_of_rotation_expression(e: &Expr) -> Option<Matrix> {
+    let Some((axis, angle)) = axis_and_angle_of_rotation(e) else {
         let ExprKind::Call(_, arguments) = &e.kind else { return None };
         let [axis, angle] = arguments.as_slice() else { return None };
         return Some(axis_rotation(vector_components(axis)?, angle.literal_number()?));
@@ -279,7 +288,7 @@ fn matrix_of_rotation(e: &Expr) -> Option<Matrix> {
 /// has one more rotation than its frame.
 fn joint_placement(joint: &Joint) -> Option<Vec<f64>> {
     let rotations = &joint.parent.rotated;
-    let turns: Option<Vec<(usize, f64)>> = rotations.iter().map(coordinate_rotation).collect();
+    let turns: Option<Vec<(usize, f64)>> = rotations.iter().map(axis_and_angle_of_rotation).collect();
     let rpy = match turns.filter(|turns| turns.windows(2).all(|pair| pair[0].0 > pair[1].0)) {
         // Yaw, pitch, roll, as the file has them.
         Some(turns) => turns.into_iter().fold([0.0; 3], |mut rpy, (axis, angle)| {

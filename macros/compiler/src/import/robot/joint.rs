@@ -3,7 +3,7 @@
 use super::limit::FileLimits;
 use super::origin::FileOrigin;
 use crate::import::imported::Located;
-use crate::syntax::{Expr, JointKind, Mimic, Name};
+use crate::syntax::{Expr, JointKind, MimicRelation, Name};
 
 /// Joint as the robot file describes it.
 pub(in crate::import) struct FileJoint {
@@ -26,7 +26,7 @@ pub(in crate::import) struct FileJoint {
     pub(in crate::import) axis: Located<[f64; 3]>,
     /// Leader and coefficients of a joint that follows another joint; `None` if the user's options ignore
     /// `mimic`.
-    pub(in crate::import) mimic: Option<Mimic>,
+    pub(in crate::import) mimic: Option<MimicRelation>,
     /// Coordinate at which the file locks the joint.
     pub(in crate::import) held: Option<f64>,
     /// Lead of a screw joint: advance per revolution, m.

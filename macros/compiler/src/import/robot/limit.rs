@@ -29,7 +29,7 @@ impl FileLimits {
     /// Converts the limits of a joint to the language's representation. For a joint that follows another one
     /// (`follows`), the limit of force is dropped, because nothing drives it. With `stops`, the ends of the
     /// range are stops with restitution 0.
-    pub(in crate::import) fn limit_of_joint(
+    pub(in crate::import) fn convert_joint_limits(
         &self,
         joint: &Name,
         follows: bool,

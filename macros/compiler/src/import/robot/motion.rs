@@ -2,8 +2,8 @@
 //! or is locked.
 
 use super::joint::FileJoint;
-use crate::import::context::{Cx, quote_all, quote_word};
-use crate::syntax::{Mimic, Name};
+use crate::import::context::{Cx, quote_first_eight_words, quote_word};
+use crate::syntax::{MimicRelation, Name};
 use std::collections::BTreeMap;
 
 /// Motion of a joint: free, coupled or locked.
@@ -11,7 +11,7 @@ pub(in crate::import) enum JointMotion {
     /// Joint whose coordinate is independent.
     Own,
     /// Joint that follows an independent joint by a linear relation.
-    Follows(Mimic),
+    Follows(MimicRelation),
     /// Joint that is locked at this coordinate, m or rad.
     Frozen(f64),
 }
@@ -104,7 +104,7 @@ fn report_leader_cycles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mu
             continue;
         };
         let members = std::iter::once(start).chain(circle.iter().copied());
-        let names = quote_all(members.map(|k| joints[k].name.text.as_str()));
+        let names = quote_first_eight_words(members.map(|k| joints[k].name.text.as_str()));
         let message = match circle.len() {
             0 => format!("joint {names} follows itself"),
             _ => format!("joints {names} follow one another"),
@@ -140,5 +140,5 @@ fn follow_leaders(
         return JointMotion::Frozen(offset + factor * joints[at].held.unwrap_or(0.0));
     }
     let joint = Name { text: joints[at].name.text.clone(), place: mimic.joint.place.clone() };
-    JointMotion::Follows(Mimic { joint, multiplier: factor, offset })
+    JointMotion::Follows(MimicRelation { joint, multiplier: factor, offset })
 }

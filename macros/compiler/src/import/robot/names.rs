@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Reports links that share a name, and joints that share a name.
 pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
-    check_unique(robot.links.iter().map(|link| &link.name), format.body_term(), cx);
-    check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
+    report_repeated_names(robot.links.iter().map(|link| &link.name), format.word_for_body(), cx);
+    report_repeated_names(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
 }
 
 /// Link that files use as a parent without declaring it.
@@ -53,7 +53,7 @@ pub(in crate::import) fn unused_name(name: &str, is_taken: impl Fn(&str) -> bool
 }
 
 /// Reports names that occur more than once among the elements of one kind.
-pub(in crate::import) fn check_unique<'a>(
+pub(in crate::import) fn report_repeated_names<'a>(
     names: impl Iterator<Item = &'a Name>,
     what: &str,
     cx: &mut Cx<'_>,
@@ -72,7 +72,7 @@ pub(in crate::import) fn check_unique<'a>(
 }
 
 /// Reports joints with unknown links.
-pub(in crate::import) fn check_unknown_links(robot: &Robot, cx: &mut Cx<'_>) {
+pub(in crate::import) fn report_unknown_links(robot: &Robot, cx: &mut Cx<'_>) {
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
     let known: BTreeSet<&str> = links.iter().copied().collect();
     for end in robot.joints.iter().flat_map(|joint| [&joint.parent, &joint.child]) {
@@ -84,7 +84,7 @@ pub(in crate::import) fn check_unknown_links(robot: &Robot, cx: &mut Cx<'_>) {
 }
 
 /// Reports joints from a link to itself, and links with two parents.
-pub(in crate::import) fn check_joint_ends(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
+pub(in crate::import) fn report_wrong_joint_ends(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
     let mut parents: BTreeMap<&str, &FileJoint> = BTreeMap::new();
     for joint in &robot.joints {
         if joint.parent.text == joint.child.text {

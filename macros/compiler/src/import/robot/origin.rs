@@ -46,14 +46,14 @@ impl FileOrigin {
 
 /// Converts a pose to a [`FileOrigin`].
 pub(in crate::import) fn origin_from_pose(pose: &FilePose, place: &Place) -> FileOrigin {
-    let value_at_pose = |value| Located { value, place: place.clone() };
+    let value_with_source_place = |value| Located { value, place: place.clone() };
     FileOrigin {
-        xyz: value_at_pose(pose.at.map(|x| x + 0.0)),
-        rpy: value_at_pose(roll_pitch_yaw(&pose.axes)),
+        xyz: value_with_source_place(pose.at.map(|x| x + 0.0)),
+        rpy: value_with_source_place(roll_pitch_yaw(&pose.axes)),
     }
 }
 
 fn rotation_expression(axis: &str, angle: f64, origin: &FileOrigin) -> Expr {
     let place = &origin.rpy.place;
-    Expr::function_call_at(axis, vec![Expr::number_at(angle, place)], place)
+    Expr::function_call_expression(axis, vec![Expr::number_at(angle, place)], place)
 }

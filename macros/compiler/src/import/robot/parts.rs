@@ -1,6 +1,6 @@
 //! Contents of a robot file, in the order of the file.
 
-use super::collision::FileCollision;
+use super::collision::FileCollisionShape;
 use super::joint::FileJoint;
 use super::origin::FileOrigin;
 use super::visual::FileVisual;
@@ -29,7 +29,7 @@ pub(in crate::import) struct Robot {
     /// Contact pairs of the robot file.
     pub(in crate::import) contacts: Vec<Contact>,
     /// Collision geometry, each with the index of its link.
-    pub(in crate::import) collisions: Vec<(usize, FileCollision)>,
+    pub(in crate::import) collisions: Vec<(usize, FileCollisionShape)>,
     /// Visual geometry, each with the index of its link.
     pub(in crate::import) visuals: Vec<(usize, FileVisual)>,
     /// Springs, dampers, rotors and motors on joint coordinates.

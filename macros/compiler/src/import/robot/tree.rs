@@ -1,7 +1,7 @@
 //! Ordering of joints by the kinematic tree.
 
 use super::parts::Robot;
-use crate::import::context::{Cx, quote_all, quote_word};
+use crate::import::context::{Cx, quote_first_eight_words, quote_word};
 use std::collections::BTreeMap;
 
 /// Root of the kinematic tree, and the joints in coordinate order.
@@ -15,7 +15,7 @@ pub(in crate::import) struct JointOrder {
 
 /// Orders the joints. Names must have been checked before. Returns `None` with the error in `cx` if the links
 /// do not form a single tree.
-pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<JointOrder> {
+pub(in crate::import) fn order_joints_along_tree(robot: &Robot, cx: &mut Cx<'_>) -> Option<JointOrder> {
     let name_with_index = |(k, name): (usize, &str)| (name.to_string(), k);
     let links: BTreeMap<String, usize> =
         robot.links.iter().map(|link| link.name.text.as_str()).enumerate().map(name_with_index).collect();
@@ -29,7 +29,7 @@ pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<
     for (joint, (_, child)) in ends.iter().enumerate() {
         above[*child] = Some(joint);
     }
-    report_cycles(robot, &ends, &above, cx);
+    report_all_link_cycles(robot, &ends, &above, cx);
     let root = find_root(robot, &above, cx)?;
     Some(JointOrder { root, joints: depth_first_order(robot, root, &ends) })
 }
@@ -41,7 +41,7 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
     let root = roots.next()?;
     if let Some(second) = roots.next() {
         let all = [root, second].into_iter().chain(roots);
-        let names = quote_all(all.map(|link| robot.links[link].name.text.as_str()));
+        let names = quote_first_eight_words(all.map(|link| robot.links[link].name.text.as_str()));
         let message = format!("expected one link that is not the child of a joint, found {names}");
         let help = "every link but one needs a joint that has it as its child";
         let closing = robot.closing.iter().map(|joint| joint.name.text.as_str());
@@ -49,7 +49,10 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
             let d = d.add_help(help);
             match robot.closing.is_empty() {
                 true => d,
-                false => d.add_help(format!("joints that close loops carry no link: {}", quote_all(closing))),
+                false => d.add_help(format!(
+                    "joints that close loops carry no link: {}",
+                    quote_first_eight_words(closing)
+                )),
             }
         });
         return None;
@@ -58,7 +61,7 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
 }
 
 /// Reports every cycle of links and joints once.
-fn report_cycles(robot: &Robot, ends: &[(usize, usize)], above: &[Option<usize>], cx: &mut Cx<'_>) {
+fn report_all_link_cycles(robot: &Robot, ends: &[(usize, usize)], above: &[Option<usize>], cx: &mut Cx<'_>) {
     // Each upward walk marks its links with its own number. It ends at the root, at an earlier walk or at
     // itself.
     let mut walks = vec![None; above.len()];
@@ -69,13 +72,13 @@ fn report_cycles(robot: &Robot, ends: &[(usize, usize)], above: &[Option<usize>]
             link = ends[joint].0;
         }
         if walks[link] == Some(start) {
-            report_cycle(robot, ends, above, link, cx);
+            report_link_cycle(robot, ends, above, link, cx);
         }
         walks[link].get_or_insert(start);
     }
 }
 
-fn report_cycle(
+fn report_link_cycle(
     robot: &Robot,
     ends: &[(usize, usize)],
     above: &[Option<usize>],
@@ -88,7 +91,7 @@ fn report_cycle(
     };
     let rest = std::iter::successors(parent_link(&link), parent_link).take_while(|l| *l != link);
     let links = std::iter::once(link).chain(rest).map(|l| robot.links[l].name.text.as_str());
-    let message = format!("links {} form a cycle", quote_all(links));
+    let message = format!("links {} form a cycle", quote_first_eight_words(links));
     let help = format!("joint {} closes the cycle; a tree has a root", quote_word(&joint.name.text));
     cx.report_error(&joint.parent.place, message, |d| d.add_help(help));
 }

@@ -1,14 +1,14 @@
 //! `<collision>` → collision shapes of links, which contacts refer to.
 
-use super::frames::{Frames, origin_in_link};
+use super::frames::{Frames, element_origin_in_link};
 use super::scope::Scope;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_position, known_children, quoted_tag,
-    read_numbers_content, read_word, required_child,
+    Node, check_attributes, child_elements, children_with_known_names, element_source_position, quoted_tag,
+    read_numbers_content, read_trimmed_content, required_child,
 };
 use crate::import::mesh;
-use crate::import::robot::FileCollision;
+use crate::import::robot::FileCollisionShape;
 use crate::syntax::{MeshVertices, Name, Shape};
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(super) fn read_collisions(
     frames: &Frames,
     folder: &Path,
     cx: &mut Cx<'_>,
-) -> Vec<FileCollision> {
+) -> Vec<FileCollisionShape> {
     let parts = child_elements(node).filter(|node| node.tag_name().name() == "collision");
     parts.filter_map(|part| read_collision(part, link, frames, folder, cx)).collect()
 }
@@ -33,28 +33,30 @@ fn read_collision(
     frames: &Frames,
     folder: &Path,
     cx: &mut Cx<'_>,
-) -> Option<FileCollision> {
+) -> Option<FileCollisionShape> {
     let geometry = child_elements(node).find(|child| child.tag_name().name() == "geometry");
     let geometry = required_child(geometry, node, "geometry", &[], cx)?;
     let mut shapes = child_elements(geometry).filter(|child| child.tag_name().name() != "empty");
     let form = shapes.next()?;
     if let Some(second) = shapes.next() {
         let help = "write a `<collision>` for each shape";
-        cx.report_error(&element_position(second, cx), "second shape of one geometry", |d| d.add_help(help));
+        cx.report_error(&element_source_position(second, cx), "second shape of one geometry", |d| {
+            d.add_help(help)
+        });
     }
-    let origin = origin_in_link(node, link, frames, cx)?;
+    let origin = element_origin_in_link(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = match shape {
         Shape::Mesh => read_mesh(form, folder, cx),
         _ => None,
     };
-    Some(FileCollision { origin, shape, mesh, place: element_position(node, cx) })
+    Some(FileCollisionShape { origin, shape, mesh, place: element_source_position(node, cx) })
 }
 
 /// Returns the source of the vertices of a mesh; `None` for a part of a mesh.
 fn read_mesh(form: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<MeshVertices> {
-    let [uri, scale, submesh] = known_children(form, ["uri", "scale", "submesh"], cx);
-    let path = read_word(required_child(uri, form, "uri", &[], cx)?, cx)?;
+    let [uri, scale, submesh] = children_with_known_names(form, ["uri", "scale", "submesh"], cx);
+    let path = read_trimmed_content(required_child(uri, form, "uri", &[], cx)?, cx)?;
     let scale = match scale {
         Some(scale) => read_numbers_content(scale, cx)?.value,
         None => [1.0; 3],
@@ -68,20 +70,20 @@ pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
     check_attributes(shape, &[], &[], cx);
     match shape.tag_name().name() {
         "sphere" => {
-            let [radius] = known_children(shape, ["radius"], cx);
+            let [radius] = children_with_known_names(shape, ["radius"], cx);
             let [radius] = read_lengths(radius, shape, "radius", cx)?;
             Some(Shape::Sphere(radius))
         }
         "box" => {
-            let [size] = known_children(shape, ["size"], cx);
+            let [size] = children_with_known_names(shape, ["size"], cx);
             Some(Shape::Cuboid(read_lengths(size, shape, "size", cx)?))
         }
         "ellipsoid" => {
-            let [radii] = known_children(shape, ["radii"], cx);
+            let [radii] = children_with_known_names(shape, ["radii"], cx);
             Some(Shape::Ellipsoid(read_lengths(radii, shape, "radii", cx)?))
         }
         kind @ ("cylinder" | "capsule") => {
-            let [radius, length] = known_children(shape, ["radius", "length"], cx);
+            let [radius, length] = children_with_known_names(shape, ["radius", "length"], cx);
             let ([radius], [length]) =
                 (read_lengths(radius, shape, "radius", cx)?, read_lengths(length, shape, "length", cx)?);
             Some(if kind == "cylinder" {
@@ -93,7 +95,7 @@ pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
         "mesh" => Some(Shape::Mesh),
         kind => {
             let message = format!("collision geometry {} is not supported", quoted_tag(shape));
-            cx.report_error(&element_position(shape, cx), message, |d| d.suggest_name(kind, SHAPES));
+            cx.report_error(&element_source_position(shape, cx), message, |d| d.suggest_name(kind, SHAPES));
             None
         }
     }

@@ -5,8 +5,8 @@ use super::version::is_before_version;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Attribute, Node, check_radians, check_value_element, child_elements, element_position,
-    read_numbers_content, relevant_contents, report_duplicate,
+    Attribute, Node, check_attributes_of_value_element, child_elements, element_source_position,
+    nonblank_known_contents, read_numbers_content, report_duplicate, report_likely_degrees,
 };
 use crate::import::pose::{FilePose, IDENTITY, axis_rotation, matrix_product, rotation_of_quaternion};
 use crate::import::robot::{FileOrigin, origin_from_pose};
@@ -40,12 +40,12 @@ const RELATIVE_TO: (u32, u32) = (1, 7);
 
 /// Reads `<pose relative_to="…">` of an element, or `<pose frame="…">` in old versions. Without either
 /// attribute, the pose is relative to `base`.
-pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> SdfFrame {
-    let base_name = |at: Place| Name { text: base.to_string(), place: at };
+pub(super) fn read_pose_element(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> SdfFrame {
+    let named_base_frame = |at: Place| Name { text: base.to_string(), place: at };
     let mut poses = child_elements(node).filter(|child| child.tag_name().name() == "pose");
     let Some(found) = poses.next() else {
         return SdfFrame {
-            base: base_name(element_position(node, cx)),
+            base: named_base_frame(element_source_position(node, cx)),
             pose: FilePose::ZERO,
             attached: None,
         };
@@ -53,16 +53,16 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
     if let Some(second) = poses.next() {
         report_duplicate(second, Some(found), cx);
     }
-    check_value_element(found, &["relative_to", "rotation_format", "degrees", "frame"], cx);
+    check_attributes_of_value_element(found, &["relative_to", "rotation_format", "degrees", "frame"], cx);
     let base = match reference_frame_attribute(found, cx) {
         Some(said) => {
             let name = said.value().trim();
             let text = name_of_own_frame(found, name, scope).unwrap_or_else(|| scope.full_name(name));
             Name { text, place: cx.source_position(said.range_value().start) }
         }
-        None => base_name(element_position(found, cx)),
+        None => named_base_frame(element_source_position(found, cx)),
     };
-    let is_empty = relevant_contents(found).next().is_none();
+    let is_empty = nonblank_known_contents(found).next().is_none();
     let pose = if is_empty { FilePose::ZERO } else { read_pose(found, cx).unwrap_or(FilePose::ZERO) };
     SdfFrame { base, pose, attached: None }
 }
@@ -84,12 +84,14 @@ pub(super) fn reference_frame_attribute<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> 
 /// itself, as versions 1.5 and 1.6 allow.
 fn name_of_own_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
     let owner = pose.ancestors().find(|above| matches!(above.tag_name().name(), "link" | "joint"))?;
-    let is_declared = own_frames(owner).any(|frame| frame.attribute("name") == Some(name));
-    is_declared.then(|| name_in_owner(&scope.name_of_part(owner.attribute("name").unwrap_or_default()), name))
+    let is_declared = frame_elements_inside(owner).any(|frame| frame.attribute("name") == Some(name));
+    is_declared.then(|| {
+        name_in_owner(&scope.full_name_of_declared_element(owner.attribute("name").unwrap_or_default()), name)
+    })
 }
 
 /// Returns the frames that a link or a joint declares inside itself.
-pub(super) fn own_frames<'a>(owner: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+pub(super) fn frame_elements_inside<'a>(owner: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     let is_frame = |node: &Node<'a>| node.tag_name().name() == "frame";
     let parts = owner.children().filter(|node| node.is_element());
     let inside = parts.filter(|part| matches!(part.tag_name().name(), "inertial" | "collision" | "visual"));
@@ -109,7 +111,7 @@ pub(super) fn pose_in_link(
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Option<FilePose> {
-    let frame = read_frame(node, scope, &link.text, cx);
+    let frame = read_pose_element(node, scope, &link.text, cx);
     Some(
         frames
             .resolve_pose(link, cx)?
@@ -119,13 +121,13 @@ pub(super) fn pose_in_link(
 }
 
 /// Returns the pose of an element of a link relative to the link, as an [`FileOrigin`].
-pub(super) fn origin_in_link(
+pub(super) fn element_origin_in_link(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Option<FileOrigin> {
-    Some(origin_from_pose(&pose_in_link(node, link, frames, cx)?, &element_position(node, cx)))
+    Some(origin_from_pose(&pose_in_link(node, link, frames, cx)?, &element_source_position(node, cx)))
 }
 
 const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
@@ -137,7 +139,7 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FilePose> {
         let size = (a * a + b * b + c * c + w * w).sqrt();
         if size < 1e-14 || !size.is_finite() {
             let message = format!("a quaternion of length {size} has no direction");
-            cx.report_error(&element_position(node, cx), message, |d| d);
+            cx.report_error(&element_source_position(node, cx), message, |d| d);
             return None;
         }
         return Some(FilePose {
@@ -149,7 +151,7 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FilePose> {
     let [x, y, z, roll, pitch, yaw] = found.value;
     let degrees = node.attribute("degrees").is_some_and(|word| matches!(word.trim(), "true" | "1"));
     if !degrees {
-        check_radians(&[roll, pitch, yaw], &found.place, RADIANS, cx);
+        report_likely_degrees(&[roll, pitch, yaw], &found.place, RADIANS, cx);
     }
     let angle_in_radians = |angle: f64| if degrees { angle.to_radians() } else { angle };
     let turns = [([0.0, 0.0, 1.0], yaw), ([0.0, 1.0, 0.0], pitch), ([1.0, 0.0, 0.0], roll)];

@@ -7,10 +7,11 @@ use super::version;
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_position, read_word, relevant_contents, report_duplicate,
+    Node, check_attributes, child_elements, element_source_position, nonblank_known_contents,
+    read_trimmed_content, report_duplicate,
 };
 use crate::import::whole::{
-    ComposedText, MAX_DEPTH, MAX_FILES, ReadFile, canonical_path, report_include_cycle,
+    ComposedText, LoadedRobotFile, MAX_DEPTH, MAX_FILES, canonical_path, report_include_cycle,
     report_too_many_includes,
 };
 use crate::import::{file, xml};
@@ -97,7 +98,7 @@ pub(super) fn read_with_includes(
 
 /// Returns the steps that expand a file, last first: the whole file, or only its model for an `<include>`.
 fn expansion_steps(
-    files: &[ReadFile],
+    files: &[LoadedRobotFile],
     file: usize,
     name: &Name,
     include: Option<&Include>,
@@ -108,11 +109,11 @@ fn expansion_steps(
     let cx = &mut Cx::new(&read.text, &shown, cx);
     let declared = OnceCell::new();
     let document = xml::parse_document(&read.text, &declared, FileFormat::Sdf, cx)?;
-    version::check_version(document.root_element(), cx);
+    version::report_unsupported_sdf_version(document.root_element(), cx);
     // Declarations of undeclared prefixes shift the bytes of the text, so pieces of it cannot be copied.
     if declared.get().is_some() {
         return match include {
-            None => copy_with_prefixes(&document, file, read, cx),
+            None => copy_step_for_undeclared_prefixes(&document, file, read, cx),
             Some(_) => {
                 report_undeclared_prefixes(document.root_element(), cx);
                 None
@@ -125,10 +126,11 @@ fn expansion_steps(
         None => (root, 0, read.text.len()),
         Some(include) => {
             let model = only_model_of_file(root, cx)?;
-            open_included_model(&mut steps, model, file, include);
-            let range_of_child = |child: Option<Node<'_>>| child.map(|child| child.range());
-            let first = range_of_child(model.first_child()).map_or(model.range().end, |range| range.start);
-            let last = range_of_child(model.last_child()).map_or(first, |range| range.end);
+            add_model_start_tag(&mut steps, model, file, include);
+            let byte_range_of_child = |child: Option<Node<'_>>| child.map(|child| child.range());
+            let first =
+                byte_range_of_child(model.first_child()).map_or(model.range().end, |range| range.start);
+            let last = byte_range_of_child(model.last_child()).map_or(first, |range| range.end);
             (model, first, last)
         }
     };
@@ -161,10 +163,10 @@ fn expansion_steps(
 }
 
 /// Returns the single copy step of a file with undeclared prefixes. Reports an `<include>` in it.
-fn copy_with_prefixes(
+fn copy_step_for_undeclared_prefixes(
     document: &roxmltree::Document<'_>,
     file: usize,
-    read: &ReadFile,
+    read: &LoadedRobotFile,
     cx: &mut Cx<'_>,
 ) -> Option<Vec<ModelExpansionStep>> {
     let include =
@@ -177,7 +179,7 @@ fn copy_with_prefixes(
 }
 
 fn report_undeclared_prefixes(node: Node<'_>, cx: &mut Cx<'_>) {
-    cx.report_error(&element_position(node, cx), "prefixes of names are not declared", |d| {
+    cx.report_error(&element_source_position(node, cx), "prefixes of names are not declared", |d| {
         d.add_help(
             "files that include others, or are included, declare them: `<sdf \
              xmlns:gz=\"http://gazebosim.org/schema\">`",
@@ -191,9 +193,9 @@ fn is_in_world(node: Node<'_>) -> bool {
 
 /// Adds the start tag of an included SDF model, with name and pose of the `<include>` if it has them,
 /// otherwise those of the model.
-fn open_included_model(steps: &mut Vec<ModelExpansionStep>, model: Node<'_>, file: usize, include: &Include) {
+fn add_model_start_tag(steps: &mut Vec<ModelExpansionStep>, model: Node<'_>, file: usize, include: &Include) {
     let start = model.range().start;
-    let text_step = |text: &str| ModelExpansionStep::Put(text.to_string(), file, start);
+    let text_expansion_step = |text: &str| ModelExpansionStep::Put(text.to_string(), file, start);
     steps.push(ModelExpansionStep::Put("<model name=\"".to_string(), include.by, include.from));
     match &include.name {
         Some(range) => steps.push(ModelExpansionStep::Copy(include.by, range.clone())),
@@ -201,20 +203,20 @@ fn open_included_model(steps: &mut Vec<ModelExpansionStep>, model: Node<'_>, fil
             model.attribute_node("name").map(|name| ModelExpansionStep::Copy(file, name.range_value())),
         ),
     }
-    steps.push(text_step("\""));
+    steps.push(text_expansion_step("\""));
     // The version of the included file determines the interpretation of its elements.
     if let Some(version) = model.document().root_element().attribute_node("version") {
-        steps.push(text_step(&format!(" {}=\"", version::OF_INCLUDED)));
+        steps.push(text_expansion_step(&format!(" {}=\"", version::OF_INCLUDED)));
         steps.push(ModelExpansionStep::Copy(file, version.range_value()));
-        steps.push(text_step("\""));
+        steps.push(text_expansion_step("\""));
     }
-    let is_own_attribute = |name: &str| name != "name" && name != version::OF_INCLUDED;
-    for attribute in model.attributes().filter(|attribute| is_own_attribute(attribute.name())) {
-        steps.push(text_step(&format!(" {}=\"", attribute.name())));
+    let is_attribute_to_copy = |name: &str| name != "name" && name != version::OF_INCLUDED;
+    for attribute in model.attributes().filter(|attribute| is_attribute_to_copy(attribute.name())) {
+        steps.push(text_expansion_step(&format!(" {}=\"", attribute.name())));
         steps.push(ModelExpansionStep::Copy(file, attribute.range_value()));
-        steps.push(text_step("\""));
+        steps.push(text_expansion_step("\""));
     }
-    steps.push(text_step(">"));
+    steps.push(text_expansion_step(">"));
     let parts = include.pose.iter().chain(&include.plugins);
     steps.extend(parts.map(|part| ModelExpansionStep::Copy(include.by, part.clone())));
 }
@@ -227,7 +229,7 @@ fn only_model_of_file<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
     if let (Some(model), None) = (found, second) {
         return Some(model);
     }
-    let at = element_position(second.unwrap_or(root), cx);
+    let at = element_source_position(second.unwrap_or(root), cx);
     let what = if second.is_some() { "several models" } else { "no model" };
     cx.report_error(&at, format!("expected an SDF file with one model, found {what}"), |d| {
         d.add_help("an included file is `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
@@ -239,54 +241,57 @@ fn only_model_of_file<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
 /// or static model.
 fn read_include(
     node: Node<'_>,
-    files: &[ReadFile],
+    files: &[LoadedRobotFile],
     by: usize,
     depth: usize,
     cx: &mut Cx<'_>,
 ) -> Option<Include> {
     check_attributes(node, &[], &["merge"], cx);
     if node.attribute("merge").is_some_and(|merge| matches!(merge.trim(), "true" | "1")) {
-        cx.report_error(&element_position(node, cx), "`merge` of an `<include>` is not supported", |d| {
-            d.add_help("write the expanded file: `gz sdf -p robot.sdf > whole.sdf`")
-        });
+        cx.report_error(
+            &element_source_position(node, cx),
+            "`merge` of an `<include>` is not supported",
+            |d| d.add_help("write the expanded file: `gz sdf -p robot.sdf > whole.sdf`"),
+        );
         return None;
     }
     let mut uri = None;
     let (mut own_name, mut pose, mut plugins) = (None, None, Vec::new());
     let mut seen: BTreeMap<&str, Node<'_>> = BTreeMap::new();
     for child in child_elements(node) {
-        let text_of_child = || relevant_contents(child).find(Node::is_text).map(trimmed_range);
+        let text_of_child = || nonblank_known_contents(child).find(Node::is_text).map(trimmed_range);
         let kind = child.tag_name().name();
         if let Some(first) = seen.insert(kind, child).filter(|_| kind != "plugin") {
             report_duplicate(child, Some(first), cx);
         }
         match kind {
-            "uri" => uri = read_word(child, cx),
+            "uri" => uri = read_trimmed_content(child, cx),
             "name" => own_name = text_of_child(),
             "pose" => pose = Some(child.range()),
             "plugin" => plugins.push(child.range()),
             "static"
-                if read_word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
+                if read_trimmed_content(child, cx)
+                    .is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
             {
                 if is_in_world(node) {
                     return None;
                 }
                 cx.report_error(
-                    &element_position(child, cx),
+                    &element_source_position(child, cx),
                     "the included model is static and cannot move",
                     |d| d.add_help("remove `<static>`"),
                 );
             }
-            "placement_frame" => {
-                cx.report_error(&element_position(child, cx), "`placement_frame` is not supported", |d| {
-                    d.add_help("give the `<include>` a `<pose>`")
-                })
-            }
+            "placement_frame" => cx.report_error(
+                &element_source_position(child, cx),
+                "`placement_frame` is not supported",
+                |d| d.add_help("give the `<include>` a `<pose>`"),
+            ),
             _ => crate::import::element::check_element_name(child, &INCLUDE, cx),
         }
     }
     let Some(uri) = uri else {
-        cx.report_error(&element_position(node, cx), "`<include>` without a `<uri>`", |d| {
+        cx.report_error(&element_source_position(node, cx), "`<include>` without a `<uri>`", |d| {
             d.add_help("expected `<uri>model://…</uri>` or the path of a file")
         });
         return None;
@@ -309,7 +314,7 @@ fn trimmed_range(text: Node<'_>) -> Range {
 /// Returns the possible paths of an included file, each with the path for messages: relative to the including
 /// file or to the user's file, and one folder above each. For a folder, the path is that of its model, which
 /// is `model.sdf` unless `model.config` names another file.
-fn include_candidates(files: &[ReadFile], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
+fn include_candidates(files: &[LoadedRobotFile], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     let rest = ["model://", "file://", "package://"].iter().find_map(|scheme| uri.strip_prefix(scheme));
     let named = rest.unwrap_or(uri);
     let mut found = Vec::new();
@@ -340,7 +345,11 @@ fn model_file_name(folder: &Path) -> String {
 }
 
 /// Finds and reads the SDF file of an `<include>`.
-fn find_included_file(files: &[ReadFile], include: &Include, cx: &mut Diagnostics) -> Option<ReadFile> {
+fn find_included_file(
+    files: &[LoadedRobotFile],
+    include: &Include,
+    cx: &mut Diagnostics,
+) -> Option<LoadedRobotFile> {
     let all = include_candidates(files, include.by, &include.uri.text);
     let there = all.iter().find(|(path, _)| path.is_file());
     if there.is_none() && include.uri.text.contains("://") {
@@ -356,7 +365,7 @@ fn find_included_file(files: &[ReadFile], include: &Include, cx: &mut Diagnostic
     let (path, shown) = there.or(all.first())?;
     let name = Name { text: shown.clone(), place: include.uri.place.clone() };
     let text = file::read_named_file(path, &name, FileFormat::Sdf, cx)?;
-    Some(ReadFile {
+    Some(LoadedRobotFile {
         text: xml::clean_xml_text(&text).into_owned(),
         shown: shown.clone(),
         path: canonical_path(path),

@@ -5,8 +5,9 @@ use super::scope::Scope;
 use super::version::is_before_version;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_value_element, child_elements, element_position, known_children,
-    quoted_tag, read_name_attribute, read_numbers_content, read_word, relevant_contents, required_child,
+    Node, check_attributes, check_attributes_of_value_element, child_elements, children_with_known_names,
+    element_source_position, nonblank_known_contents, quoted_tag, read_name_attribute, read_numbers_content,
+    read_trimmed_content, required_child,
 };
 use crate::import::imported::Located;
 use crate::import::misplaced;
@@ -15,7 +16,9 @@ use crate::import::robot::{
     FileJoint, FileLimits, FileOrigin, IGNORE_LIMITS, Robot, has_axis, has_coordinate, massless_link,
     origin_from_pose,
 };
-use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
+use crate::syntax::{
+    Drive, DriveLaw, DriveTarget, Expr, FileOptions, JointKind, LimitOption, MimicRelation, Name,
+};
 
 /// SDF's names of the joint types, with the number of axes of each.
 const TYPES: [(&str, JointKind, usize); 8] = [
@@ -49,9 +52,14 @@ const IN_JOINT: (u32, u32) = (1, 5);
 const EXPRESSED_IN: (u32, u32) = (1, 7);
 
 /// Returns the full name of the frame at one end of a joint.
-pub(super) fn frame_at_joint_end(node: Node<'_>, which: &str, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
+pub(super) fn frame_name_at_joint_end(
+    node: Node<'_>,
+    which: &str,
+    scope: &Scope,
+    cx: &Cx<'_>,
+) -> Option<Name> {
     let found = child_elements(node).find(|child| child.tag_name().name() == which)?;
-    let said = read_word(found, cx)?;
+    let said = read_trimmed_content(found, cx)?;
     Some(Name { text: scope.full_name(&said.text), ..said })
 }
 
@@ -65,20 +73,23 @@ pub(super) fn read_joint(
 ) -> Option<()> {
     check_attributes(node, &["name", "type"], &[], cx);
     let known = ["pose", "parent", "child", "axis", "axis2", "screw_thread_pitch", "thread_pitch"];
-    let [_, parent, child, axis, axis2, lead, old] = known_children(node, known, cx);
+    let [_, parent, child, axis, axis2, lead, old] = children_with_known_names(node, known, cx);
     required_child(parent, node, "parent", &[], cx)?;
     required_child(child, node, "child", &[], cx)?;
     misplaced::report_misplaced_contents(node, &known, JOINT_HELP, cx);
-    [parent, child].into_iter().flatten().for_each(|end| check_value_element(end, &[], cx));
-    for empty in [parent, child].into_iter().flatten().filter(|end| relevant_contents(*end).next().is_none())
+    [parent, child].into_iter().flatten().for_each(|end| check_attributes_of_value_element(end, &[], cx));
+    for empty in
+        [parent, child].into_iter().flatten().filter(|end| nonblank_known_contents(*end).next().is_none())
     {
         let message = format!("{} without a name", quoted_tag(empty));
-        cx.report_error(&element_position(empty, cx), message, |d| {
+        cx.report_error(&element_source_position(empty, cx), message, |d| {
             d.add_help("expected the name of a link or a frame")
         });
     }
-    let (parent, child) =
-        (frame_at_joint_end(node, "parent", scope, cx)?, frame_at_joint_end(node, "child", scope, cx)?);
+    let (parent, child) = (
+        frame_name_at_joint_end(node, "parent", scope, cx)?,
+        frame_name_at_joint_end(node, "child", scope, cx)?,
+    );
     let (word, kind, axes) = read_joint_type(node, cx)?;
     let at = frames.resolve_pose(joint, cx)?;
     // The ends of a joint may be frames that are attached to links.
@@ -150,7 +161,7 @@ fn read_screw_lead(
     cx: &mut Cx<'_>,
 ) -> Option<Expr> {
     let Some(written) = lead.or(old) else {
-        cx.report_error(&element_position(node, cx), "screw without `<screw_thread_pitch>`", |d| {
+        cx.report_error(&element_source_position(node, cx), "screw without `<screw_thread_pitch>`", |d| {
             d.add_help("it is the advance of the joint per turn, m")
         });
         return None;
@@ -170,7 +181,12 @@ fn read_screw_lead(
 }
 
 /// Returns the SDF joint that fixes one link to another.
-pub(super) fn fixed_joint(name: Name, parent: Name, child: Name, origin: FileOrigin) -> FileJoint {
+pub(super) fn fixed_joint_between_links(
+    name: Name,
+    parent: Name,
+    child: Name,
+    origin: FileOrigin,
+) -> FileJoint {
     FileJoint::weld(name, "fixed", [parent, child], origin)
 }
 
@@ -195,9 +211,13 @@ impl AxisSource<'_> {
         cx: &mut Cx<'_>,
     ) -> Option<FileJoint> {
         let AxisSource { node, named, word, kind, .. } = *self;
-        let own = element_position(node, cx);
-        let bare =
-            fixed_joint(named.clone(), named.clone(), named.clone(), origin_from_pose(&FilePose::ZERO, &own));
+        let own = element_source_position(node, cx);
+        let bare = fixed_joint_between_links(
+            named.clone(),
+            named.clone(),
+            named.clone(),
+            origin_from_pose(&FilePose::ZERO, &own),
+        );
         let mut joint = FileJoint { kind, word, ..bare };
         let Some(axis) = self.axis.filter(|_| has_axis(kind)) else {
             if has_axis(kind) {
@@ -208,14 +228,16 @@ impl AxisSource<'_> {
             return Some(joint);
         };
         let parts = ["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"];
-        let [xyz, limit, dynamics, mimic, old, _] = known_children(axis, parts, cx);
+        let [xyz, limit, dynamics, mimic, old, _] = children_with_known_names(axis, parts, cx);
         [Some(axis), limit, dynamics]
             .into_iter()
             .flatten()
-            .for_each(|node| check_value_element(node, &[], cx));
+            .for_each(|node| check_attributes_of_value_element(node, &[], cx));
         misplaced::report_misplaced_contents(axis, &parts, AXIS_HELP, cx);
-        let of_model = Name { text: scope.full_frame_name(), place: element_position(axis, cx) };
-        let usual = if is_in_model(axis, old, cx) { frames.resolve_pose(&of_model, cx)? } else { *at };
+        let of_model =
+            Name { text: scope.full_name_of_scope_frame(), place: element_source_position(axis, cx) };
+        let usual =
+            if is_expressed_in_model_axes(axis, old, cx) { frames.resolve_pose(&of_model, cx)? } else { *at };
         joint.axis = read_axis(xyz, axis, (&usual, inner), scope, frames, cx)?;
         if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
             read_dynamics(dynamics, &mut joint, robot, cx);
@@ -236,13 +258,13 @@ impl AxisSource<'_> {
 
 /// Returns true if an axis is expressed in the axes of the model: by default in old versions, otherwise if
 /// `<use_parent_model_frame>` is true.
-fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
+fn is_expressed_in_model_axes(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
     let Some(old) = old else { return is_before_version(axis, IN_JOINT) };
-    let is_said =
-        read_word(old, cx).is_some_and(|word| matches!(&*word.text.to_ascii_lowercase(), "true" | "1"));
+    let is_said = read_trimmed_content(old, cx)
+        .is_some_and(|word| matches!(&*word.text.to_ascii_lowercase(), "true" | "1"));
     if is_said && !is_before_version(axis, EXPRESSED_IN) {
         let message = "`<use_parent_model_frame>` has another name since version 1.7 of SDF";
-        cx.report_error(&element_position(old, cx), message, |d| {
+        cx.report_error(&element_source_position(old, cx), message, |d| {
             d.add_help("write `<xyz expressed_in=\"__model__\">`")
         });
     }
@@ -261,7 +283,7 @@ fn read_axis(
 ) -> Option<Located<Vector>> {
     let found = match xyz {
         Some(xyz) => read_numbers_content::<3>(xyz, cx)?,
-        None => Located { value: [0.0, 0.0, 1.0], place: element_position(axis, cx) },
+        None => Located { value: [0.0, 0.0, 1.0], place: element_source_position(axis, cx) },
     };
     if length(found.value) < 1e-14 {
         cx.report_error(&found.place, "axis of zero length has no direction", |d| d);
@@ -282,7 +304,7 @@ fn read_axis(
 
 fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &mut Cx<'_>) {
     let parts = ["damping", "friction", "spring_stiffness", "spring_reference"];
-    let found = known_children(node, parts, cx);
+    let found = children_with_known_names(node, parts, cx);
     misplaced::report_misplaced_contents(node, &parts, AXIS_HELP, cx);
     let [damping, friction, stiffness, free] =
         found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
@@ -307,14 +329,14 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
             DriveLaw::Spring { stiffness: stiffness.value[0], free: free.map_or(0.0, |free| free.value[0]) };
         robot.drives.push(Drive {
             name: joint.name.clone(),
-            on: DriveOn::Sum(vec![(joint.name.clone(), 1.0)]),
+            on: DriveTarget::Sum(vec![(joint.name.clone(), 1.0)]),
             law,
         });
     }
 }
 
 fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits {
-    let found = known_children(node, ["lower", "upper", "velocity", "effort"], cx);
+    let found = children_with_known_names(node, ["lower", "upper", "velocity", "effort"], cx);
     misplaced::report_misplaced_contents(
         node,
         &["lower", "upper", "velocity", "effort", "stiffness"],
@@ -322,7 +344,8 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
         cx,
     );
     let is_infinite_limit = |part: Node<'_>, cx: &Cx<'_>| {
-        read_word(part, cx).is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
+        read_trimmed_content(part, cx)
+            .is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
     };
     let mut number = |part: Option<Node<'_>>| {
         let part = part.filter(|part| !is_infinite_limit(*part, cx))?;
@@ -350,21 +373,21 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
 }
 
 /// Reads `<mimic>`: `q = multiplier (q_leader − reference) + offset`.
-fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
+fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<MimicRelation> {
     check_attributes(node, &["joint"], &["axis"], cx);
     let mut leader = read_name_attribute(node, "joint", cx)?;
     leader.text = match node.attribute("axis") {
         Some("axis2") => format!("{}_2", scope.full_name(&leader.text)),
         _ => scope.full_name(&leader.text),
     };
-    let found = known_children(node, ["multiplier", "offset", "reference"], cx);
+    let found = children_with_known_names(node, ["multiplier", "offset", "reference"], cx);
     misplaced::report_misplaced_contents(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
     let [multiplier, offset, reference] =
         found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
     let value_or_default =
         |found: Option<Located<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
     let multiplier = value_or_default(multiplier, 1.0);
-    Some(Mimic {
+    Some(MimicRelation {
         joint: leader,
         multiplier,
         offset: value_or_default(offset, 0.0) - multiplier * value_or_default(reference, 0.0),

@@ -6,13 +6,13 @@ use super::version::is_before_version;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, check_element_name, check_value_element, child_elements, element_position,
-    known_children, read_numbers_content, read_word,
+    Node, check_attributes, check_attributes_of_value_element, check_element_name, child_elements,
+    children_with_known_names, element_source_position, read_numbers_content, read_trimmed_content,
 };
 use crate::import::misplaced;
 use crate::import::pose::{FilePose, Matrix, rotated_tensor};
 use crate::import::robot::massless_link;
-use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
+use crate::syntax::{Body, Expr, ExprKind, FileOptions, InertiaOption, Name};
 
 /// Entries of the SDF inertia matrix with their defaults, kg·m².
 const INERTIA: [(&str, f64); 6] =
@@ -38,7 +38,7 @@ pub(super) fn read_link(
     check_attributes(node, &["name"], &[], cx);
     frames.resolve_pose(name, cx)?;
     let mut body = massless_link(name.clone());
-    check_link_motion(node, options, cx);
+    report_unsupported_link_settings(node, options, cx);
     child_elements(node).for_each(|child| check_element_name(child, &LINK, cx));
     misplaced::report_misplaced_contents(
         node,
@@ -46,22 +46,22 @@ pub(super) fn read_link(
         "mass properties belong to `<inertial>`, and connections of links to `<joint>`",
         cx,
     );
-    if options.inertias == Inertias::None {
+    if options.inertias == InertiaOption::None {
         return Some(body);
     }
-    let [inertial] = known_children(node, ["inertial"], cx);
-    let at = element_position(inertial.unwrap_or(node), cx);
+    let [inertial] = children_with_known_names(node, ["inertial"], cx);
+    let at = element_source_position(inertial.unwrap_or(node), cx);
     let [pose, mass, inertia, water] = match inertial {
         Some(inertial) => {
-            check_computed_inertia(inertial, &at, cx);
-            check_value_element(inertial, &["auto"], cx);
+            report_automatic_inertia(inertial, &at, cx);
+            check_attributes_of_value_element(inertial, &["auto"], cx);
             misplaced::report_misplaced_contents(inertial, &["pose", "mass", "inertia"], PARTS_HELP, cx);
-            known_children(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
+            children_with_known_names(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
         }
         None => [None; 4],
     };
     if let Some(water) = water {
-        cx.report_error(&element_position(water, cx), "`<fluid_added_mass>` is not supported", |d| {
+        cx.report_error(&element_source_position(water, cx), "`<fluid_added_mass>` is not supported", |d| {
             d.add_help("remove it")
         });
     }
@@ -87,7 +87,7 @@ pub(super) fn read_link(
     if !body
         .inertia
         .iter()
-        .flat_map(Expr::subexpressions)
+        .flat_map(Expr::all_subexpressions)
         .filter_map(Expr::literal_number)
         .all(f64::is_finite)
     {
@@ -97,22 +97,24 @@ pub(super) fn read_link(
 }
 
 /// Reports settings of a link that affect its motion and are not supported.
-fn check_link_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
+fn report_unsupported_link_settings(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
     for child in child_elements(node) {
         let kind = child.tag_name().name();
-        let off = read_word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "false" | "0"));
+        let off =
+            read_trimmed_content(child, cx).is_some_and(|word| matches!(word.text.as_str(), "false" | "0"));
         if (kind == "gravity" && off) || (kind == "kinematic" && !off) {
             let message = format!("`<{kind}>` of a link is not supported");
-            cx.report_error(&element_position(child, cx), message, |d| {
+            cx.report_error(&element_source_position(child, cx), message, |d| {
                 d.add_help("remove it: gravity acts on all links, and forces move them")
             });
         }
         let decays = kind == "velocity_decay"
-            && child_elements(child)
-                .any(|rate| read_word(rate, cx).is_none_or(|word| word.text.parse::<f64>() != Ok(0.0)));
+            && child_elements(child).any(|rate| {
+                read_trimmed_content(rate, cx).is_none_or(|word| word.text.parse::<f64>() != Ok(0.0))
+            });
         if decays && options.honour_passive {
             cx.report_error(
-                &element_position(child, cx),
+                &element_source_position(child, cx),
                 "`<velocity_decay>` of a link is not supported",
                 |d| d.add_help("to ignore it, write `#[mechanism(…, passive = ignore)]`"),
             );
@@ -120,7 +122,7 @@ fn check_link_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
     }
 }
 
-fn check_computed_inertia(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
+fn report_automatic_inertia(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
     check_attributes(inertial, &[], &["auto"], cx);
     if inertial.attribute("auto").is_some_and(|auto| matches!(auto, "true" | "1")) {
         let message = "mass properties by collision geometry are not supported";
@@ -131,9 +133,9 @@ fn check_computed_inertia(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
 fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     let mut entries = INERTIA.map(|(_, usual)| usual);
     if let Some(inertia) = inertia {
-        check_value_element(inertia, &[], cx);
+        check_attributes_of_value_element(inertia, &[], cx);
         misplaced::report_misplaced_contents(inertia, &INERTIA.map(|(entry, _)| entry), PARTS_HELP, cx);
-        let found = known_children(inertia, INERTIA.map(|(entry, _)| entry), cx);
+        let found = children_with_known_names(inertia, INERTIA.map(|(entry, _)| entry), cx);
         for (to, from) in entries.iter_mut().zip(found) {
             if let Some(found) = from.and_then(|from| read_numbers_content::<1>(from, cx)) {
                 *to = found.value[0];

@@ -5,18 +5,18 @@
 
 use super::context::{Cx, quote_word};
 use super::element::{
-    Node, check_attributes, check_element_name, child_elements, element_position, quoted_tag,
-    read_name_attribute, read_numbers_content, read_word, relevant_contents,
+    Node, check_attributes, check_element_name, child_elements, element_source_position,
+    nonblank_known_contents, quoted_tag, read_name_attribute, read_numbers_content, read_trimmed_content,
 };
 use super::misplaced;
 use super::pose::FilePose;
 use crate::diag::Diagnostics;
-use crate::import::imported::Imported;
+use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot, origin_from_pose};
 use crate::import::whole::import_composed_text;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
-use frames::{Frames, SdfFrame, name_in_owner, own_frames, read_frame};
-use scope::{Scope, WORLD, World};
+use frames::{Frames, SdfFrame, frame_elements_inside, name_in_owner, read_pose_element};
+use scope::{Scope, WORLD, WorldNames};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::rc::Rc;
@@ -82,7 +82,7 @@ const ASIDE: [(&str, &str); 12] = [
 
 /// Elements of an SDF file, collected before their contents are read.
 #[derive(Default)]
-struct SdfReader<'a> {
+struct CollectedSdfElements<'a> {
     frames: Frames,
     links: Vec<(Node<'a>, Name, Scope)>,
     /// Names of the frames that `<frame>` elements define.
@@ -91,7 +91,7 @@ struct SdfReader<'a> {
 }
 
 /// Models of the mechanism, each with the prefix of the full names of its elements.
-struct Models<'a> {
+struct PrefixedModels<'a> {
     moving: Vec<(Node<'a>, String)>,
     /// Static models in the world of the mechanism.
     fixed: Vec<(Node<'a>, String)>,
@@ -105,7 +105,7 @@ pub(super) fn import_sdf(
     path: &Path,
     options: &FileOptions,
     cx: &mut Diagnostics,
-) -> Option<Imported> {
+) -> Option<ImportedMechanism> {
     let whole = include::read_with_includes(text, path, &options.path, cx)?;
     let folder = path.parent().unwrap_or(path);
     import_composed_text(whole, &options.path, FileFormat::Sdf, cx, |root, cx| {
@@ -119,9 +119,9 @@ fn read_root_element<'a>(
     folder: &Path,
     options: &FileOptions,
     cx: &mut Cx<'_>,
-) -> Option<Imported> {
+) -> Option<ImportedMechanism> {
     let top = find_models(root_node, cx)?;
-    let mut reader = SdfReader::default();
+    let mut reader = CollectedSdfElements::default();
     reader.read_top_models(&top, cx)?;
     let mut robot = Robot::default();
     for (node, name, scope) in &reader.links {
@@ -140,19 +140,19 @@ fn read_root_element<'a>(
         joint::read_joint((*node, name, scope), &reader.frames, options, &mut robot, cx);
     }
     if robot.links.is_empty() && !cx.has_errors() {
-        cx.report_error(&element_position(top.moving[0].0, cx), "model without a link", |d| {
+        cx.report_error(&element_source_position(top.moving[0].0, cx), "model without a link", |d| {
             d.add_help("expected `<link name=\"…\"/>`")
         });
     }
     if !cx.has_errors() {
         reader.add_frame_links(&mut robot, cx);
-        robot::close_loops(&mut robot, cx);
+        robot::separate_loop_closing_joints(&mut robot, cx);
     }
     robot::check_names(&robot, options.format, cx);
     robot::declare_world_link(&mut robot);
     robot::rename_ground(&mut robot, options.base);
-    robot::check_unknown_links(&robot, cx);
-    robot::check_joint_ends(&robot, options.format, cx);
+    robot::report_unknown_links(&robot, cx);
+    robot::report_wrong_joint_ends(&robot, options.format, cx);
     robot::check_locked_names(&robot.joints, &options.lock, cx);
     if let Some(tolerance) = options.snap.filter(|_| !cx.has_errors()) {
         robot.snapped =
@@ -161,7 +161,7 @@ fn read_root_element<'a>(
     if cx.has_errors() {
         return None;
     }
-    let order = robot::order_joints(&robot, cx)?;
+    let order = robot::order_joints_along_tree(&robot, cx)?;
     let motions = robot::resolve_motions(&robot.joints, &options.lock, cx)?;
     let root = robot.links.get(order.root)?.name.clone();
     // If the root is a frame of the file, its pose relative to the world is known.
@@ -196,11 +196,11 @@ fn ignored_contents(root: Node<'_>, options: &FileOptions) -> Vec<String> {
 }
 
 /// Returns the only moving model of a file, or several models that joints of their world connect.
-fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
+fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<PrefixedModels<'a>> {
     let kind = root.tag_name().name();
     if kind != "sdf" {
         let message = format!("expected `<sdf>`, found {}", quoted_tag(root));
-        cx.report_error(&element_position(root, cx), message, |d| match kind {
+        cx.report_error(&element_source_position(root, cx), message, |d| match kind {
             "robot" => d.add_help("this is a URDF file: write `urdf = \"…\"` instead of `sdf = \"…\"`"),
             "gazebo" => d.add_help(
                 "files of versions 1.0 and 1.2 begin so: convert the file, `gz sdf -p robot.sdf > \
@@ -240,18 +240,18 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
                 world_of_model(model) == world && (has_child_of_kind("joint") || has_child_of_kind("frame"))
             });
             let fixed = models_with_prefix(fixed, &format!("{WORLD}::"));
-            return Some(Models { moving: vec![(*one, String::new())], fixed, world });
+            return Some(PrefixedModels { moving: vec![(*one, String::new())], fixed, world });
         }
         [_, _, ..] if is_joined => {
             fixed.retain(|model| world_of_model(model) == world);
             let fixed = models_with_prefix(fixed, &format!("{WORLD}::"));
-            return Some(Models { moving: models_with_prefix(found, ""), fixed, world });
+            return Some(PrefixedModels { moving: models_with_prefix(found, ""), fixed, world });
         }
-        [] => cx.report_error(&element_position(root, cx), "SDF file without a model", |d| {
+        [] => cx.report_error(&element_source_position(root, cx), "SDF file without a model", |d| {
             d.add_help("expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
         }),
         [_, second, ..] => {
-            cx.report_error(&element_position(*second, cx), "SDF file with several models", |d| {
+            cx.report_error(&element_source_position(*second, cx), "SDF file with several models", |d| {
                 d.add_help(
                     "a mechanism is one model, or several that joints of their world connect: put the others \
                  into files of their own",
@@ -269,8 +269,8 @@ fn first_child<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
 
 /// Returns whether an SDF model is static, so that its links do not move.
 fn is_static(model: Node<'_>) -> bool {
-    let text =
-        first_child(model, "static").and_then(|said| relevant_contents(said).find_map(|text| text.text()));
+    let text = first_child(model, "static")
+        .and_then(|said| nonblank_known_contents(said).find_map(|text| text.text()));
     text.is_some_and(|word| matches!(word.trim(), "true" | "1"))
 }
 
@@ -282,23 +282,23 @@ fn gravity_of_world(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
         let of_physics = first_child(first_child(world, "physics")?, "gravity")?;
         if !version::is_before_version(world, GRAVITY_OF_WORLD) {
             let message = "`<gravity>` is an element of the world since version 1.6 of SDF";
-            cx.report_error(&element_position(of_physics, cx), message, |d| {
+            cx.report_error(&element_source_position(of_physics, cx), message, |d| {
                 d.add_help("move it from `<physics>` into `<world>`")
             });
         }
         Some(of_physics)
     });
-    let at = element_position(said.unwrap_or(world), cx);
+    let at = element_source_position(said.unwrap_or(world), cx);
     let value =
         said.and_then(|said| read_numbers_content(said, cx)).map_or([0.0, 0.0, -9.8], |found| found.value);
     Some(Expr::vector_at(value, &at))
 }
 
-impl<'a> SdfReader<'a> {
+impl<'a> CollectedSdfElements<'a> {
     /// Collects the links, joints and frames of the models and of their world.
-    fn read_top_models(&mut self, top: &Models<'a>, cx: &mut Cx<'_>) -> Option<()> {
+    fn read_top_models(&mut self, top: &PrefixedModels<'a>, cx: &mut Cx<'_>) -> Option<()> {
         let all = [top.moving.as_slice(), &top.fixed].concat();
-        let world = Scope::World(Rc::new(World::new(top.world, &all)));
+        let world = Scope::WorldNames(Rc::new(WorldNames::new(top.world, &all)));
         for (model, prefix) in &top.moving {
             self.read_models((*model, prefix), &world, false, cx)?;
         }
@@ -344,15 +344,15 @@ impl<'a> SdfReader<'a> {
                     d.add_help("give the model a `<pose>`")
                 });
             }
-            let own = scope.full_frame_name();
-            let mut frame = read_frame(node, &outer, &outer.full_frame_name(), cx);
+            let own = scope.full_name_of_scope_frame();
+            let mut frame = read_pose_element(node, &outer, &outer.full_name_of_scope_frame(), cx);
             frame.attached = match is_fixed {
-                true => Some(Name { text: WORLD.to_string(), place: element_position(node, cx) }),
+                true => Some(Name { text: WORLD.to_string(), place: element_source_position(node, cx) }),
                 false => canonical_link(node, &scope, cx),
             };
             if !prefix.is_empty() {
                 let short = prefix.trim_end_matches("::").to_string();
-                let base = Name { text: own.clone(), place: element_position(node, cx) };
+                let base = Name { text: own.clone(), place: element_source_position(node, cx) };
                 let same = SdfFrame { attached: Some(base.clone()), base, pose: FilePose::ZERO };
                 self.frames.known.insert(short, same);
             }
@@ -369,11 +369,11 @@ impl<'a> SdfReader<'a> {
                     }
                     "static"
                         if !is_fixed
-                            && read_word(child, cx)
+                            && read_trimmed_content(child, cx)
                                 .is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
                     {
                         cx.report_error(
-                            &element_position(child, cx),
+                            &element_source_position(child, cx),
                             "the model is static and cannot move",
                             |d| d.add_help("remove `<static>`"),
                         );
@@ -383,7 +383,7 @@ impl<'a> SdfReader<'a> {
             }
             if self.links.len() > MAX_ELEMENTS || self.joints.len() > MAX_ELEMENTS {
                 cx.report_error(
-                    &element_position(node, cx),
+                    &element_source_position(node, cx),
                     format!("more than {MAX_ELEMENTS} links or joints"),
                     |d| d,
                 );
@@ -406,27 +406,27 @@ impl<'a> SdfReader<'a> {
             check_attributes(node, &["name"], &[], cx);
             return;
         };
-        part.text = scope.name_of_part(&part.text);
+        part.text = scope.full_name_of_declared_element(&part.text);
         let base = match kind {
             // The pose of a joint is relative to its child by default.
-            "joint" => joint::frame_at_joint_end(node, "child", scope, cx)
-                .map_or(scope.full_frame_name(), |child| child.text),
+            "joint" => joint::frame_name_at_joint_end(node, "child", scope, cx)
+                .map_or(scope.full_name_of_scope_frame(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
                 Some(to) => scope.full_name(to),
-                None => scope.full_frame_name(),
+                None => scope.full_name_of_scope_frame(),
             },
-            _ => scope.full_frame_name(),
+            _ => scope.full_name_of_scope_frame(),
         };
-        let mut frame = read_frame(node, scope, &base, cx);
-        let at = element_position(node, cx);
-        let name_at_element = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        let mut frame = read_pose_element(node, scope, &base, cx);
+        let at = element_source_position(node, cx);
+        let name_with_element_span = |text: &str| Name { text: text.to_string(), place: at.clone() };
         frame.attached = match kind {
-            "link" => is_fixed.then(|| name_at_element(WORLD)),
-            _ => Some(name_at_element(&base)),
+            "link" => is_fixed.then(|| name_with_element_span(WORLD)),
+            _ => Some(name_with_element_span(&base)),
         };
-        for own in own_frames(node) {
-            let mut frame = read_frame(own, scope, &part.text, cx);
-            frame.attached = Some(name_at_element(&part.text));
+        for own in frame_elements_inside(node) {
+            let mut frame = read_pose_element(own, scope, &part.text, cx);
+            frame.attached = Some(name_with_element_span(&part.text));
             self.frames
                 .known
                 .insert(name_in_owner(&part.text, own.attribute("name").unwrap_or_default()), frame);
@@ -460,7 +460,7 @@ impl<'a> SdfReader<'a> {
             let text = robot::unused_name(&format!("{}_weld", mark.text), |name| names.contains(name));
             names.insert(text.clone());
             let name = Name { text, place: mark.place.clone() };
-            robot.joints.push(joint::fixed_joint(
+            robot.joints.push(joint::fixed_joint_between_links(
                 name,
                 carrier,
                 mark.clone(),
@@ -481,7 +481,10 @@ fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     }
     let child_name = |what: &str| {
         let found = first_child(node, what)?;
-        Some(Name { text: scope.full_name(found.attribute("name")?), place: element_position(found, cx) })
+        Some(Name {
+            text: scope.full_name(found.attribute("name")?),
+            place: element_source_position(found, cx),
+        })
     };
     child_name("link").or_else(|| child_name("model"))
 }

@@ -14,21 +14,21 @@ pub(super) enum Scope {
     /// is empty for the only model of a file.
     Model(String),
     /// Scope of the world around the models.
-    World(Rc<World>),
+    WorldNames(Rc<WorldNames>),
 }
 
 /// Names that an SDF world defines for its joints and frames.
 #[derive(Debug, Default)]
-pub(super) struct World {
+pub(super) struct WorldNames {
     /// Prefix of the full names of elements in each model of the world.
     models: BTreeMap<String, String>,
     /// Full name of each frame and joint of the world.
     parts: BTreeMap<String, String>,
 }
 
-impl World {
+impl WorldNames {
     /// Collects the names in the SDF world `node`, if it exists, whose `models` have these prefixes.
-    pub(super) fn new(node: Option<Node<'_>>, models: &[(Node<'_>, String)]) -> World {
+    pub(super) fn new(node: Option<Node<'_>>, models: &[(Node<'_>, String)]) -> WorldNames {
         let name = |node: &Node<'_>| node.attribute("name").map(str::to_string);
         // Elements of a model without a prefix keep their names; equal names of the world get a prefix
         // instead.
@@ -41,7 +41,7 @@ impl World {
             true => (name.clone(), format!("{WORLD}::{name}")),
             false => (name.clone(), name),
         };
-        World {
+        WorldNames {
             models: models
                 .iter()
                 .filter_map(|(model, prefix)| Some((name(model)?, prefix.clone())))
@@ -58,7 +58,7 @@ impl Scope {
             (_, WORLD) => WORLD.to_string(),
             (Scope::Model(prefix), "__model__") => full_model_frame_name(prefix),
             (Scope::Model(prefix), _) => format!("{prefix}{name}"),
-            (Scope::World(world), _) => {
+            (Scope::WorldNames(world), _) => {
                 let (first, rest) = name.split_once("::").unwrap_or((name, "__model__"));
                 match (world.models.get(first), world.parts.get(name)) {
                     (Some(prefix), _) => format!("{prefix}{rest}"),
@@ -70,18 +70,18 @@ impl Scope {
     }
 
     /// Returns the full name of an element that is declared with this name.
-    pub(super) fn name_of_part(&self, name: &str) -> String {
+    pub(super) fn full_name_of_declared_element(&self, name: &str) -> String {
         match self {
             Scope::Model(prefix) => format!("{prefix}{name}"),
-            Scope::World(_) => self.full_name(name),
+            Scope::WorldNames(_) => self.full_name(name),
         }
     }
 
     /// Returns the full name of the frame of the model, or of the world.
-    pub(super) fn full_frame_name(&self) -> String {
+    pub(super) fn full_name_of_scope_frame(&self) -> String {
         match self {
             Scope::Model(prefix) => full_model_frame_name(prefix),
-            Scope::World(_) => WORLD.to_string(),
+            Scope::WorldNames(_) => WORLD.to_string(),
         }
     }
 }

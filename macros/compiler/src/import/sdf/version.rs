@@ -1,7 +1,7 @@
 //! SDF version of the file in which an element is written.
 
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, element_position};
+use crate::import::element::{Node, element_source_position};
 
 /// Attribute in which an included model stores the version of its own file.
 pub(super) const OF_INCLUDED: &str = "sdf_version";
@@ -21,7 +21,7 @@ pub(super) fn is_before_version(node: Node<'_>, number: (u32, u32)) -> bool {
 }
 
 /// Reports an invalid or unsupported version of SDF.
-pub(super) fn check_version(root: Node<'_>, cx: &mut Cx<'_>) {
+pub(super) fn report_unsupported_sdf_version(root: Node<'_>, cx: &mut Cx<'_>) {
     let is_sdf = root.tag_name().name() == "sdf";
     let Some(version) = root.attribute_node("version").filter(|_| is_sdf) else { return };
     let at = cx.source_position(version.range_value().start);
@@ -37,7 +37,7 @@ pub(super) fn check_version(root: Node<'_>, cx: &mut Cx<'_>) {
 
 /// Reports an SDF file of version 1.0, whose elements have other names.
 pub(super) fn report_first_version(root: Node<'_>, cx: &mut Cx<'_>) {
-    cx.report_error(&element_position(root, cx), "version 1.0 of SDF is not supported", |d| {
+    cx.report_error(&element_source_position(root, cx), "version 1.0 of SDF is not supported", |d| {
         d.add_help("convert the file: `gz sdf -p robot.sdf > converted.sdf`")
     });
 }

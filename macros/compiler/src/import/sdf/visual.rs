@@ -2,10 +2,10 @@
 //! error.
 
 use super::collision::{SHAPES, read_shape};
-use super::frames::{Frames, origin_in_link};
+use super::frames::{Frames, element_origin_in_link};
 use super::scope::Scope;
 use crate::import::context::Cx;
-use crate::import::element::{Node, child_elements, read_numbers_content, read_word};
+use crate::import::element::{Node, child_elements, read_numbers_content, read_trimmed_content};
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Name, Shape};
 
@@ -29,7 +29,7 @@ fn read_visual(
     let geometry = child_elements(node).find(|child| child.tag_name().name() == "geometry")?;
     let is_shape = |child: &Node<'_>| SHAPES.contains(&child.tag_name().name());
     let form = child_elements(geometry).find(is_shape)?;
-    let origin = origin_in_link(node, link, frames, cx)?;
+    let origin = element_origin_in_link(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = if shape == Shape::Mesh { Some(read_mesh(form, cx)?) } else { None };
     Some(FileVisual { origin, shape, mesh })
@@ -37,7 +37,7 @@ fn read_visual(
 
 fn read_mesh(form: Node<'_>, cx: &mut Cx<'_>) -> Option<Mesh> {
     let find_child_by_tag = |name: &str| child_elements(form).find(|child| child.tag_name().name() == name);
-    let path = read_word(find_child_by_tag("uri")?, cx)?.text;
+    let path = read_trimmed_content(find_child_by_tag("uri")?, cx)?.text;
     let scale = find_child_by_tag("scale")
         .map_or(Some([1.0; 3]), |scale| read_numbers_content(scale, cx).map(|found| found.value))?;
     Some(Mesh { path, scale })

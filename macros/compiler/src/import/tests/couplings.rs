@@ -1,12 +1,12 @@
 //! Tests of actuators and couplings of joints in MJCF files.
 
-use super::mjcf::{check_mjcf_elements, mjcf_options};
+use super::mjcf::{check_import_of_mjcf_elements, mjcf_options};
 use super::*;
 use crate::syntax::Key;
 
 #[test]
 fn position_servos_become_inputs_with_springs() {
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         "<worldbody><body name='b'><joint name='j'/></body></worldbody><actuator>
          <motor name='m' joint='j' gear='5'/> <position joint='j' kp='4' gear='2'/>
          <general name='g' joint='j' gainprm='3' biastype='affine' biasprm='1 0 -2'/></actuator>",
@@ -30,7 +30,7 @@ fn coupled_joints_follow_or_are_locked() {
              </body></body></worldbody><equality>{equality}</equality>"
         )
     };
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<joint joint1='k' joint2='j' polycoef='5 -3'/>"),
         "the root is the ground
          body b
@@ -38,7 +38,7 @@ fn coupled_joints_follow_or_are_locked() {
          Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
          Sleeve k: b.at([0, 0, -2]) -> c along [0, 0, 1] = -3 j + 10",
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<joint joint1='k' polycoef='5'/>"),
         "the root is the ground
          body b
@@ -46,12 +46,12 @@ fn coupled_joints_follow_or_are_locked() {
          Sleeve j: ground.at([0, 0, -1]) -> b along [0, 0, 1]
          Weld k: b.at([0, 0, 5]) -> c",
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<joint joint1='k' joint2='jj'/>"),
         "r.xml:2:180: unknown joint `jj`
          = help: did you mean `j`?",
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<flex flex='b'/>"),
         "r.xml:2:154: the coupling `<flex>` is not supported
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
@@ -77,18 +77,18 @@ fn linear_and_polynomial_couplings_become_constraints() {
         )
     };
     // 2 (j − 1) + 4 (k − 2) = 6
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<tendon tendon1='s' polycoef='6'/>"),
         &expected_bodies_and_joints(" = -0.5 j + 4"),
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<tendon name='w' tendon1='s' tendon2='t' polycoef='5 6 7'/>"),
         &format!(
             "{}\nw: ((-10 + (2 * j)) + (4 * k)) = (5 + ((6 + (7 * (-6 + (3 * k)))) * (-6 + (3 * k))))",
             expected_bodies_and_joints("")
         ),
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<joint joint1='j' joint2='k' polycoef='0 0 1'/>"),
         &format!(
             "{}\njoint_coupling: (-1 + (1 * j)) = (0 + ((0 + (1 * (-2 + (1 * k)))) * (-2 + (1 * k))))",
@@ -96,7 +96,7 @@ fn linear_and_polynomial_couplings_become_constraints() {
         ),
     );
     // Two constraints on one joint.
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<joint joint1='k' joint2='j'/><tendon tendon1='s'/>"),
         &format!(
             "{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0",
@@ -119,7 +119,7 @@ fn linear_and_polynomial_couplings_become_constraints() {
         let model = model_with_equality(equality)
             .replace("<worldbody>", sites)
             .replace("</tendon><eq", &format!("{cable}<eq"));
-        check_mjcf_elements(&model, &expected);
+        check_import_of_mjcf_elements(&model, &expected);
     }
 }
 
@@ -180,7 +180,7 @@ fn actuator_defaults_of_a_class_form_one_record() {
         let imported =
             import_text(&text, &mjcf_options(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
         let laws = imported.drives.iter().map(|drive| match (&drive.on, &drive.law) {
-            (DriveOn::Sum(terms), DriveLaw::Input(_)) => format!("input {}", terms[0].1),
+            (DriveTarget::Sum(terms), DriveLaw::Input(_)) => format!("input {}", terms[0].1),
             (_, DriveLaw::Spring { stiffness, free }) => format!("spring {stiffness} from {free}"),
             (_, DriveLaw::Damper(damping)) => format!("damper {damping}"),
             other => panic!("{other:?}"),
@@ -221,7 +221,7 @@ fn attributes_of_newer_mujoco_versions_are_rejected() {
         ),
         ("", "delay='0.1'", format!("r.xml:2:107: `delay` of an actuator is not supported\n{inputs}")),
     ] {
-        check_mjcf_elements(&model_with_joint_and_motor(joint, motor), &expected);
+        check_import_of_mjcf_elements(&model_with_joint_and_motor(joint, motor), &expected);
     }
 }
 
@@ -242,29 +242,29 @@ fn connect_and_weld_constraints_close_loops() {
          Weld c_weld: ground -> c
          Weld d_weld: ground.at([0, 0, 2]) -> d
          Weld s_weld: d.at([0, 0, 3]) -> s";
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<connect body1='b' body2='d' anchor='1 2 4'/>"),
         &format!("{start}\nBall connect1: b.at([1, 2, 4]) -> d.at([2, -4, 0])"),
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<weld body1='d'/>"),
         &format!("{start}\nWeld weld1: d.at([0, 0, -2]) -> ground"),
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<weld name='w' body1='d' relpose='1 2 3 1 0 0 0' body2='b'/>"),
         &format!("{start}\nWeld w: d.at([1, 2, 3]) -> b"),
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<connect site1='s' site2='s'/>"),
         "r.xml:2:194: body `d` closes a loop with itself
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<weld body1='c' body2='b'/>"),
         "r.xml:2:181: `c` is a mocap body, which does not move here
          = help: to ignore `<equality>`, write `#[mechanism(…, mimic = independent)]`",
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_equality("<weld body1='e'/>"),
         "r.xml:2:181: unknown body `e`
          = help: expected `b`, `c` or `d`",
@@ -277,7 +277,7 @@ fn connect_and_weld_constraints_close_loops() {
 fn rotor_inertia_is_scaled_by_the_squared_gear_ratio() {
     let model = "<worldbody><body name='b'><joint name='j'/></body></worldbody>
          <actuator><motor name='m' joint='j' gear='3' armature='0.5' damping='0.2'/></actuator>";
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         model,
         "the root is the ground
          body b
@@ -287,7 +287,7 @@ fn rotor_inertia_is_scaled_by_the_squared_gear_ratio() {
          m: input in N·m on 3 j",
     );
     check_with_options(
-        &FileOptions { inputs: InputOption::Joints, ..mjcf_options() },
+        &FileOptions { inputs: FileInputSource::Joints, ..mjcf_options() },
         &format!("<mujoco>\n{model}\n</mujoco>"),
         "the root is the ground
          body b
@@ -348,7 +348,7 @@ fn disabled_actuators_create_no_inputs() {
              <actuator><motor name='m' joint='j' group='3' armature='0.5'/><motor name='n' joint='j'/></actuator>"
         )
     };
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_option("actuatorgroupdisable='1 3'"),
         "the root is the ground
          body b
@@ -357,7 +357,7 @@ fn disabled_actuators_create_no_inputs() {
          n: input in N·m on 1 j
          left out actuators of disabled groups: 1",
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_option("actuatorgroupdisable='1 31'"),
         "r.xml:2:31: `actuatorgroupdisable` is `1 31`
          = help: expected numbers of groups from 0 to 30",
@@ -379,7 +379,7 @@ fn tendon_springs_have_the_rest_lengths_of_mujoco() {
         ("0", "spring 10 from 0".to_string()),
         ("-1.5", "spring 10 from -1.5".to_string()),
     ] {
-        check_mjcf_elements(
+        check_import_of_mjcf_elements(
             &format!(
                 "<default><tendon springlength='0.1 0.5'/></default>
                  <worldbody><body name='b'><joint name='j' springref='17'/></body></worldbody>\
@@ -406,7 +406,7 @@ fn weld_with_anchor_has_the_relative_pose_of_the_file() {
         ("anchor='0.2 0 0'", "a.at([1, 0, 0]) -> b"),
         ("anchor='0.2 0 0' relpose='0.5 0 0 0 0 0 0'", "a.at([1, 0, 0]) -> b"),
     ] {
-        check_mjcf_elements(
+        check_import_of_mjcf_elements(
             &model_with_weld(said),
             &format!(
                 "the root is the ground\nbody a\nbody b\nSleeve j: ground -> a along [0, 0, 1]
@@ -426,12 +426,12 @@ fn contradictory_couplings_of_fixed_joints_are_reported() {
              <equality><joint name='e' joint1='j' polycoef='1'/><joint name='f' joint1='k' joint2='j'/>{last}</equality>"
         )
     };
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_last_coupling("<joint name='g' joint1='k' polycoef='3'/>"),
         "r.xml:3:117: the coupling `g` contradicts others: the joints that it couples cannot move, and it is violated by -2
          = help: remove it, or the constraints that fix these joints",
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_last_coupling("<joint name='g' joint1='k' polycoef='1'/>"),
         "the root is the ground
          body b

@@ -1,15 +1,15 @@
 //! Tests of reading robot files from paths.
 
 use crate::diag::Diagnostics;
-use crate::import::tests::{Folder, default_options, test_name};
-use crate::import::{FileOptions, read_file};
+use crate::import::tests::{Folder, default_file_options, name_at_call_site};
+use crate::import::{FileOptions, read_imported_file};
 use std::fs;
 
 /// Returns the text of a file in a folder, or the errors without the name of the folder.
 fn import_test_file(folder: &Folder, file: &str) -> String {
     let mut cx = Diagnostics::new();
-    let options = FileOptions { path: test_name(file), ..default_options() };
-    let text = read_file(&folder.0.join(file), &options, &mut cx);
+    let options = FileOptions { path: name_at_call_site(file), ..default_file_options() };
+    let text = read_imported_file(&folder.0.join(file), &options, &mut cx);
     assert_eq!(text.is_some(), cx.is_empty());
     text.unwrap_or_else(|| cx.messages().join("\n").replace(&format!("{}/", folder.0.display()), "…"))
 }
@@ -51,9 +51,9 @@ fn binary_files_are_rejected() {
     {
         let found = import_test_file(&folder, "r.urdf/x.urdf");
         assert!(found.starts_with("there is no file `r.urdf/x.urdf`"), "{found}");
-        let options = FileOptions { path: test_name("null"), ..default_options() };
+        let options = FileOptions { path: name_at_call_site("null"), ..default_file_options() };
         let mut cx = Diagnostics::new();
-        assert!(read_file("/dev/null".as_ref(), &options, &mut cx).is_none());
+        assert!(read_imported_file("/dev/null".as_ref(), &options, &mut cx).is_none());
         assert_eq!(cx.messages(), ["`null` is not a regular file"]);
     }
 }

@@ -44,12 +44,12 @@ fn damage_bytes(bytes: &mut Vec<u8>, state: &mut u64) {
 
 #[test]
 fn damaged_urdf_never_panics() {
-    let options = FileOptions { inputs: InputOption::Joints, ..options_with_locked_joints(&["j"]) };
-    damage_gets_an_answer(&options, FILE, "root_joint");
+    let options = FileOptions { inputs: FileInputSource::Joints, ..options_with_locked_joints(&["j"]) };
+    check_damaged_imports(&options, FILE, "root_joint");
 }
 
 /// Imports randomly damaged versions of a file. `sign` is a text that occurs in results but not in errors.
-pub(super) fn damage_gets_an_answer(options: &FileOptions, file: &str, sign: &str) {
+pub(super) fn check_damaged_imports(options: &FileOptions, file: &str, sign: &str) {
     let mut state = 0x9E37_79B9_7F4A_7C15;
     let mut good = 0;
     for round in 0..4000 {
@@ -66,7 +66,7 @@ pub(super) fn damage_gets_an_answer(options: &FileOptions, file: &str, sign: &st
 #[test]
 fn truncated_urdf_never_panics() {
     for end in 0..FILE.len() {
-        assert!(!import_as_text(&default_options(), &FILE[..end]).contains("root_joint"));
+        assert!(!import_as_text(&default_file_options(), &FILE[..end]).contains("root_joint"));
     }
-    assert!(import_as_text(&default_options(), FILE).contains("root_joint"));
+    assert!(import_as_text(&default_file_options(), FILE).contains("root_joint"));
 }

@@ -4,16 +4,16 @@ use super::*;
 use crate::syntax::file_parameters::FileParameters;
 
 /// Checks the last joints imported from a chain of URDF joints.
-fn check_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
-    check_with_options(options, &chain_of_links(joints), &(chain_bodies(joints.len()) + expected));
+fn check_imported_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
+    check_with_options(options, &chain_of_links(joints), &(expected_chain_lines(joints.len()) + expected));
 }
 
 #[test]
 fn every_urdf_joint_type_is_converted() {
     let axis = "<axis xyz='0 0 2'/>";
     let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
-    check_chain(
-        &FileOptions { inputs: InputOption::Joints, ..default_options() },
+    check_imported_chain(
+        &FileOptions { inputs: FileInputSource::Joints, ..default_file_options() },
         &kinds.map(|kind| (kind, axis)),
         "Pin j1: l0 -> l1 about [0, 0, 2] driven
          Pin j2: l1 -> l2 about [0, 0, 2] driven
@@ -27,8 +27,8 @@ fn every_urdf_joint_type_is_converted() {
 
 #[test]
 fn urdf_joint_axis_defaults_to_x() {
-    check_chain(
-        &default_options(),
+    check_imported_chain(
+        &default_file_options(),
         &[
             ("revolute", ""),
             ("prismatic", "<origin rpy='0 0 0'/>"),
@@ -38,7 +38,7 @@ fn urdf_joint_axis_defaults_to_x() {
          Sleeve j2: l1 -> l2 along [1, 0, 0]
          Weld j3: l2 -> l3",
     );
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[("revolute", "<axis xyz='0 0 0.0'/>")]),
         "r.urdf:3:82: axis of zero length has no direction",
     );
@@ -46,8 +46,8 @@ fn urdf_joint_axis_defaults_to_x() {
 
 #[test]
 fn joint_origin_combines_position_and_rotated_axes() {
-    check_chain(
-        &default_options(),
+    check_imported_chain(
+        &default_file_options(),
         &[
             ("revolute", "<origin xyz='1 2 3' rpy='0.1 0.2 0.3'/>"),
             ("fixed", "<origin rpy='0.1 0 0.3'/>"),
@@ -59,7 +59,7 @@ fn joint_origin_combines_position_and_rotated_axes() {
          Free j3: l2.at([0, 0, 1]) -> l3
          Weld j4: l3 -> l4",
     );
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[("revolute", "<origin xyz='0 0 0' quat_xyzw='0 0 0 1'/>")]),
         r#"r.urdf:3:91: `quat_xyzw` is not supported
            = help: expected `rpy="roll pitch yaw"`"#,
@@ -70,19 +70,19 @@ fn joint_origin_combines_position_and_rotated_axes() {
 fn passive_joint_forces_are_read_unless_ignored() {
     let joints =
         [("revolute", "<dynamics damping='2' friction='3'/>"), ("prismatic", "<dynamics friction='0'/>")];
-    check_chain(
-        &default_options(),
+    check_imported_chain(
+        &default_file_options(),
         &joints,
         "Pin j1: l0 -> l1 about [1, 0, 0] damping=2 friction=3
          Sleeve j2: l1 -> l2 along [1, 0, 0]",
     );
-    let ignore = FileOptions { honour_passive: false, ..default_options() };
-    check_chain(
+    let ignore = FileOptions { honour_passive: false, ..default_file_options() };
+    check_imported_chain(
         &ignore,
         &[("revolute", "<dynamics damping='-2' friction='x'/>")],
         "Pin j1: l0 -> l1 about [1, 0, 0]",
     );
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[("revolute", "<dynamics damping='-2'/>"), ("planar", "<dynamics friction='1'/>")]),
         "r.urdf:3:90: negative damping `-2`
          = help: to ignore damping and friction, write `#[mechanism(…, passive = ignore)]`
@@ -99,8 +99,8 @@ fn mimic_joints_follow_unless_independent() {
         ("prismatic", "<mimic joint='j4' multiplier='-3' offset='5'/>"),
         ("revolute", ""),
     ];
-    let inputs = FileOptions { inputs: InputOption::Joints, ..default_options() };
-    check_chain(
+    let inputs = FileOptions { inputs: FileInputSource::Joints, ..default_file_options() };
+    check_imported_chain(
         &inputs,
         &joints,
         "Pin j1: l0 -> l1 about [1, 0, 0] = -6 j4 + 11
@@ -109,7 +109,7 @@ fn mimic_joints_follow_unless_independent() {
          Pin j4: l3 -> l4 about [1, 0, 0] driven
          left out `mimic` of j2: a fixed joint does not follow nobody",
     );
-    check_chain(
+    check_imported_chain(
         &FileOptions { follow_mimic: false, ..inputs },
         &joints,
         "Pin j1: l0 -> l1 about [1, 0, 0] driven
@@ -123,7 +123,7 @@ fn mimic_joints_follow_unless_independent() {
 fn mimic_joint_without_leader_is_rejected() {
     let help =
         "= help: to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[
             ("revolute", "<mimic joint='j22'/>"),
             ("fixed", ""),
@@ -143,7 +143,7 @@ fn mimic_joint_without_leader_is_rejected() {
              {help}"
         ),
     );
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[
             ("revolute", "<mimic joint='j1'/>"),
             ("revolute", "<mimic joint='j4'/>"),
@@ -158,7 +158,7 @@ fn mimic_joint_without_leader_is_rejected() {
              {help}"
         ),
     );
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[
             ("revolute", "<mimic joint='j2' multiplier='1e200'/>"),
             ("revolute", "<mimic joint='j3' multiplier='1e200'/>"),
@@ -171,8 +171,8 @@ fn mimic_joint_without_leader_is_rejected() {
 #[test]
 fn locked_joint_becomes_a_weld() {
     let options =
-        FileOptions { inputs: InputOption::Joints, ..options_with_locked_joints(&["j1", "j3", "j4"]) };
-    check_chain(
+        FileOptions { inputs: FileInputSource::Joints, ..options_with_locked_joints(&["j1", "j3", "j4"]) };
+    check_imported_chain(
         &options,
         &[
             ("revolute", "<origin xyz='1 0 0'/><dynamics damping='1'/>"),
@@ -204,7 +204,7 @@ fn near_round_numbers_are_rounded_on_request_and_reported() {
         ("fixed", "<origin rpy='0 -1.571 0'/>"),
     ]);
     check_with_options(
-        &FileOptions { snap: Some(1e-3), ..default_options() },
+        &FileOptions { snap: Some(1e-3), ..default_file_options() },
         &robot,
         "body l0\nbody l1\nbody l2\nbody l3
          Weld root_joint: ground -> l0
@@ -223,7 +223,7 @@ fn near_round_numbers_are_rounded_on_request_and_reported() {
 #[test]
 fn joint_axes_of_any_length_are_rounded_by_direction() {
     let robot = chain_of_links(&[("revolute", "<axis xyz='1.7e308 -1.7e308 1e300'/>")]);
-    let options = FileOptions { snap: Some(1e-3), ..default_options() };
+    let options = FileOptions { snap: Some(1e-3), ..default_file_options() };
     let imported = import_text(&robot, &options, &mut Diagnostics::new()).expect("the file is right");
     assert_eq!(imported.snapped, ["`j1`: axis z 1e300 → 0.0"]);
 }
@@ -231,7 +231,7 @@ fn joint_axes_of_any_length_are_rounded_by_direction() {
 #[test]
 fn mimic_of_a_locked_joint_is_fixed_at_its_offset() {
     let follow = "<mimic joint='j6' offset='0.5'/>";
-    check_chain(
+    check_imported_chain(
         &options_with_locked_joints(&["j6"]),
         &[
             (
@@ -251,8 +251,8 @@ fn mimic_of_a_locked_joint_is_fixed_at_its_offset() {
          Weld j5: l4.at([0.5, 0, 0]) -> l5
          Weld j6: l5 -> l6",
     );
-    check_chain(
-        &default_options(),
+    check_imported_chain(
+        &default_file_options(),
         &[("revolute", "<mimic joint='j2' multiplier='0' offset='1'/>"), ("revolute", "")],
         "Weld j1: l0.rotated(x(1)) -> l1
          Pin j2: l1 -> l2 about [1, 0, 0]",
@@ -301,7 +301,7 @@ fn joint_without_parent_child_or_type_is_rejected() {
            r.urdf:4:54: empty `link` of `<child>`
            = help: write a name: `link="…"`"#,
     );
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[
             ("ball", "<axes xyz='0 0 1'/>"),
             ("revolute", "<mimic joint='j1' multipler='2'/>"),
@@ -358,15 +358,15 @@ fn joint_child_elements_written_as_attributes_are_rejected() {
         ("<pose>0 0 1 0 0 0</pose>", format!("r.urdf:3:71: unexpected `<pose>` in `<joint>`\n{elements}")),
         ("0 0 1", format!("r.urdf:3:71: unexpected text `0 0 1` in `<joint>`\n{elements}")),
     ] {
-        check_import(&chain_of_links(&[("revolute", inside)]), &expected);
+        check_import_with_default_options(&chain_of_links(&[("revolute", inside)]), &expected);
     }
-    check_import(
+    check_import_with_default_options(
         &chain_of_links(&[("revolute", "")]).replace("<joint ", "<joint axis='0 0 1' "),
         &format!("r.urdf:3:8: unknown attribute `axis` of `<joint>`\n{elements}"),
     );
     // Elements and attributes of other tools, and an identity orientation, do not affect the joint.
-    check_chain(
-        &default_options(),
+    check_imported_chain(
+        &default_file_options(),
         &[(
             "revolute",
             "<axis xyz='0 0 1' rpy='0 0 0'/><limit effort='1' velocity='1' acceleration='2'/><dynamics damping='1' K='3'/>\
@@ -386,7 +386,7 @@ fn unsupported_joint_properties_are_listed() {
     let limits =
         chain_of_links(&[("planar", "<limit lower='-1' upper='1'/>"), ("floating", "<limit velocity='1'/>")]);
     assert_eq!(
-        ignored_elements(&default_options(), &limits),
+        ignored_elements(&default_file_options(), &limits),
         ["limits of j1, which is `planar`", "limits of j2, which is `floating`"]
     );
     let follower = chain_of_links(&[("revolute", ""), ("revolute", "<mimic joint='j1' multiplier='2'/>")]);
@@ -401,7 +401,8 @@ fn unsupported_joint_properties_are_listed() {
 /// 0.5 rad about the axis.
 #[test]
 fn fixed_mimic_joints_include_their_rotation() {
-    let figures = FileParameters { word: test_name("placement"), of: Some(vec![test_name("j2")]) };
+    let figures =
+        FileParameters { word: name_at_call_site("placement"), of: Some(vec![name_at_call_site("j2")]) };
     for (axis, rpy, expected) in [
         ("1 0 0", "0.1 0 0", [0.6, 0.0, 0.0]),
         ("0 0 1", "0 0 0.25", [0.0, 0.0, 0.75]),

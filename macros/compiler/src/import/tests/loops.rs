@@ -3,7 +3,7 @@
 use super::*;
 
 /// Returns a chain of two pins with an extension that connects its ends.
-fn robot_with_extension(extension: &str) -> String {
+fn two_pin_chain_with_extension(extension: &str) -> String {
     let links = ["a", "b", "c"].map(massless_link).concat();
     let joints = [
         joint_element("ab", "revolute", "a", "b", "<origin xyz='1 0 0' rpy='0 0 1.5707963267948966'/>"),
@@ -27,7 +27,7 @@ const BALL: &str = "<drake:ball_constraint><drake:ball_constraint_body_A name='a
     <drake:ball_constraint_p_BQ value='0 2 0'/></drake:ball_constraint>";
 
 fn options_with_loops(loops: LoopOption) -> FileOptions {
-    FileOptions { loops, ..default_options() }
+    FileOptions { loops, ..default_file_options() }
 }
 
 /// Checks the frames of the joints. Gazebo places the frame on the parent by the configuration zero: `c` is
@@ -35,28 +35,31 @@ fn options_with_loops(loops: LoopOption) -> FileOptions {
 #[test]
 fn extensions_close_loops() {
     let close = options_with_loops(LoopOption::Close);
-    let check_closed = |extension: &str, expected: &str| {
-        check_with_options(&close, &robot_with_extension(extension), &format!("{TREE}{expected}"));
+    let check_loop_closing_extension = |extension: &str, expected: &str| {
+        check_with_options(&close, &two_pin_chain_with_extension(extension), &format!("{TREE}{expected}"));
     };
-    check_closed(LOOP_JOINT, "Ball l: a.at([1, 2, 3]) -> c.at([4, 5, 6])");
+    check_loop_closing_extension(LOOP_JOINT, "Ball l: a.at([1, 2, 3]) -> c.at([4, 5, 6])");
     // The documentation of Isaac Sim names both links `link1`.
-    check_closed(&LOOP_JOINT.replace("link2", "link1"), "Ball l: a.at([1, 2, 3]) -> c.at([4, 5, 6])");
-    check_closed(
+    check_loop_closing_extension(
+        &LOOP_JOINT.replace("link2", "link1"),
+        "Ball l: a.at([1, 2, 3]) -> c.at([4, 5, 6])",
+    );
+    check_loop_closing_extension(
         GAZEBO,
         "Pin g: a.at([-1, 0, 1]).rotated(z(1.5707963267948966)) -> c.at([0, 0, 1]) about [0, 0, 1]",
     );
-    check_closed(
+    check_loop_closing_extension(
         &GAZEBO.replace("<xyz>0 0 1", "<xyz expressed_in='__model__'>1 0 0"),
         "Pin g: a.at([-1, 0, 1]).rotated(z(1.5707963267948966)) -> c.at([0, 0, 1]) about [0, -1, 0]",
     );
-    check_closed(BALL, "Ball ball_constraint: a.at([1, 0, 0]) -> c.at([0, 2, 0])");
+    check_loop_closing_extension(BALL, "Ball ball_constraint: a.at([1, 0, 0]) -> c.at([0, 2, 0])");
 }
 
 #[test]
 fn loops_of_extensions_need_the_option() {
     for (extension, name) in [(LOOP_JOINT, "l"), (GAZEBO, "g"), (BALL, "ball_constraint")] {
-        let text = robot_with_extension(extension);
-        let error = import_as_text(&default_options(), &text);
+        let text = two_pin_chain_with_extension(extension);
+        let error = import_as_text(&default_file_options(), &text);
         assert!(error.contains(&format!("`{name}` closes a loop")), "{error}");
         assert!(error.contains("loops = close") && error.contains("loops = ignore"), "{error}");
         let ignored = format!("{TREE}left out joint {name}, which closes a loop");
@@ -74,7 +77,7 @@ fn loops_of_extensions_need_the_option() {
 
 /// Checks that elements with forces or constraints are not left out silently.
 #[test]
-fn what_is_not_supported_is_an_error() {
+fn unsupported_loop_elements_are_errors() {
     for (extension, message) in [
         ("<drake:linear_bushing_rpy/>", "`<drake:linear_bushing_rpy>` is not supported"),
         ("<drake:linear_spring_damper/>", "`<drake:linear_spring_damper>` is not supported"),
@@ -93,11 +96,13 @@ fn what_is_not_supported_is_an_error() {
         (&GAZEBO.replace("0 0 1</xyz>", "0 0 0</xyz>"), "axis of zero length has no direction"),
         (&BALL.replace("p_BQ", "p_BC"), "`<drake:ball_constraint>` without `<drake:ball_constraint_p_BQ>`"),
     ] {
-        let error = import_as_text(&options_with_loops(LoopOption::Close), &robot_with_extension(extension));
+        let error =
+            import_as_text(&options_with_loops(LoopOption::Close), &two_pin_chain_with_extension(extension));
         assert!(error.contains(message), "{extension}: {error}");
     }
     let damped = GAZEBO.replace("</xyz>", "</xyz><dynamics><damping>2</damping></dynamics>");
-    let error = import_as_text(&options_with_loops(LoopOption::Close), &robot_with_extension(&damped));
+    let error =
+        import_as_text(&options_with_loops(LoopOption::Close), &two_pin_chain_with_extension(&damped));
     assert!(error.contains("joint `g` closes a loop, and has forces"), "{error}");
 }
 
@@ -110,6 +115,6 @@ fn two_roots_and_a_loop_are_reported() {
     let expected = "expected one link that is not the child of a joint, found `a`, `c`";
     assert!(error.contains(expected), "{error}");
     assert!(error.contains("joints that close loops carry no link: `cb`"), "{error}");
-    let error = import_as_text(&default_options(), &text);
+    let error = import_as_text(&default_file_options(), &text);
     assert!(error.contains("link `b` is the child of two joints, `ab` and `cb`"), "{error}");
 }

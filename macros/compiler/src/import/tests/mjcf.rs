@@ -5,20 +5,23 @@ use super::*;
 pub(super) fn mjcf_options() -> FileOptions {
     FileOptions {
         format: FileFormat::Mjcf,
-        path: test_name("r.xml"),
-        inputs: InputOption::Actuators,
-        ..default_options()
+        path: name_at_call_site("r.xml"),
+        inputs: FileInputSource::Actuators,
+        ..default_file_options()
     }
 }
 
 /// Compares the result of a file with these elements. The elements begin on the second line.
-pub(super) fn check_mjcf_elements(inside: &str, expected: &str) {
+pub(super) fn check_import_of_mjcf_elements(inside: &str, expected: &str) {
     check_with_options(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
 }
 
 /// Compares the import of an MJCF body that contains these elements with `expected`.
 fn check_mjcf_body(inside: &str, expected: &str) {
-    check_mjcf_elements(&format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"), expected);
+    check_import_of_mjcf_elements(
+        &format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"),
+        expected,
+    );
 }
 
 const BALL: &str = "<geom size='.1' mass='1'/>";
@@ -58,19 +61,19 @@ fn mjcf_default_classes_are_inherited() {
     };
     let ball = "body b mass=1 inertia=[[0.004000000000000001, 0, 0], [0, 0.004000000000000001, 0], [0, 0, 0.004000000000000001]]";
     let end = "left out geometry of bodies, for contact: 1 shapes";
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_body("<joint name='j'/>"),
         &format!(
             "the root is the ground\n{ball}\nPin j: ground -> b about [0, 0, 1] damping=1\nj: inerter 2 on 1 j\n{end}"
         ),
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_body("<joint name='j' class='c' damping='7'/>"),
         &format!(
             "the root is the ground\n{ball}\nSleeve j: ground -> b along [0, 0, 1] damping=7\nj: inerter 2 on 1 j\n{end}"
         ),
     );
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         &model_with_body("<joint name='j' class='d'/>"),
         "r.xml:2:204: unknown class `d`
          = help: expected `a`, `c` or `main`",
@@ -186,7 +189,7 @@ fn unknown_sections_and_unsupported_options_are_reported() {
              write `#[mechanism(…, inputs = joints)]`, or `none`",
         ),
     ] {
-        check_mjcf_elements(inside, expected);
+        check_import_of_mjcf_elements(inside, expected);
     }
 }
 
@@ -325,7 +328,7 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
 #[test]
 fn mjcf_planes_become_contacts() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
-    let contacts_with_world = |world: &str| {
+    let imported_contacts_with_world = |world: &str| {
         let text = format!(
             "<mujoco><worldbody>{world}<body name='b'><freejoint/><geom name='a' size='1'/><geom size='1' condim='1' contype='2'/>\
              <geom size='1' priority='1' friction='0.2' contype='4' conaffinity='1'/></body></worldbody></mujoco>"
@@ -347,41 +350,45 @@ fn mjcf_planes_become_contacts() {
         }
     };
     assert_eq!(
-        contacts_with_world("<geom type='plane' friction='0.3' pos='1 0 0' zaxis='1 0 0' conaffinity='3'/>"),
+        imported_contacts_with_world(
+            "<geom type='plane' friction='0.3' pos='1 0 0' zaxis='1 0 0' conaffinity='3'/>"
+        ),
         "a_contact: b.collision(0) ground.at([1, 0, 0]).plane([1, 0, 0]) 1\n\
          b_geom1_contact: b.collision(1) ground.at([1, 0, 0]).plane([1, 0, 0]) 1\n\
          b_geom2_contact: b.collision(2) ground.at([1, 0, 0]).plane([1, 0, 0]) 0.2\n"
     );
     assert_eq!(
-        contacts_with_world("<geom type='plane' condim='1' contype='0'/><geom name='up' type='plane'/>"),
+        imported_contacts_with_world(
+            "<geom type='plane' condim='1' contype='0'/><geom name='up' type='plane'/>"
+        ),
         "a_plane1_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          a_up_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          b_geom1_up_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 1\n\
          b_geom2_up_contact: b.collision(2) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.2\n"
     );
     assert_eq!(
-        contacts_with_world(
+        imported_contacts_with_world(
             "<geom type='plane' condim='4' friction='0.3 0.01' conaffinity='1' contype='0'/>"
         ),
         "a_contact: b.collision(0) ground.at([0, 0, 0]).plane([0, 0, 1]) 1 0.01\n"
     );
     assert_eq!(
-        contacts_with_world(
+        imported_contacts_with_world(
             "<geom type='plane' condim='6' priority='2' friction='0.3 0.01 0.002' conaffinity='2' contype='0'/>"
         ),
         "b_geom1_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.3 0.01 0.002\n"
     );
     for force in ["adhesion='1'", "surfacevel='1 0 0'"] {
-        let refused = contacts_with_world(&format!("<geom type='plane' {force}/>"));
+        let refused = imported_contacts_with_world(&format!("<geom type='plane' {force}/>"));
         assert!(refused.contains("of a colliding shape is not supported"), "{refused}");
     }
-    let none = contacts_with_world("<geom type='box' size='1 1 1'/>");
+    let none = imported_contacts_with_world("<geom type='box' size='1 1 1'/>");
     assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");
 }
 
 #[test]
 fn damaged_mjcf_never_panics() {
-    super::fuzz::damage_gets_an_answer(&mjcf_options(), FILE, "ground");
+    super::fuzz::check_damaged_imports(&mjcf_options(), FILE, "ground");
 }
 
 #[test]
@@ -482,7 +489,7 @@ fn sites_between_two_points_have_the_axes_of_mujoco() {
 /// Missing entries of an attribute are taken from the defaults: sizes as in MuJoCo 4.0.0 (`geom_size`).
 #[test]
 fn short_attribute_lists_are_completed_by_defaults() {
-    check_mjcf_elements(
+    check_import_of_mjcf_elements(
         "<default><geom type='box' size='1 2 3'/></default><worldbody><body name='b'><geom size='.5' mass='3'/></body></worldbody>",
         "the root is the ground
          body b mass=3 inertia=[[13, 0, 0], [0, 9.25, 0], [0, 0, 4.25]]
@@ -568,7 +575,10 @@ fn joints_and_mass_of_the_world_have_no_effect() {
         ("<frame><freejoint/></frame>", "r.xml:2:19: `<freejoint>` of the world, which does not move"),
         ("<inertial pos='0 0 0' mass='1'/>", "r.xml:2:12: `<inertial>` of the world, which does not move"),
     ] {
-        check_mjcf_elements(&format!("<worldbody>{inside}</worldbody>"), &format!("{found}\n{help}"));
+        check_import_of_mjcf_elements(
+            &format!("<worldbody>{inside}</worldbody>"),
+            &format!("{found}\n{help}"),
+        );
     }
 }
 
@@ -584,7 +594,7 @@ fn tendon_paths_without_length_are_rejected() {
         (format!("{a}{b}{pulley}{a}"), "<site>", 87),
         (format!("{a}{b}{pulley}{pulley}{a}{b}"), "<pulley>", 66),
     ] {
-        check_mjcf_elements(
+        check_import_of_mjcf_elements(
             &format!(
                 "<tendon><spatial stiffness='100'>{path}</spatial></tendon>\n\
                  <worldbody><site name='a'/><body><joint/>{BALL}<site name='b' pos='1 0 0'/></body></worldbody>"
@@ -598,15 +608,15 @@ fn tendon_paths_without_length_are_rejected() {
 #[test]
 fn requested_planes_without_contacts_are_reported() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
-    let contacts_with = |bits: &str| {
+    let import_with_contact_bits = |bits: &str| {
         let text = format!(
             "<mujoco><worldbody><geom type='plane' size='1 1 1' {bits}/>\
              <body name='b'><freejoint/>{BALL}</body></worldbody></mujoco>"
         );
         import_as_text(&options, &text)
     };
-    assert!(contacts_with("").starts_with("the root is the ground\n"));
-    let found = contacts_with("contype='2' conaffinity='2'");
+    assert!(import_with_contact_bits("").starts_with("the root is the ground\n"));
+    let found = import_with_contact_bits("contype='2' conaffinity='2'");
     assert!(
         found.starts_with("no body of the file has a shape that can touch a plane of its world\n"),
         "{found}"

@@ -1,10 +1,10 @@
 //! Tests of the importers: compare the description, or the errors, as text.
 
-use super::{FileOptions, Imported, import_file};
+use super::{FileOptions, ImportedMechanism, import_file};
 use crate::diag::Diagnostics;
 use crate::syntax::{
-    Base, BinaryOp, Body, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, FileFormat, Inertias,
-    InputOption, Joint, LoopOption, Name,
+    Base, BinaryOp, Body, Drive, DriveLaw, DriveTarget, Endpoint, Expr, ExprKind, FileFormat,
+    FileInputSource, InertiaOption, Joint, LoopOption, Name,
 };
 use proc_macro2::Span;
 use std::fs;
@@ -25,7 +25,7 @@ mod sdf;
 mod spatial;
 mod turns;
 
-fn test_name(text: &str) -> Name {
+fn name_at_call_site(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }
 }
 
@@ -65,12 +65,15 @@ impl Drop for Folder {
 }
 
 /// Returns the default options of a robot file.
-fn default_options() -> FileOptions {
-    FileOptions::with_defaults(FileFormat::Urdf, test_name("r.urdf"))
+fn default_file_options() -> FileOptions {
+    FileOptions::with_defaults(FileFormat::Urdf, name_at_call_site("r.urdf"))
 }
 
 fn options_with_locked_joints(joints: &[&str]) -> FileOptions {
-    FileOptions { lock: joints.iter().map(|joint| test_name(joint)).collect(), ..default_options() }
+    FileOptions {
+        lock: joints.iter().map(|joint| name_at_call_site(joint)).collect(),
+        ..default_file_options()
+    }
 }
 
 /// Compares the result for `text` with `expected`. Indentation and empty lines are ignored.
@@ -83,17 +86,17 @@ fn check_with_options(options: &FileOptions, text: &str, expected: &str) {
     assert!(trim_lines(&actual) == trim_lines(expected), "expected\n{expected}\nfound\n{actual}");
 }
 
-fn check_import(text: &str, expected: &str) {
-    check_with_options(&default_options(), text, expected);
+fn check_import_with_default_options(text: &str, expected: &str) {
+    check_with_options(&default_file_options(), text, expected);
 }
 
 /// Compares the result for elements inside `<robot>`. The elements begin on the second line.
 fn check_robot(inside: &str, expected: &str) {
-    check_import(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
+    check_import_with_default_options(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
 }
 
 /// Imports a text that refers to no other files.
-fn import_text(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
+fn import_text(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<ImportedMechanism> {
     import_file(text, Path::new(""), options, cx)
 }
 
@@ -108,7 +111,7 @@ fn import_as_text(options: &FileOptions, text: &str) -> String {
     }
 }
 
-fn render_description(imported: &Imported) -> String {
+fn render_description(imported: &ImportedMechanism) -> String {
     let bodies = imported.bodies.iter().map(render_body);
     let joints = imported.joints.iter().map(render_joint);
     let drives = imported.drives.iter().map(render_drive);
@@ -162,17 +165,17 @@ fn render_joint(joint: &Joint) -> String {
 }
 
 fn render_drive(drive: &Drive) -> String {
-    let join_components = |vector: [f64; 3]| vector.map(|x| x.to_string()).join(" ");
+    let vector_components_text = |vector: [f64; 3]| vector.map(|x| x.to_string()).join(" ");
     let on = match &drive.on {
-        DriveOn::Sum(terms) => {
+        DriveTarget::Sum(terms) => {
             let terms: Vec<String> =
                 terms.iter().map(|(joint, weight)| format!("{weight} {}", joint.text)).collect();
             terms.join(" + ")
         }
-        DriveOn::Length(e) => render_expr(e),
-        DriveOn::Wrench(wrench) => {
+        DriveTarget::Length(e) => render_expr(e),
+        DriveTarget::Wrench(wrench) => {
             let against = wrench.against.iter().map(|e| format!(" against {}", render_expr(e)));
-            let [force, torque] = [wrench.force, wrench.torque].map(join_components);
+            let [force, torque] = [wrench.force, wrench.torque].map(vector_components_text);
             format!("{} by {force}, {torque}{}", render_expr(&wrench.on), against.collect::<String>())
         }
     };
@@ -260,7 +263,7 @@ fn chain_of_links(joints: &[(&str, &str)]) -> String {
 }
 
 /// Returns the lines of the result of `chain` for the links and the root.
-fn chain_bodies(joints: usize) -> String {
+fn expected_chain_lines(joints: usize) -> String {
     let bodies: String = (0..=joints).map(|k| format!("body l{k}\n")).collect();
     bodies + "Weld root_joint: ground -> l0\n"
 }

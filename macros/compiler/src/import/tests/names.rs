@@ -28,7 +28,7 @@ fn joints_are_ordered_depth_first_and_alphabetically() {
 
 #[test]
 fn root_link_is_fixed_or_free() {
-    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
+    let free = FileOptions { base: Base::Free, inputs: FileInputSource::Joints, ..default_file_options() };
     check_with_options(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
@@ -46,7 +46,7 @@ fn root_link_is_fixed_or_free() {
 
 #[test]
 fn elements_without_mechanics_are_ignored() {
-    check_import(
+    check_import_with_default_options(
         r#"<?xml version="1.0"?> <!-- <robot> --> <robot name="r" xmlns:drake="d" version="1.0">
            <material name="grey"><color rgba="0 0 0 1"/></material>
            <link name="a"><visual><origin xyz="x"/></visual><collision/><drake:inertial/></link>
@@ -83,7 +83,7 @@ fn duplicate_names_are_rejected() {
         "r.urdf:4:13: second link with the name `ground`
          = help: the first is at r.urdf:3:13",
     );
-    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
+    let free = FileOptions { base: Base::Free, inputs: FileInputSource::Joints, ..default_file_options() };
     let both = [massless_link("ground"), massless_link("ground_link")].concat();
     check_with_options(
         &free,
@@ -120,7 +120,10 @@ fn joints_to_missing_links_are_rejected() {
          = help: did you mean `arm`?
          r.urdf:4:63: joint `k` connects a link to itself",
     );
-    check_import("<robot/>", "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`");
+    check_import_with_default_options(
+        "<robot/>",
+        "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`",
+    );
 }
 
 /// Files with joints from `world` need not declare this link.
@@ -166,7 +169,7 @@ fn link_with_two_parent_joints_is_rejected() {
 /// child.
 #[test]
 fn second_parent_joint_closes_a_loop() {
-    let options = FileOptions { loops: LoopOption::Close, ..default_options() };
+    let options = FileOptions { loops: LoopOption::Close, ..default_file_options() };
     let robot_with_joints = |joints: &[String]| {
         format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(massless_link).concat(), joints.concat())
     };
@@ -220,7 +223,7 @@ fn circular_parent_links_are_rejected() {
 fn long_chains_of_links_fit_the_stack() {
     let joints = vec![("revolute", "<mimic joint='j1000'/>"); 999];
     let text = chain_of_links(&[joints, vec![("revolute", "")]].concat());
-    let imported = import_text(&text, &default_options(), &mut Diagnostics::new());
+    let imported = import_text(&text, &default_file_options(), &mut Diagnostics::new());
     assert!(imported.is_some_and(|imported| imported.joints.len() == 1001 && imported.bodies.len() == 1001));
 }
 
@@ -230,7 +233,7 @@ fn too_many_links_are_rejected() {
     let column = 1 + (0..1024).map(|k| massless_link(&format!("l{k}")).len()).sum::<usize>();
     check_robot(&crowd, &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"));
     let crowd = "<joint/>".repeat(2000);
-    let messages = import_as_text(&default_options(), &format!("<robot>{crowd}</robot>"));
+    let messages = import_as_text(&default_file_options(), &format!("<robot>{crowd}</robot>"));
     assert_eq!(messages.matches("r.urdf:1:").count(), 32);
     assert!(messages.ends_with("`r.urdf` has more errors; these are the first 32"), "{messages}");
 }

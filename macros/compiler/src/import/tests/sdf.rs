@@ -3,7 +3,7 @@
 use super::*;
 
 fn sdf_options() -> FileOptions {
-    FileOptions { format: FileFormat::Sdf, path: test_name("r.sdf"), ..default_options() }
+    FileOptions { format: FileFormat::Sdf, path: name_at_call_site("r.sdf"), ..default_file_options() }
 }
 
 /// Compares the result for the elements of a model. The elements begin on the second line.
@@ -209,7 +209,7 @@ const FILE: &str = r#"<?xml version="1.0"?><sdf version="1.9"><world name="w"><g
 
 #[test]
 fn damaged_sdf_never_panics() {
-    super::fuzz::damage_gets_an_answer(&sdf_options(), FILE, "root_joint");
+    super::fuzz::check_damaged_imports(&sdf_options(), FILE, "root_joint");
 }
 
 #[test]
@@ -371,26 +371,26 @@ fn old_sdf_poses_name_their_frame_in_an_attribute() {
     let placed = "<pose frame='a'>0 0 1 0 0 0</pose>";
     for version in ["1.5", "1.6"] {
         let model_with_inertial_pose = |inertial: &str| model_with_poses(version, placed, inertial);
-        let expected_with_com = |com: &str| expected_model("[0, 0, 1]", com);
+        let expected_model_with_com = |com: &str| expected_model("[0, 0, 1]", com);
         check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose>1 0 0 0 0 0</pose>"),
-            &expected_with_com("[1, 0, 0]"),
+            &expected_model_with_com("[1, 0, 0]"),
         );
         check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame='a'>1 0 0 0 0 0</pose>"),
-            &expected_with_com("[1, 0, -1]"),
+            &expected_model_with_com("[1, 0, -1]"),
         );
         check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame='f'>1 0 0 0 0 0</pose>"),
-            &expected_with_com("[1, 3, 0]"),
+            &expected_model_with_com("[1, 3, 0]"),
         );
         check_with_options(
             &sdf_options(),
             &model_with_inertial_pose("<pose frame=''>1 0 0 0 0 0</pose>"),
-            &expected_with_com("[1, 0, 0]"),
+            &expected_model_with_com("[1, 0, 0]"),
         );
     }
     let answer = import_as_text(&sdf_options(), &model_with_poses("1.7", placed, ""));
@@ -646,7 +646,7 @@ fn loop_joints_with_unnamed_links_are_rejected() {
 }
 
 #[test]
-fn what_a_joint_cannot_have_is_listed() {
+fn unsupported_sdf_joint_elements_are_listed() {
     check_sdf_model(
         "<link name='a'/><link name='b'/><link name='c'/><joint name='i' type='screw'><parent>a</parent>\
          <child>b</child><screw_thread_pitch>1</screw_thread_pitch><axis><limit><lower>-1</lower>\

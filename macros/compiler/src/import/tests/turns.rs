@@ -38,14 +38,20 @@ fn degrees_in_a_urdf_are_reported_once() {
         )
     };
     let help = "`rpy` is in radians: write the angle that is meant, everywhere in the file";
-    check_degrees_error(&default_options(), &robot_with_origin("<origin rpy='0 0 …'/>"), "r.urdf:1:71", help);
+    check_degrees_error(
+        &default_file_options(),
+        &robot_with_origin("<origin rpy='0 0 …'/>"),
+        "r.urdf:1:71",
+        help,
+    );
     let joint = robot_with_origin("<origin xyz='90 0 0' rpy='0 0 …'/>").replacen('…', "1.5", 1);
-    check_degrees_error(&default_options(), &joint, "r.urdf:2:59", help);
+    check_degrees_error(&default_file_options(), &joint, "r.urdf:2:59", help);
 }
 
 #[test]
 fn degrees_in_an_sdf_are_reported() {
-    let options = FileOptions { format: FileFormat::Sdf, path: test_name("r.sdf"), ..default_options() };
+    let options =
+        FileOptions { format: FileFormat::Sdf, path: name_at_call_site("r.sdf"), ..default_file_options() };
     let model_with_pose =
         |pose: &str| format!("<sdf><model name='m'><link name='a'>{pose}</link></model></sdf>");
     let help = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
@@ -57,7 +63,8 @@ fn degrees_in_an_sdf_are_reported() {
 
 #[test]
 fn degrees_in_an_mjcf_follow_its_compiler_option() {
-    let options = FileOptions { format: FileFormat::Mjcf, path: test_name("r.xml"), ..default_options() };
+    let options =
+        FileOptions { format: FileFormat::Mjcf, path: name_at_call_site("r.xml"), ..default_file_options() };
     let model_with_angle_unit = |unit: &str, turn: &str| {
         format!(
             "<mujoco><compiler angle='{unit}'/><worldbody>\n<body name='b' {turn}><joint/>\

@@ -4,12 +4,12 @@ use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_position, known_children, read_name_attribute,
-    read_number_attribute, read_numbers_attribute, required_child,
+    Node, check_attributes, child_elements, children_with_known_names, element_source_position,
+    read_name_attribute, read_number_attribute, read_numbers_attribute, required_child,
 };
 use crate::import::imported::Located;
 use crate::import::mesh;
-use crate::import::robot::FileCollision;
+use crate::import::robot::FileCollisionShape;
 use crate::syntax::{MeshVertices, Shape};
 use std::path::Path;
 
@@ -17,16 +17,16 @@ use std::path::Path;
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
 
 /// Reads all collision geometry of a link. Paths of meshes are relative to `folder`.
-pub(super) fn read_collisions(link: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Vec<FileCollision> {
+pub(super) fn read_collisions(link: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Vec<FileCollisionShape> {
     let parts = child_elements(link).filter(|node| node.tag_name().name() == "collision");
     parts.filter_map(|part| read_collision(part, folder, cx)).collect()
 }
 
-fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileCollision> {
-    let [origin, geometry] = known_children(node, ["origin", "geometry"], cx);
+fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileCollisionShape> {
+    let [origin, geometry] = children_with_known_names(node, ["origin", "geometry"], cx);
     let origin = read_origin(origin, node, cx);
     let geometry = required_child(geometry, node, "geometry", &[], cx)?;
-    let [sphere, cuboid, cylinder, capsule, mesh] = known_children(geometry, SHAPES, cx);
+    let [sphere, cuboid, cylinder, capsule, mesh] = children_with_known_names(geometry, SHAPES, cx);
     report_additional_shapes(&[sphere, cuboid, cylinder, capsule, mesh], cx);
     let mut vertices = None;
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
@@ -38,7 +38,7 @@ fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<File
             check_attributes(cuboid, &["size"], &[], cx);
             let size: Located<[f64; 3]> = read_numbers_attribute(cuboid, "size", cx)?;
             for x in size.value {
-                require_positive(x, &size.place, cx)?;
+                require_positive_length(x, &size.place, cx)?;
             }
             Shape::Cuboid(size.value)
         }
@@ -65,27 +65,31 @@ fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<File
         _ => {
             let message = "collision geometry without a supported shape";
             let help = "supported are `<sphere>`, `<box>`, `<cylinder>`, `<capsule>` and `<mesh>`";
-            cx.report_error(&element_position(geometry, cx), message.to_string(), |d| d.add_help(help));
+            cx.report_error(&element_source_position(geometry, cx), message.to_string(), |d| {
+                d.add_help(help)
+            });
             return None;
         }
     };
-    Some(FileCollision { origin, shape, mesh: vertices, place: element_position(node, cx) })
+    Some(FileCollisionShape { origin, shape, mesh: vertices, place: element_source_position(node, cx) })
 }
 
 /// Reports shapes of a URDF geometry in addition to the first one.
 fn report_additional_shapes(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
     if let Some(second) = shapes.iter().flatten().nth(1) {
         let help = "write a `<collision>` for each shape";
-        cx.report_error(&element_position(*second, cx), "second shape of one geometry", |d| d.add_help(help));
+        cx.report_error(&element_source_position(*second, cx), "second shape of one geometry", |d| {
+            d.add_help(help)
+        });
     }
 }
 
 fn length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {
     let read = read_number_attribute(node, attribute, cx)?;
-    require_positive(read.value, &read.place, cx)
+    require_positive_length(read.value, &read.place, cx)
 }
 
-fn require_positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
+fn require_positive_length(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
     if x <= 0.0 {
         let help = "sizes of collision geometry are lengths in m";
         cx.report_error(place, format!("this length must be positive, but it is {x}"), |d| d.add_help(help));

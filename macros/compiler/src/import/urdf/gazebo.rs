@@ -4,8 +4,8 @@
 use super::loops::joint_between;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, element_position, known_children, read_name_attribute, read_numbers_content,
-    read_word, required_child,
+    Node, check_attributes, children_with_known_names, element_source_position, read_name_attribute,
+    read_numbers_content, read_trimmed_content, required_child,
 };
 use crate::import::imported::Located;
 use crate::import::pose::{FilePose, Vector, length, matrix_times_vector};
@@ -42,20 +42,23 @@ pub(super) fn read_gazebo_joint(
         });
         return None;
     };
-    let [pose, parent, child, axis] = known_children(node, ["pose", "parent", "child", "axis"], cx);
-    let parent = read_word(required_child(parent, node, "parent", &[], cx)?, cx)?;
-    let child = read_word(required_child(child, node, "child", &[], cx)?, cx)?;
+    let [pose, parent, child, axis] =
+        children_with_known_names(node, ["pose", "parent", "child", "axis"], cx);
+    let parent = read_trimmed_content(required_child(parent, node, "parent", &[], cx)?, cx)?;
+    let child = read_trimmed_content(required_child(child, node, "child", &[], cx)?, cx)?;
     let on_child = read_pose(pose, cx)?;
     let name = name?;
-    let (axis, is_in_model) = match axis.filter(|_| has_axis(kind)) {
+    let (axis, is_expressed_in_model_axes) = match axis.filter(|_| has_axis(kind)) {
         Some(axis) => read_gazebo_axis(axis, &name, options, robot, cx)?,
         None if has_axis(kind) => {
-            cx.report_error(&element_position(node, cx), format!("a `{word}` joint without an axis"), |d| {
-                d.add_help("expected `<axis><xyz>…</xyz></axis>`")
-            });
+            cx.report_error(
+                &element_source_position(node, cx),
+                format!("a `{word}` joint without an axis"),
+                |d| d.add_help("expected `<axis><xyz>…</xyz></axis>`"),
+            );
             return None;
         }
-        None => (GazeboAxis::unused(&name), false),
+        None => (GazeboAxis::placeholder_axis(&name), false),
     };
     let placements = placements_at_zero(robot);
     let (Some(outer), Some(inner)) = (placements.get(&parent.text), placements.get(&child.text)) else {
@@ -68,7 +71,7 @@ pub(super) fn read_gazebo_joint(
     let joint = inner.compose_with(&on_child);
     let on_parent = outer.inverse_pose().compose_with(&joint);
     let mut along = axis.direction;
-    if is_in_model {
+    if is_expressed_in_model_axes {
         along.value = matrix_times_vector(&joint.inverse_pose().axes, along.value);
     }
     let ends = ((parent, on_parent), (child, on_child));
@@ -85,7 +88,7 @@ struct GazeboAxis {
 
 impl GazeboAxis {
     /// Returns the placeholder for a joint without an axis.
-    fn unused(name: &Name) -> GazeboAxis {
+    fn placeholder_axis(name: &Name) -> GazeboAxis {
         GazeboAxis { direction: Located { value: [0.0, 0.0, 1.0], place: name.place.clone() }, damping: None }
     }
 }
@@ -99,10 +102,10 @@ fn read_gazebo_axis(
     cx: &mut Cx<'_>,
 ) -> Option<(GazeboAxis, bool)> {
     let [xyz, limit, dynamics, old] =
-        known_children(node, ["xyz", "limit", "dynamics", "use_parent_model_frame"], cx);
+        children_with_known_names(node, ["xyz", "limit", "dynamics", "use_parent_model_frame"], cx);
     let direction = match xyz {
         Some(xyz) => read_numbers_content::<3>(xyz, cx)?,
-        None => GazeboAxis::unused(name).direction,
+        None => GazeboAxis::placeholder_axis(name).direction,
     };
     if length(direction.value) < 1e-14 {
         cx.report_error(&direction.place, "axis of zero length has no direction", |d| d);
@@ -114,9 +117,9 @@ fn read_gazebo_axis(
         cx.report_error(&direction.place, message, |d| d.add_help("write it in the axes of the joint"));
         return None;
     }
-    let is_true = |word: Name| matches!(word.text.to_ascii_lowercase().as_str(), "true" | "1");
-    let is_in_model =
-        expressed_in == "__model__" || old.and_then(|old| read_word(old, cx)).is_some_and(is_true);
+    let is_true_word = |word: Name| matches!(word.text.to_ascii_lowercase().as_str(), "true" | "1");
+    let is_expressed_in_model_axes = expressed_in == "__model__"
+        || old.and_then(|old| read_trimmed_content(old, cx)).is_some_and(is_true_word);
     let has_bound = |limit: Node<'_>| {
         let bounds = limit.children().filter(|child| matches!(child.tag_name().name(), "lower" | "upper"));
         bounds
@@ -128,14 +131,14 @@ fn read_gazebo_axis(
     }
     let mut damping = None;
     if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
-        let found = known_children(dynamics, ["damping", "friction", "spring_stiffness"], cx);
+        let found = children_with_known_names(dynamics, ["damping", "friction", "spring_stiffness"], cx);
         for value in found.into_iter().flatten().filter_map(|part| read_numbers_content::<1>(part, cx)) {
             if value.value != [0.0] {
                 damping = Some(Expr::number_at(value.value[0], &value.place));
             }
         }
     }
-    Some((GazeboAxis { direction, damping }, is_in_model))
+    Some((GazeboAxis { direction, damping }, is_expressed_in_model_axes))
 }
 
 /// Reads a pose relative to the child link; the default is the identity.
@@ -144,15 +147,21 @@ fn read_pose(node: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<FilePose> {
     let frame = node.attribute("relative_to").or(node.attribute("frame")).map_or("", str::trim);
     if !frame.is_empty() {
         let message = format!("a pose relative to {} is not supported", quote_word(frame));
-        cx.report_error(&element_position(node, cx), message, |d| {
+        cx.report_error(&element_source_position(node, cx), message, |d| {
             d.add_help("write it relative to the child link, without this attribute")
         });
         return None;
     }
     let found = read_numbers_content::<6>(node, cx)?;
     let [x, y, z, roll, pitch, yaw] = found.value;
-    let value_at_pose = |value| Located { value, place: found.place.clone() };
-    Some(FileOrigin { xyz: value_at_pose([x, y, z]), rpy: value_at_pose([roll, pitch, yaw]) }.pose())
+    let value_with_source_place = |value| Located { value, place: found.place.clone() };
+    Some(
+        FileOrigin {
+            xyz: value_with_source_place([x, y, z]),
+            rpy: value_with_source_place([roll, pitch, yaw]),
+        }
+        .pose(),
+    )
 }
 
 /// Returns the poses of the links relative to their root, with all coordinates zero.

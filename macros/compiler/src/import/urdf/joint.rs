@@ -5,13 +5,13 @@ use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_contents, element_position, known_children, read_name_attribute,
-    read_number_attribute, read_numbers_attribute, required_child,
+    Node, check_attributes, children_with_known_names, element_source_position, read_name_attribute,
+    read_number_attribute, read_numbers_attribute, report_unexpected_contents, required_child,
 };
 use crate::import::imported::Located;
 use crate::import::misplaced;
 use crate::import::robot::{FileJoint, has_axis, has_coordinate};
-use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
+use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, MimicRelation, Name};
 
 /// URDF's names of the joint types, and `spherical`, which simulators also accept.
 const TYPES: [(&str, JointKind); 7] = [
@@ -44,7 +44,7 @@ pub(super) fn read_joint(
     check_attributes(node, &["name", "type"], &[], cx);
     let joint = read_name_attribute(node, "name", cx);
     let kind = read_joint_type(node, cx);
-    let [origin, parent, child, axis, dynamics, mimic, limit] = known_children(node, PARTS, cx);
+    let [origin, parent, child, axis, dynamics, mimic, limit] = children_with_known_names(node, PARTS, cx);
     misplaced::report_misplaced_contents(node, &PARTS, ELEMENTS, cx);
     let origin = read_origin(origin, node, cx);
     let parent = read_end_link(parent, node, "parent", cx);
@@ -92,7 +92,7 @@ pub(super) fn read_joint_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'stat
 /// Reads the name of the parent or child link of a joint.
 fn read_end_link(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
     let end = required_child(end, node, which, &["link"], cx)?;
-    check_contents(end, &["link"], &[], &[], cx);
+    report_unexpected_contents(end, &["link"], &[], &[], cx);
     read_name_attribute(end, "link", cx)
 }
 
@@ -100,13 +100,14 @@ fn read_end_link(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx
 pub(super) fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Located<[f64; 3]> {
     let default_axis = |place: Place| Located { value: [1.0, 0.0, 0.0], place };
     let Some(axis) = axis else {
-        return default_axis(element_position(node, cx));
+        return default_axis(element_source_position(node, cx));
     };
     // Some exporters add an identity orientation to the axis.
     let has_rpy =
         axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
-    check_contents(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
-    let axis = read_numbers_attribute(axis, "xyz", cx).unwrap_or(default_axis(element_position(axis, cx)));
+    report_unexpected_contents(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
+    let axis =
+        read_numbers_attribute(axis, "xyz", cx).unwrap_or(default_axis(element_source_position(axis, cx)));
     if axis.value == [0.0; 3] {
         cx.report_error(&axis.place, "axis of zero length has no direction", |d| d);
     }
@@ -118,7 +119,7 @@ fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut C
     let Some(node) = node else {
         return [None, None];
     };
-    check_contents(node, &[], &["damping", "friction"], &OF_CONTROLLERS, cx);
+    report_unexpected_contents(node, &[], &["damping", "friction"], &OF_CONTROLLERS, cx);
     ["damping", "friction"].map(|which| {
         let found = read_number_attribute(node, which, cx).filter(|found| found.value != 0.0)?;
         if found.value < 0.0 {
@@ -134,9 +135,9 @@ fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut C
 
 const IGNORE_PASSIVE: &str = "to ignore damping and friction, write `#[mechanism(…, passive = ignore)]`";
 
-fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Mimic> {
-    check_contents(node, &["joint"], &["multiplier", "offset"], &[], cx);
+fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<MimicRelation> {
+    report_unexpected_contents(node, &["joint"], &["multiplier", "offset"], &[], cx);
     let multiplier = read_number_attribute(node, "multiplier", cx).map_or(1.0, |found| found.value);
     let offset = read_number_attribute(node, "offset", cx).map_or(0.0, |found| found.value);
-    Some(Mimic { joint: read_name_attribute(node, "joint", cx)?, multiplier, offset })
+    Some(MimicRelation { joint: read_name_attribute(node, "joint", cx)?, multiplier, offset })
 }

@@ -1,7 +1,7 @@
 //! `<limit>` of a joint → bounds of its coordinate, velocity and force.
 
 use crate::import::context::{Cx, quote_word};
-use crate::import::element::{Node, check_contents, read_number_attribute};
+use crate::import::element::{Node, read_number_attribute, report_unexpected_contents};
 use crate::import::imported::Located;
 use crate::import::robot::{FileLimits, IGNORE_LIMITS};
 use crate::syntax::Name;
@@ -31,7 +31,7 @@ pub(super) fn read_limits(
     cx: &mut Cx<'_>,
 ) -> FileLimits {
     let Some(node) = node else { return FileLimits::default() };
-    check_contents(node, &[], &BOUNDS, &OF_OTHERS, cx);
+    report_unexpected_contents(node, &[], &BOUNDS, &OF_OTHERS, cx);
     let ends = !continuous && ["lower", "upper"].iter().any(|which| node.has_attribute(*which));
     let mut end = |which: &str, infinite: &str| ends.then(|| read_bound(node, which, infinite, cx)).flatten();
     let (lower, upper) = (end("lower", "-inf"), end("upper", "inf"));

@@ -4,12 +4,12 @@ use super::origin::read_origin;
 use crate::diag::nearest_candidate;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, check_contents, child_elements, element_position, known_children, quoted_tag,
-    read_name_attribute, read_number_attribute, required_child,
+    Node, check_attributes, child_elements, children_with_known_names, element_source_position, quoted_tag,
+    read_name_attribute, read_number_attribute, report_unexpected_contents, required_child,
 };
 use crate::import::misplaced;
 use crate::import::robot::{FileOrigin, massless_link};
-use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias};
+use crate::syntax::{Body, Expr, ExprKind, FileOptions, InertiaOption};
 
 /// Attributes of the URDF element `<inertia>`: the entries of the inertia matrix.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
@@ -42,8 +42,8 @@ pub(super) fn read_link(
     );
     let name = read_name_attribute(node, "name", cx);
     let [inertial] = match options.inertias {
-        Inertias::None => [None],
-        _ => known_children(node, ["inertial"], cx),
+        InertiaOption::None => [None],
+        _ => children_with_known_names(node, ["inertial"], cx),
     };
     let stands = name.as_ref().is_some_and(|name| stands(&name.text));
     let mut body = massless_link(name?);
@@ -55,8 +55,8 @@ pub(super) fn read_link(
 
 /// Reads mass, centre of mass and inertia. If all values are zero, the body has no mass properties.
 fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>) {
-    let [origin, mass, inertia] = known_children(node, PARTS, cx);
-    check_inertial_contents(node, cx);
+    let [origin, mass, inertia] = children_with_known_names(node, PARTS, cx);
+    report_unknown_inertial_contents(node, cx);
     let origin = read_origin(origin, node, cx);
     let mut found = |child, element, attributes: &[&str]| match stands {
         true => child,
@@ -64,7 +64,7 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
     };
     let (mass, inertia) = (found(mass, "mass", &["value"]), found(inertia, "inertia", &INERTIA));
     if let Some(mass) = mass {
-        check_contents(mass, &["value"], &[], &[], cx);
+        report_unexpected_contents(mass, &["value"], &[], &[], cx);
         body.mass = read_number_attribute(mass, "value", cx).map(|m| Expr::number_at(m.value, &m.place));
     }
     if let Some(inertia) = inertia {
@@ -77,12 +77,12 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
 }
 
 /// Reports contents of `<inertial>` other than its known child elements.
-fn check_inertial_contents(node: Node<'_>, cx: &mut Cx<'_>) {
+fn report_unknown_inertial_contents(node: Node<'_>, cx: &mut Cx<'_>) {
     let help = "expected `<origin>`, `<mass>` and `<inertia>`";
     for child in child_elements(node).filter(|child| !PARTS.contains(&child.tag_name().name())) {
         if nearest_candidate(child.tag_name().name(), &PARTS).is_none() {
             let message = format!("unexpected {} in `<inertial>`", quoted_tag(child));
-            cx.report_error(&element_position(child, cx), message, |d| d.add_help(help));
+            cx.report_error(&element_source_position(child, cx), message, |d| d.add_help(help));
         }
     }
     misplaced::report_misplaced_contents(node, &PARTS, help, cx);
@@ -95,7 +95,7 @@ fn is_zero(expr: Option<&Expr>) -> bool {
 /// Reads the inertia matrix, transformed from the axes of the inertial frame to those of the link. Returns
 /// `None` if the matrix is zero.
 fn read_inertia(node: Node<'_>, origin: &FileOrigin, cx: &mut Cx<'_>) -> Option<Expr> {
-    check_contents(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
+    report_unexpected_contents(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
     let read = INERTIA.map(|entry| read_number_attribute(node, entry, cx));
     let largest = read.iter().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.value.abs()));
     for (entry, other) in BELOW_DIAGONAL {
@@ -109,7 +109,7 @@ fn read_inertia(node: Node<'_>, origin: &FileOrigin, cx: &mut Cx<'_>) -> Option<
     if read.iter().flatten().all(|entry| entry.value == 0.0) {
         return None;
     }
-    let whole = element_position(node, cx);
+    let whole = element_source_position(node, cx);
     let [xx, xy, xz, yy, yz, zz] = read.map(|entry| match entry {
         Some(entry) => Expr::number_at(entry.value, &entry.place),
         None => Expr::number_at(0.0, &whole),

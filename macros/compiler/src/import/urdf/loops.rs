@@ -12,8 +12,8 @@ use super::joint::{read_axis, read_joint_type};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_contents, child_elements, element_position, known_children,
-    read_name_attribute, read_numbers_attribute, required_child,
+    Node, check_attributes, child_elements, children_with_known_names, element_source_position,
+    read_name_attribute, read_numbers_attribute, report_unexpected_contents, required_child,
 };
 use crate::import::imported::Located;
 use crate::import::pose::{FilePose, Vector, matrix_times_vector};
@@ -41,7 +41,9 @@ pub(super) fn read_declared_loops(root: Node<'_>, options: &FileOptions, robot: 
             }
             "mujoco" if is_own => {
                 let equality = child_elements(node).find(|child| child.tag_name().name() == "equality");
-                equality.into_iter().for_each(|node| refuse(node, "", options, robot, cx));
+                equality
+                    .into_iter()
+                    .for_each(|node| report_or_list_ignored_element(node, "", options, robot, cx));
             }
             "ball_constraint" if !is_own => {
                 let found = read_ball_constraint(node, robot, cx);
@@ -49,7 +51,9 @@ pub(super) fn read_declared_loops(root: Node<'_>, options: &FileOptions, robot: 
             }
             // Joints of Drake have a type; other tools use the name for other things.
             "joint" if !is_own && !node.has_attribute("type") => {}
-            name if !is_own && UNSUPPORTED.contains(&name) => refuse(node, "drake:", options, robot, cx),
+            name if !is_own && UNSUPPORTED.contains(&name) => {
+                report_or_list_ignored_element(node, "drake:", options, robot, cx)
+            }
             _ => {}
         }
     }
@@ -63,7 +67,13 @@ fn add_joint(joint: Option<FileJoint>, robot: &mut Robot) {
 }
 
 /// Reports an element that is not supported, or lists it if loops and their constraints are ignored.
-fn refuse(node: Node<'_>, prefix: &str, options: &FileOptions, robot: &mut Robot, cx: &mut Cx<'_>) {
+fn report_or_list_ignored_element(
+    node: Node<'_>,
+    prefix: &str,
+    options: &FileOptions,
+    robot: &mut Robot,
+    cx: &mut Cx<'_>,
+) {
     let tag = format!("`<{prefix}{}>`", node.tag_name().name());
     if options.loops == LoopOption::Ignore {
         robot.left_out.push(tag);
@@ -75,7 +85,7 @@ fn refuse(node: Node<'_>, prefix: &str, options: &FileOptions, robot: &mut Robot
         "tendon_constraint" => "write `<mimic>` for two joints, or declare the constraint",
         _ => "declare the mechanism with a spring and a dashpot (`linkwork convert`)",
     };
-    cx.report_error(&element_position(node, cx), format!("{tag} is not supported"), |d| {
+    cx.report_error(&element_source_position(node, cx), format!("{tag} is not supported"), |d| {
         d.add_help(help).add_help("to leave it out, write `#[mechanism(…, loops = ignore)]`")
     });
 }
@@ -109,7 +119,7 @@ fn read_loop_joint(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileJoint> {
     let (word, kind) = read_joint_type(node, cx)?;
     if matches!(kind, JointKind::Free | JointKind::Planar) {
         let message = format!("a loop joint of type {} is not supported", quote_word(word));
-        cx.report_error(&element_position(node, cx), message, |d| {
+        cx.report_error(&element_source_position(node, cx), message, |d| {
             d.add_help("expected `spherical`, `revolute`, `continuous`, `prismatic` or `fixed`")
         });
         return None;
@@ -121,9 +131,9 @@ fn read_loop_joint(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileJoint> {
     let axis = child_elements(node).find(|child| child.tag_name().name() == "axis");
     let axis = read_axis(axis.filter(|_| has_axis(kind)), node, cx);
     let mut end = |end: Node<'_>| {
-        check_contents(end, &["link"], &["xyz", "rpy"], &[], cx);
+        report_unexpected_contents(end, &["link"], &["xyz", "rpy"], &[], cx);
         let link = read_name_attribute(end, "link", cx)?;
-        let zero = || Located { value: [0.0; 3], place: element_position(end, cx) };
+        let zero = || Located { value: [0.0; 3], place: element_source_position(end, cx) };
         let (xyz, rpy) = (zero(), zero());
         let xyz = read_numbers_attribute(end, "xyz", cx).unwrap_or(xyz);
         let rpy = read_numbers_attribute(end, "rpy", cx).unwrap_or(rpy);
@@ -137,16 +147,17 @@ fn read_loop_joint(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileJoint> {
 fn read_ball_constraint(node: Node<'_>, robot: &Robot, cx: &mut Cx<'_>) -> Option<FileJoint> {
     let parts = ["body_A", "body_B", "p_AP", "p_BQ"].map(|part| format!("ball_constraint_{part}"));
     let parts = parts.each_ref().map(String::as_str);
-    let found = known_children(node, parts, cx);
+    let found = children_with_known_names(node, parts, cx);
     let mut missing = parts.iter().zip(found).filter(|(_, part)| part.is_none());
     if let Some((part, _)) = missing.next() {
         let message = format!("`<drake:ball_constraint>` without `<drake:{part}>`");
-        cx.report_error(&element_position(node, cx), message, |d| d);
+        cx.report_error(&element_source_position(node, cx), message, |d| d);
         return None;
     }
     let [a, b, p, q] = found;
-    let link_of = |part: Option<Node<'_>>, cx: &mut Cx<'_>| read_name_attribute(part?, "name", cx);
-    let point_of = |part: Option<Node<'_>>, cx: &mut Cx<'_>| {
+    let link_name_of_element =
+        |part: Option<Node<'_>>, cx: &mut Cx<'_>| read_name_attribute(part?, "name", cx);
+    let pose_of_point_element = |part: Option<Node<'_>>, cx: &mut Cx<'_>| {
         let part = part?;
         check_attributes(part, &["value"], &[], cx);
         read_numbers_attribute::<3>(part, "value", cx).map(|at| FilePose { at: at.value, ..FilePose::ZERO })
@@ -154,10 +165,10 @@ fn read_ball_constraint(node: Node<'_>, robot: &Robot, cx: &mut Cx<'_>) -> Optio
     for link in [a, b].into_iter().flatten() {
         check_attributes(link, &["name"], &[], cx);
     }
-    let (parent, child) = (link_of(a, cx), link_of(b, cx));
-    let (on_parent, on_child) = (point_of(p, cx), point_of(q, cx));
+    let (parent, child) = (link_name_of_element(a, cx), link_name_of_element(b, cx));
+    let (on_parent, on_child) = (pose_of_point_element(p, cx), pose_of_point_element(q, cx));
     let is_taken = |name: &str| robot.joints.iter().any(|joint| joint.name.text == name);
-    let place = element_position(node, cx);
+    let place = element_source_position(node, cx);
     let name = Name { text: unused_name("ball_constraint", is_taken), place: place.clone() };
     let axis = Located { value: [1.0, 0.0, 0.0], place };
     let kind = (JointKind::Ball, "spherical");

@@ -5,9 +5,9 @@
 //! missing joint creates roots and cycles that are not in the file.
 
 use super::context::Cx;
-use super::element::{Node, check_element_name, child_elements, element_position, quoted_tag};
+use super::element::{Node, check_element_name, child_elements, element_source_position, quoted_tag};
 use super::misplaced;
-use crate::import::imported::Imported;
+use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
 use crate::syntax::{FileOptions, LoopOption};
 use std::path::Path;
@@ -28,7 +28,7 @@ pub(super) fn read_root_element(
     folder: &Path,
     options: &FileOptions,
     cx: &mut Cx<'_>,
-) -> Option<Imported> {
+) -> Option<ImportedMechanism> {
     if !check_root_element(node, cx) {
         return None;
     }
@@ -37,19 +37,19 @@ pub(super) fn read_root_element(
     robot::declare_world_link(&mut robot);
     robot::rename_ground(&mut robot, options.base);
     if !cx.has_errors() {
-        robot::check_unknown_links(&robot, cx);
+        robot::report_unknown_links(&robot, cx);
         match options.loops {
             LoopOption::Refuse => robot::refuse_declared_loops(&robot, cx),
-            LoopOption::Close => robot::close_loops(&mut robot, cx),
-            LoopOption::Ignore => robot::open_loops(&mut robot),
+            LoopOption::Close => robot::separate_loop_closing_joints(&mut robot, cx),
+            LoopOption::Ignore => robot::remove_loop_closing_joints(&mut robot),
         }
     }
-    robot::check_joint_ends(&robot, options.format, cx);
+    robot::report_wrong_joint_ends(&robot, options.format, cx);
     robot::check_locked_names(&robot.joints, &options.lock, cx);
     if cx.has_errors() {
         return None;
     }
-    let order = robot::order_joints(&robot, cx);
+    let order = robot::order_joints_along_tree(&robot, cx);
     let motions = robot::resolve_motions(&robot.joints, &options.lock, cx);
     let (Some(order), Some(motions)) = (order, motions) else {
         return None;
@@ -72,7 +72,7 @@ fn check_root_element(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
         return true;
     }
     let message = format!("expected `<robot>`, found {}", quoted_tag(node));
-    cx.report_error(&element_position(node, cx), message, |d| match name {
+    cx.report_error(&element_source_position(node, cx), message, |d| match name {
         "sdf" => d.add_help("this is an SDF file: write `sdf = \"…\"` instead of `urdf = \"…\"`"),
         "mujoco" => d.add_help("this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
         _ => d.suggest_name(name, ["robot"]),
@@ -103,7 +103,7 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
         counts[kind] += 1;
         if counts[kind] > MAX_ELEMENTS {
             cx.report_error(
-                &element_position(child, cx),
+                &element_source_position(child, cx),
                 format!("more than {MAX_ELEMENTS} elements {}", quoted_tag(child)),
                 |d| d,
             );
@@ -132,7 +132,7 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
             robot.joints.iter_mut().flat_map(|joint| robot::snap_joint_frame(joint, tolerance)).collect();
     }
     if counts[0] == 0 && !cx.has_errors() {
-        cx.report_error(&element_position(node, cx), "robot without a link", |d| {
+        cx.report_error(&element_source_position(node, cx), "robot without a link", |d| {
             d.add_help("expected `<link name=\"…\"/>`")
         });
     }

@@ -1,7 +1,9 @@
 //! Conversion of an element `<origin xyz="…" rpy="…"/>` to a [`FileOrigin`].
 
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_contents, check_radians, element_position, read_numbers_attribute};
+use crate::import::element::{
+    Node, element_source_position, read_numbers_attribute, report_likely_degrees, report_unexpected_contents,
+};
 use crate::import::imported::Located;
 use crate::import::robot::FileOrigin;
 
@@ -9,7 +11,7 @@ const RADIANS: &str = "`rpy` is in radians: write the angle that is meant, every
 
 /// Reads the `<origin>` of `owner`. Without an `<origin>`, the pose is the identity.
 pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> FileOrigin {
-    let zero_vector_at_node = |node| Located { value: [0.0; 3], place: element_position(node, cx) };
+    let zero_vector_at_node = |node| Located { value: [0.0; 3], place: element_source_position(node, cx) };
     let Some(node) = node else {
         return FileOrigin { xyz: zero_vector_at_node(owner), rpy: zero_vector_at_node(owner) };
     };
@@ -20,10 +22,10 @@ pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'
             d.add_help("expected `rpy=\"roll pitch yaw\"`")
         });
     } else {
-        check_contents(node, &[], &["xyz", "rpy"], &[], cx);
+        report_unexpected_contents(node, &[], &["xyz", "rpy"], &[], cx);
     }
     let xyz = read_numbers_attribute(node, "xyz", cx).unwrap_or(no_xyz);
     let rpy = read_numbers_attribute(node, "rpy", cx).unwrap_or(no_rpy);
-    check_radians(&rpy.value, &rpy.place, RADIANS, cx);
+    report_likely_degrees(&rpy.value, &rpy.place, RADIANS, cx);
     FileOrigin { xyz, rpy }
 }

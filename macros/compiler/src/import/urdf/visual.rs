@@ -2,7 +2,7 @@
 //! an error.
 
 use crate::import::context::Cx;
-use crate::import::element::{Node, child_elements, element_position};
+use crate::import::element::{Node, child_elements, element_source_position};
 use crate::import::imported::Located;
 use crate::import::robot::{FileOrigin, FileVisual};
 use crate::syntax::{Mesh, Shape};
@@ -20,7 +20,7 @@ fn read_visual(node: Node<'_>, cx: &Cx<'_>) -> Option<FileVisual> {
     let attribute_of_origin = |name| {
         let value = find_child_by_tag("origin")
             .map_or(Some([0.0; 3]), |origin| parse_three_numbers(origin, name, [0.0; 3]))?;
-        Some(Located { value, place: element_position(node, cx) })
+        Some(Located { value, place: element_source_position(node, cx) })
     };
     let (shape, mesh) = child_elements(find_child_by_tag("geometry")?).find_map(read_shape)?;
     Some(FileVisual {

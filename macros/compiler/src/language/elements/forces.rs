@@ -1,7 +1,7 @@
 //! Force elements: springs, dashpots, inerters, friction, gravity, forces and torques.
 
 use super::super::Words;
-use super::keys::{Key, Relation};
+use super::keys::{ArgumentRelation, Key};
 use super::words::{AT, NO_INERTANCE, ON, SATURATION};
 use crate::mechanism::PieceKind;
 use Key::{
@@ -28,9 +28,9 @@ pub struct ForceRow {
     /// Arguments that the element requires, with an example value for each.
     pub required: &'static [(Key, &'static str)],
     /// Conditions on which arguments may or must occur together.
-    pub relations: &'static [Relation],
+    pub relations: &'static [ArgumentRelation],
     /// Names of the stretch and the speed in the expression of the law.
-    pub locals: Locals,
+    pub locals: ForceLawVariables,
     /// Whether the element can act on a body, not only on a coordinate or a length.
     pub on_bodies: bool,
     /// Whether the element applies a torque to a body instead of a force.
@@ -49,7 +49,7 @@ pub struct ForceRow {
 
 /// Variables that the expression of a force law may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Locals {
+pub enum ForceLawVariables {
     /// The expression of the force law has no variables of its own.
     None,
     /// The force law may use the variables `stretch` and `length`.
@@ -68,7 +68,7 @@ const PLAIN: ForceRow = ForceRow {
     laws: &[],
     required: &[],
     relations: &[],
-    locals: Locals::None,
+    locals: ForceLawVariables::None,
     on_bodies: false,
     torque: false,
     at_point: true,
@@ -89,13 +89,13 @@ table! {
             arguments: &[Key::Stiffness, Key::Force, Key::Energy, FreeLength, FreeAngle],
             laws: &[Key::Force, Key::Energy, Key::Stiffness],
             required: &[(Key::Stiffness, "k")],
-            relations: &[Relation::exclusion_relation(
+            relations: &[ArgumentRelation::exclusion_relation(
                 FreeAngle,
                 &[FreeLength],
                 "a spring has one of `free_length` and `free_angle`",
                 "`free_length` applies to translations, `free_angle` to rotations",
             )],
-            locals: Locals::Stretch,
+            locals: ForceLawVariables::Stretch,
             pieces: Some([PieceKind::Coil, PieceKind::Spiral]),
             words: &[
                 (ON, "on"),
@@ -120,7 +120,7 @@ table! {
             arguments: &[Key::Damping, Key::Force],
             laws: &[Key::Force, Key::Damping],
             required: &[(Key::Damping, "c")],
-            locals: Locals::Speed,
+            locals: ForceLawVariables::Speed,
             pieces: Some([PieceKind::Damper, PieceKind::Brake]),
             words: &[
                 (ON, "on"),

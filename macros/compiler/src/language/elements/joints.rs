@@ -3,7 +3,7 @@
 use super::super::Words;
 use super::words::{END, LIMITED, RATIO, TURNED};
 use crate::mechanism::PieceKind;
-use CoordinateNames::Plain;
+use JointTypeCoordinates::Plain;
 
 /// Row of the table of joints.
 #[derive(Debug)]
@@ -15,7 +15,7 @@ pub struct JointRow {
     /// Arguments of the joint in addition to its two ends.
     pub arguments: &'static [&'static str],
     /// Names of the joint's coordinates, and whether they are angles.
-    pub coordinates: CoordinateNames,
+    pub coordinates: JointTypeCoordinates,
     /// Piece of the drawing, and the argument whose first axis the piece shows.
     pub piece: Option<(PieceKind, Option<DrawnAxis>)>,
     /// Example of a declaration of the joint.
@@ -24,7 +24,7 @@ pub struct JointRow {
 
 /// Coordinates that a type of joint has.
 #[derive(Clone, Copy, Debug)]
-pub enum CoordinateNames {
+pub enum JointTypeCoordinates {
     /// Plain coordinates by name (empty for the name of the joint), with true for an angle.
     Plain(&'static [(&'static str, bool)]),
     /// Plain coordinates along the two or three given axes.
@@ -48,9 +48,9 @@ const HINGE: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Hinge, So
 const SLIDE: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Slide, Some(DrawnAxis::Along)));
 const BALL: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Ball, None));
 
-const ANGLE: CoordinateNames = Plain(&[("", true)]);
-const LENGTH: CoordinateNames = Plain(&[("", false)]);
-const SLIDE_AND_TURN: CoordinateNames = Plain(&[("slide", false), ("turn", true)]);
+const ANGLE: JointTypeCoordinates = Plain(&[("", true)]);
+const LENGTH: JointTypeCoordinates = Plain(&[("", false)]);
+const SLIDE_AND_TURN: JointTypeCoordinates = Plain(&[("slide", false), ("turn", true)]);
 
 const ABOUT: &str = "#[joint(parent -> child, about = z)]";
 const ALONG: &str = "#[joint(parent -> child, along = x)]";
@@ -60,7 +60,7 @@ const fn joint_row(
     name: &'static str,
     synonyms: &'static str,
     arguments: &'static [&'static str],
-    coordinates: CoordinateNames,
+    coordinates: JointTypeCoordinates,
     piece: Option<(PieceKind, Option<DrawnAxis>)>,
     example: &'static str,
 ) -> JointRow {
@@ -93,18 +93,19 @@ table! {
             &["about"], Plain(&[("first", true), ("second", true)]), BALL, ABOUT);
         /// Rotation about all axes (spherical joint).
         Ball = joint_row("Ball", "spherical socket ballsocket ballandsocket quaternion",
-            &[], CoordinateNames::Ball, BALL, BARE);
+            &[], JointTypeCoordinates::Ball, BALL, BARE);
         /// Two translations and a rotation about their normal (dual sleeve-pin).
         Planar = joint_row("Planar", "dualsleevepin planar2d",
             &["about", "along"], Plain(&[("x", false), ("y", false), ("angle", true)]), HINGE, ABOUT);
         /// Two or three translations (x-y and x-y-z stage).
         Stage = joint_row("Stage",
             "xystage xyzstage xy xyz cartesian gantry translation3d",
-            &["along"], CoordinateNames::PerAxis(&[("x", false), ("y", false), ("z", false)]), SLIDE, ALONG);
+            &["along"], JointTypeCoordinates::PerAxis(&[("x", false), ("y", false), ("z", false)]),
+        SLIDE, ALONG);
         /// All motions (free joint with six degrees of freedom).
         Free = joint_row("Free",
             "floating floatingbase freebase sixdof 6dof freeflyer freeflying unconstrained bushing",
-            &[], CoordinateNames::Free, None, BARE);
+            &[], JointTypeCoordinates::Free, None, BARE);
         /// No motion (fixed joint).
         Weld = joint_row("Weld", "fixed rigid weld welded locked lock glue fix",
             &[], Plain(&[]), None, BARE);
@@ -114,21 +115,21 @@ table! {
 impl JointKind {
     /// Returns the plain coordinates of a joint with `along` translation axes: names (empty for the name of
     /// the joint), and true for an angle.
-    fn plain_coordinates(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
+    fn plain_coordinate_names(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
         match self.row().coordinates {
             Plain(all) => Some(all),
-            CoordinateNames::PerAxis(all) => all.get(..along.clamp(2, all.len())),
-            CoordinateNames::Ball | CoordinateNames::Free => None,
+            JointTypeCoordinates::PerAxis(all) => all.get(..along.clamp(2, all.len())),
+            JointTypeCoordinates::Ball | JointTypeCoordinates::Free => None,
         }
     }
 
     /// Returns the names of the entries of `q` and `v`; an empty name is that of the joint.
     pub fn coordinate_names(self, along: usize) -> (Vec<&'static str>, Vec<&'static str>) {
-        if let Some(plain) = self.plain_coordinates(along) {
+        if let Some(plain) = self.plain_coordinate_names(along) {
             let names: Vec<&str> = plain.iter().map(|(name, _)| *name).collect();
             return (names.clone(), names);
         }
-        let is_ball = matches!(self.row().coordinates, CoordinateNames::Ball);
+        let is_ball = matches!(self.row().coordinates, JointTypeCoordinates::Ball);
         let (q, v): (&[&str], &[&str]) = match is_ball {
             true => (&["qx", "qy", "qz", "qw"], &["wx", "wy", "wz"]),
             false => (&["x", "y", "z", "qx", "qy", "qz", "qw"], &["vx", "vy", "vz", "wx", "wy", "wz"]),
@@ -142,15 +143,19 @@ impl JointKind {
         match (self.row().coordinates, self.row().arguments) {
             (Plain([("", true)]), ["about"]) => Some(true),
             (Plain([("", false)]), ["along"]) => Some(false),
-            (Plain(_) | CoordinateNames::PerAxis(_) | CoordinateNames::Ball | CoordinateNames::Free, _) => {
-                None
-            }
+            (
+                Plain(_)
+                | JointTypeCoordinates::PerAxis(_)
+                | JointTypeCoordinates::Ball
+                | JointTypeCoordinates::Free,
+                _,
+            ) => None,
         }
     }
 
     /// True if a plain coordinate is an angle, false if it is a length.
     pub fn is_angle(self, coordinate: &str) -> bool {
-        let plain = self.plain_coordinates(usize::MAX).unwrap_or_default();
+        let plain = self.plain_coordinate_names(usize::MAX).unwrap_or_default();
         plain.iter().any(|(name, angle)| *name == coordinate && *angle)
     }
 

@@ -117,7 +117,7 @@ const METERS: ArgumentQuantity = Fixed(LENGTH, "m");
 
 /// Condition on which arguments of an element may or must occur together.
 #[derive(Debug)]
-pub struct Relation {
+pub struct ArgumentRelation {
     /// Argument at which a violation of the condition is reported.
     pub key: Key,
     /// True if the argument needs one of the other arguments, false if it excludes them.
@@ -130,24 +130,24 @@ pub struct Relation {
     pub help: &'static str,
 }
 
-impl Relation {
+impl ArgumentRelation {
     /// Returns the condition that an argument is not given together with others.
     pub const fn exclusion_relation(
         key: Key,
         others: &'static [Key],
         message: &'static str,
         help: &'static str,
-    ) -> Relation {
-        Relation { key, needs: false, others, message, help }
+    ) -> ArgumentRelation {
+        ArgumentRelation { key, needs: false, others, message, help }
     }
 
     /// Returns the condition that an argument is given together with one of the others.
-    pub const fn requirement_relation(
+    pub const fn relation_requiring_one_of(
         key: Key,
         others: &'static [Key],
         message: &'static str,
         help: &'static str,
-    ) -> Relation {
-        Relation { key, needs: true, others, message, help }
+    ) -> ArgumentRelation {
+        ArgumentRelation { key, needs: true, others, message, help }
     }
 }

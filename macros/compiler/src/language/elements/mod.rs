@@ -7,9 +7,9 @@ mod keys;
 mod others;
 pub mod words;
 
-pub use forces::{ForceKind, Locals};
-pub use joints::{CoordinateNames, DrawnAxis, JointKind};
-pub use keys::{ArgumentQuantity, Key, Relation};
+pub use forces::{ForceKind, ForceLawVariables};
+pub use joints::{DrawnAxis, JointKind, JointTypeCoordinates};
+pub use keys::{ArgumentQuantity, ArgumentRelation, Key};
 pub use others::OtherKind;
 
 use super::Words;
@@ -68,14 +68,14 @@ const PARTICLE_WORDS: Words = &[
 
 impl ElementKind {
     /// Returns the element type with this name.
-    pub fn of_name(name: &str) -> Option<ElementKind> {
+    pub fn find_by_name(name: &str) -> Option<ElementKind> {
         match name {
             BODY => Some(ElementKind::Body),
             PARTICLE => Some(ElementKind::Particle),
-            _ => JointKind::of_name(name)
+            _ => JointKind::find_by_name(name)
                 .map(ElementKind::Joint)
-                .or_else(|| ForceKind::of_name(name).map(ElementKind::Force))
-                .or_else(|| OtherKind::of_name(name).map(ElementKind::Other)),
+                .or_else(|| ForceKind::find_by_name(name).map(ElementKind::Force))
+                .or_else(|| OtherKind::find_by_name(name).map(ElementKind::Other)),
         }
     }
 
@@ -145,10 +145,10 @@ impl ElementKind {
 }
 
 /// Returns the indefinite article of a word.
-pub fn article(word: &str) -> &'static str {
+pub fn indefinite_article(word: &str) -> &'static str {
     if word.starts_with(['A', 'I']) { "an" } else { "a" }
 }
 
 fn word_with_article(word: &str) -> String {
-    format!("{} {word}", article(word))
+    format!("{} {word}", indefinite_article(word))
 }

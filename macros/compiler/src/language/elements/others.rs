@@ -1,7 +1,7 @@
 //! Elements other than bodies, joints and force elements.
 
 use super::super::Words;
-use super::keys::{Key, Relation};
+use super::keys::{ArgumentRelation, Key};
 use super::words::ON;
 use Key::{
     Dissipation, Friction, From, Hertz, MaxEffort, MaxSpeed, Restitution, RollingFriction, Speed,
@@ -10,7 +10,7 @@ use Key::{
 
 /// A row of the table of other elements.
 #[derive(Debug)]
-pub struct OtherRow {
+pub struct OtherElementRow {
     /// Name of the element's type.
     pub name: &'static str,
     /// Names of the element type in other tools.
@@ -24,7 +24,7 @@ pub struct OtherRow {
     /// Arguments that the element requires, with an example value for each.
     pub required: &'static [(Key, &'static str)],
     /// Conditions on which arguments may or must occur together.
-    pub relations: &'static [Relation],
+    pub relations: &'static [ArgumentRelation],
     /// Names of the element's arguments in other tools.
     pub words: Words,
     /// Example of a declaration of the element.
@@ -37,8 +37,8 @@ const fn row(
     attributes: &'static [&'static str],
     words: Words,
     example: &'static str,
-) -> OtherRow {
-    OtherRow {
+) -> OtherElementRow {
+    OtherElementRow {
         name,
         synonyms,
         attributes,
@@ -53,7 +53,7 @@ const fn row(
 
 table! {
     /// An element other than a body, a joint or a force element.
-    OtherKind: OtherRow {
+    OtherKind: OtherElementRow {
         /// Element type `Coordinate`: a generalized coordinate that belongs to no joint.
         Coordinate = row("Coordinate",
             "symbol symbols dynamicsymbol dynamicsymbols generalizedcoordinate generalisedcoordinate \
@@ -65,16 +65,16 @@ table! {
         Frame = row("Frame", "referenceframe axes coordinatesystem csys basis",
             &["frame"], &[], "#[frame(ground, z(angle))]");
         /// Element type `Point`: a named point of a body.
-        Point = OtherRow {
+        Point = OtherElementRow {
             own: &["on", "at"],
             ..row("Point", "site marker location position landmark waypoint",
             &["point"], POINT, "#[point(on = body, at = length * x)]")
         };
         /// Element type `Limit`: limits of a coordinate.
-        Limit = OtherRow {
+        Limit = OtherElementRow {
             own: &["on"],
             arguments: &[From, To, MaxSpeed, MaxEffort, Restitution],
-            relations: &[Relation::requirement_relation(
+            relations: &[ArgumentRelation::relation_requiring_one_of(
                 Restitution,
                 &[From, To],
                 "a restitution needs a bound",
@@ -98,7 +98,7 @@ table! {
         Rolling = row("Rolling", "",
             &["constraint"], ROLLING, "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]");
         /// Element type `Slipping`: two surfaces that slip on each other, with friction.
-        Slipping = OtherRow {
+        Slipping = OtherElementRow {
             arguments: &[Friction, Speed],
             required: &[(Friction, "mu")],
             ..row("Slipping",
@@ -106,7 +106,7 @@ table! {
             &["constraint"], &[], "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]")
         };
         /// Element type `Contact`: a unilateral contact.
-        Contact = OtherRow {
+        Contact = OtherElementRow {
             arguments: &[
                 Friction,
                 StaticFriction,
@@ -124,7 +124,7 @@ table! {
             &["contact"], CONTACT, "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]")
         };
         /// Element type `State`: a state of first order.
-        State = OtherRow {
+        State = OtherElementRow {
             own: &["rate"],
             ..row("State", "", &["state"], &[], "#[state(rate = (command - level) / lag)]")
         };
@@ -138,18 +138,18 @@ table! {
         /// Element type `Scalar`: a named scalar, which is a definition or an output.
         Scalar = row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
         /// Element type `Vector`: a named vector.
-        Vector = OtherRow {
+        Vector = OtherElementRow {
             own: AXES,
             ..row("Vector", "vector3 vec3 vector3d vec",
             &["define", "output"], AXES_WORDS, "#[output(expression)]")
         };
         /// Element type `Matrix`: a named matrix.
-        Matrix = OtherRow {
+        Matrix = OtherElementRow {
             own: AXES,
             ..row("Matrix", "", &["define", "output"], AXES_WORDS, "#[output(expression)]")
         };
         /// Element type `FreeBody`: the free-body diagram of a body.
-        FreeBody = OtherRow {
+        FreeBody = OtherElementRow {
             own: AXES,
             ..row("FreeBody", "", &["output"], AXES_WORDS, "#[output(body)]")
         };
@@ -200,28 +200,28 @@ const ROLLING: Words = &[(
 const AXES: &[&str] = &["resolved_in"];
 
 /// Conditions on the arguments of rigid and of compliant contact surfaces, which exclude each other.
-const COMPLIANCE: &[Relation] = &[
-    Relation::exclusion_relation(
+const COMPLIANCE: &[ArgumentRelation] = &[
+    ArgumentRelation::exclusion_relation(
         Hertz,
         &[Stiffness],
         "`NAME` has two stiffnesses",
         "`stiffness` is force per penetration depth, `hertz` force per depth to the power 3/2: give one",
     ),
-    Relation::requirement_relation(Dissipation, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
-    Relation::requirement_relation(Speed, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
-    Relation::exclusion_relation(
+    ArgumentRelation::relation_requiring_one_of(Dissipation, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
+    ArgumentRelation::relation_requiring_one_of(Speed, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
+    ArgumentRelation::exclusion_relation(
         Restitution,
         &[Stiffness, Hertz],
         "compliant surfaces have no coefficient of restitution",
         "use `dissipation`, s/m, for the energy loss of their impacts",
     ),
-    Relation::exclusion_relation(
+    ArgumentRelation::exclusion_relation(
         StaticFriction,
         &[Stiffness, Hertz],
         "the friction of compliant surfaces is smooth in the slip velocity and has no stiction",
         "remove `stiffness` or `hertz`, or remove `stiction`",
     ),
-    Relation::requirement_relation(
+    ArgumentRelation::relation_requiring_one_of(
         StaticFriction,
         &[Friction],
         "`NAME` has stiction, but no sliding friction",

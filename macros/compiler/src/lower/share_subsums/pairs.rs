@@ -61,7 +61,7 @@ impl SharedPairs {
 
     /// Removes the pair that the most sums share, the first one among equals, and returns it with these sums.
     /// Returns `None` if no pair is shared.
-    pub(super) fn take_most_shared(&mut self) -> Option<(TermPair, Vec<usize>)> {
+    pub(super) fn take_most_shared_pair(&mut self) -> Option<(TermPair, Vec<usize>)> {
         let (_, Reverse(pair)) = self.shared.pop_last()?;
         Some((pair, self.lists.remove(&pair)?))
     }
@@ -76,7 +76,7 @@ impl TermPair {
     /// Returns the pair of two terms in ascending order, except that the number 1 comes second, because a sum
     /// begins with a value.
     pub(super) fn new(a: (TermKey, f64), b: (TermKey, f64)) -> TermPair {
-        let [x, y] = [a.0.key_number(), b.0.key_number()];
+        let [x, y] = [a.0.term_key_index(), b.0.term_key_index()];
         let swap = x == 0 || (y != 0 && y < x);
         let ((x, c), (y, d)) = if swap { ((y, b.1), (x, a.1)) } else { ((x, a.1), (y, b.1)) };
         TermPair(u128::from(x) << 96 | u128::from(y) << 64 | u128::from((d / c).to_bits()))
@@ -88,7 +88,7 @@ impl TermPair {
     }
 
     /// Returns the number of the second key of a pair of terms.
-    pub(super) fn second_key(self) -> u32 {
+    pub(super) fn second_term_key(self) -> u32 {
         (self.0 >> 64) as u32
     }
 

@@ -15,12 +15,12 @@
 use super::super::crba::{Matrix, momentum};
 use super::super::rnea;
 use super::ForceDerivatives;
-use super::columns::{Column, derivative_columns, link_motions, rate_columns};
+use super::columns::{DofMotionChanges, coriolis_columns, derivative_columns, link_motions};
 use super::subtree::{Subtree, subtree_sums};
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, time_derivative, twists, velocity_gradient};
 use crate::mechanism::Model;
-use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
+use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, PropagationVisitor};
 
 /// Returns the derivatives of `M a + h` without springs, dashpots and other loads, in up to `most` lanes; one
 /// lane gives scalar code.
@@ -32,7 +32,7 @@ pub fn inverse_dynamics<'g>(
     most: usize,
 ) -> ForceDerivatives<'g> {
     let motions = link_motions(model, joints, v, a);
-    let columns: Vec<Vec<Column<'g>>> =
+    let columns: Vec<Vec<DofMotionChanges<'g>>> =
         joints.iter().zip(&motions).map(|(j, m)| derivative_columns(j, m)).collect();
     let twists: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
     let wrenches = rnea::link_wrenches(model, joints, v, Some(a));
@@ -49,8 +49,8 @@ pub fn coriolis_matrix<'g>(
     most: usize,
 ) -> Matrix<'g> {
     let twists = twists(model, joints, v);
-    let columns: Vec<Vec<Column<'g>>> =
-        joints.iter().zip(&twists).map(|(j, t)| rate_columns(model, j, t)).collect();
+    let columns: Vec<Vec<DofMotionChanges<'g>>> =
+        joints.iter().zip(&twists).map(|(j, t)| coriolis_columns(model, j, t)).collect();
     let still = vec![Spatial::zero(model); joints.len()];
     let sums = subtree_sums(model, joints, &twists, &still, 1.0);
     let mut matrix = derivative_entries(model, joints, &columns, &sums, most).by_v;
@@ -76,29 +76,34 @@ fn add_inertances<'g>(model: &Model<'g>, matrix: &mut Matrix<'g>) {
 fn derivative_entries<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
-    columns: &[Vec<Column<'g>>],
+    columns: &[Vec<DofMotionChanges<'g>>],
     sums: &[Subtree<'g>],
     most: usize,
 ) -> ForceDerivatives<'g> {
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = ForceDerivatives { by_q: zero_matrix(), by_v: zero_matrix() };
-    let paths = Paths::new(joints, most);
-    let mut entries =
-        DerivativeEntries { columns, all: columns.concat(), links: paths.links_of_freedoms(), sums, out };
+    let paths = PathsToRoot::new(joints, most);
+    let mut entries = ForceDerivativeVisitor {
+        columns,
+        all: columns.concat(),
+        links: paths.links_of_freedoms(),
+        sums,
+        out,
+    };
     paths.propagate_to_root(&mut entries);
     entries.out
 }
 
-struct DerivativeEntries<'a, 'g> {
+struct ForceDerivativeVisitor<'a, 'g> {
     /// Columns of the degrees of freedom of each link; the field `all` holds the same columns in one list.
-    columns: &'a [Vec<Column<'g>>],
-    all: Vec<Column<'g>>,
+    columns: &'a [Vec<DofMotionChanges<'g>>],
+    all: Vec<DofMotionChanges<'g>>,
     links: &'a [usize],
     sums: &'a [Subtree<'g>],
     out: ForceDerivatives<'g>,
 }
 
-impl<'g> Visitor<'g> for DerivativeEntries<'_, 'g> {
+impl<'g> PropagationVisitor<'g> for ForceDerivativeVisitor<'_, 'g> {
     type Item = DofContribution<'g>;
 
     fn start(&mut self, dof: usize) -> DofContribution<'g> {
@@ -113,8 +118,9 @@ impl<'g> Visitor<'g> for DerivativeEntries<'_, 'g> {
 
     fn visit(&mut self, group: &LaneGroup<DofContribution<'g>>) {
         for other in &self.columns[group.link] {
-            let [above, below] =
-                group.item.derivatives_with_ancestor(&other.map(&|e| group.repeat_for_members(e)));
+            let [above, below] = group
+                .item
+                .force_derivatives_with_ancestor(&other.map(&|e| group.repeat_for_group_members(e)));
             let pair_entries_by_dof =
                 |[by_q, by_v]: [Expr<'g>; 2]| group.lanes_of_members(by_q).zip(group.lanes_of_members(by_v));
             for ((dof, by_q), (_, by_v)) in pair_entries_by_dof(above) {
@@ -141,7 +147,7 @@ struct DofContribution<'g> {
 }
 
 impl<'g> DofContribution<'g> {
-    fn new(column: &Column<'g>, sum: &Subtree<'g>) -> DofContribution<'g> {
+    fn new(column: &DofMotionChanges<'g>, sum: &Subtree<'g>) -> DofContribution<'g> {
         DofContribution {
             by_q: momentum(&sum.inertia, &column.second).plus(&sum.map(&column.first)),
             by_v: sum.map(&column.subspace).plus(&momentum(&sum.inertia, &column.rate)),
@@ -152,7 +158,7 @@ impl<'g> DofContribution<'g> {
 
     /// Returns the derivatives of the force of an ancestor's degree of freedom with respect to `q` and `v` of
     /// this degree of freedom, then the derivatives with the two degrees of freedom exchanged.
-    fn derivatives_with_ancestor(&self, other: &Column<'g>) -> [[Expr<'g>; 2]; 2] {
+    fn force_derivatives_with_ancestor(&self, other: &DofMotionChanges<'g>) -> [[Expr<'g>; 2]; 2] {
         let s = &other.subspace;
         let by_q = self.momentum.dot(&other.second) + self.moment.dot(other.first.angular);
         let by_v = self.momentum.dot(&other.rate) + self.moment.dot(s.angular);
@@ -163,7 +169,13 @@ impl<'g> DofContribution<'g> {
 impl_propagated!(DofContribution { by_q, by_v, momentum, moment });
 
 impl<'g> ForceDerivatives<'g> {
-    fn add(&mut self, row: &Column<'g>, column: &Column<'g>, by_q: Expr<'g>, by_v: Expr<'g>) {
+    fn add(
+        &mut self,
+        row: &DofMotionChanges<'g>,
+        column: &DofMotionChanges<'g>,
+        by_q: Expr<'g>,
+        by_v: Expr<'g>,
+    ) {
         let ratio = by_q.num(row.ratio * column.ratio);
         self.by_q[row.index][column.index] += by_q * ratio;
         self.by_v[row.index][column.index] += by_v * ratio;

@@ -71,7 +71,7 @@ pub fn link_motions<'g>(
             dw: turn.to_child(above.dw),
             a: turn.to_child(above.a + above.acceleration_matrix() * p),
         };
-        let (rate, change) = (joint.total_relative_twist(model, v), joint.relative_twist(model, a));
+        let (rate, change) = (joint.twist_with_prescribed_motion(model, v), joint.relative_twist(model, a));
         let w = parent.w;
         let own = FrameMotion {
             v: parent.v + rate.linear,
@@ -87,7 +87,7 @@ pub fn link_motions<'g>(
 /// A degree of freedom with the changes that its displacement and its velocity cause in the motion of the
 /// link and all descendants.
 #[derive(Clone, Copy)]
-pub struct Column<'g> {
+pub struct DofMotionChanges<'g> {
     /// Index in `v` of the degree of freedom to which the column belongs.
     pub index: usize,
     /// Joint velocity per unit of the entry of `v`.
@@ -104,11 +104,11 @@ pub struct Column<'g> {
     pub rate: Spatial<'g>,
 }
 
-impl<'g> Column<'g> {
+impl<'g> DofMotionChanges<'g> {
     /// Applies a function to all expressions of a derivative column.
-    pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Column<'g> {
+    pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> DofMotionChanges<'g> {
         let map_components = |s: &Spatial<'g>| Spatial { linear: s.linear.map(f), angular: s.angular.map(f) };
-        Column {
+        DofMotionChanges {
             subspace: map_components(&self.subspace),
             first: map_components(&self.first),
             second: map_components(&self.second),
@@ -119,7 +119,7 @@ impl<'g> Column<'g> {
 }
 
 /// Returns the columns of a link for the derivatives of inverse dynamics.
-pub fn derivative_columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>> {
+pub fn derivative_columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<DofMotionChanges<'g>> {
     let (above, single) = (&motion.parent, joint.dofs.len() == 1);
     // The rotation about an axis changes neither the product of U with the axis nor V × S if S is the only
     // degree of freedom.
@@ -134,21 +134,32 @@ pub fn derivative_columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec
         let turning = above.w.cross(s.angular);
         let linear = u * s.linear + above.a.cross(s.angular) + above.v.cross(turning + turning);
         let second = Spatial { linear, angular: u * s.angular };
-        Column { index: dof.index, ratio: dof.ratio, subspace: *s, first, second, rate }
+        DofMotionChanges { index: dof.index, ratio: dof.ratio, subspace: *s, first, second, rate }
     };
     joint.dofs.iter().map(derivative_column).collect()
 }
 
 /// Returns the columns of a link for the Coriolis matrix, with `Ṡ` in `rate` instead of `Ψ̇ + Ṡ`; the
 /// displacement columns are zero.
-pub fn rate_columns<'g>(model: &Model<'g>, joint: &Joint<'g>, twist: &Spatial<'g>) -> Vec<Column<'g>> {
+pub fn coriolis_columns<'g>(
+    model: &Model<'g>,
+    joint: &Joint<'g>,
+    twist: &Spatial<'g>,
+) -> Vec<DofMotionChanges<'g>> {
     let zero = Spatial::zero(model);
-    let rate_column = |(k, dof): (usize, &Dof<'g>)| {
+    let jacobian_column_with_rate = |(k, dof): (usize, &Dof<'g>)| {
         let own = joint.drift.as_ref().and_then(|drift| drift.subspace_rates.get(k));
         let rate = own.unwrap_or(&zero).plus(&cross(twist, &dof.subspace));
-        Column { index: dof.index, ratio: dof.ratio, subspace: dof.subspace, first: zero, second: zero, rate }
+        DofMotionChanges {
+            index: dof.index,
+            ratio: dof.ratio,
+            subspace: dof.subspace,
+            first: zero,
+            second: zero,
+            rate,
+        }
     };
-    joint.dofs.iter().enumerate().map(rate_column).collect()
+    joint.dofs.iter().enumerate().map(jacobian_column_with_rate).collect()
 }
 
 /// Returns `V × X`, the rate of a motion `X` that moves with the twist `V`.

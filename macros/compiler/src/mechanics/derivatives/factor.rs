@@ -28,7 +28,7 @@ impl<'g> Factor<'g> {
         let order = elimination_order(joints, mass.len());
         let n = mass.len();
         match (0..n).all(|i| (0..i).all(|j| mass[i][j] == mass[j][i])) {
-            true => Factor::factorise_in_order(mass, &order),
+            true => Factor::factorise_from_leaves_to_root(mass, &order),
             false => Factor::factorise_unsymmetric(mass, &order),
         }
     }
@@ -57,7 +57,7 @@ impl<'g> Factor<'g> {
     }
 
     /// Factorises the symmetric block of the entries of `v` in `order`, which lists leaves before the root.
-    pub fn factorise_in_order(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
+    pub fn factorise_from_leaves_to_root(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
         let mut m = mass.clone();
         let mut rows = vec![Vec::new(); m.len()];
         let mut inverse: Vec<Expr<'g>> = (0..m.len()).map(|k| m[k][k].num(1.0)).collect();
@@ -84,11 +84,11 @@ impl<'g> Factor<'g> {
 
     /// Returns the solution `M⁻¹ r` of a linear system with the factorised matrix.
     pub fn solve_factored(&self, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
-        self.apply_remaining_factors(self.apply_first_factor(r))
+        self.apply_remaining_factors(self.solve_with_first_factor(r))
     }
 
     /// Returns `L⁻ᵀ r`, or `U⁻¹ r` for an unsymmetric matrix.
-    fn apply_first_factor(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    fn solve_with_first_factor(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         let columns = self.columns.as_ref().unwrap_or(&self.rows);
         for &k in &self.order {
             for (i, factor) in &columns[k] {
@@ -110,7 +110,7 @@ impl<'g> Factor<'g> {
     pub fn constraint_responses(&self, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let Some(zero) = self.inverse.first().map(|d| d.zero()) else { return Vec::new() };
         let reduced: Vec<Vec<Expr<'g>>> =
-            rows.iter().map(|row| self.apply_first_factor(row.clone())).collect();
+            rows.iter().map(|row| self.solve_with_first_factor(row.clone())).collect();
         let mut out: Vec<Expr<'g>> =
             reduced.iter().flat_map(|row| self.apply_remaining_factors(row.clone())).collect();
         let weighted: Vec<Vec<Expr<'g>>> =

@@ -12,7 +12,7 @@
 //! axes. The condition is checked on the expressions of the equations themselves.
 
 use super::{ForceDerivatives, symbolic};
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::{Expr, Mat3, Symbol, Vec3};
 use crate::kinematics::{Joint, Spatial, symbols_in};
 use crate::mechanics::{acceleration_symbols, rnea, velocity_symbols};
@@ -31,7 +31,7 @@ pub struct InvariantColumns<'g> {
 }
 
 /// Finds the columns of derivatives that invariance under displacements of a free base determines.
-pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> InvariantColumns<'g> {
+pub fn columns_determined_by_invariance<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> InvariantColumns<'g> {
     let mut found = InvariantColumns::default();
     let free_base_of_link = |base: usize| match model.links[base] {
         Link { parent: None, motion: Motion::Free { q, v }, .. } => {
@@ -44,10 +44,9 @@ pub fn invariant_columns<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Invaria
         return found;
     }
     let others = NoninertialTerms::new(model, joints);
-    for base in bases
-        .into_iter()
-        .filter(|base| base.carries_all_uniformly(model, joints) && others.falls_freely(base.v))
-    {
+    for base in bases.into_iter().filter(|base| {
+        base.is_dynamics_independent_of_base(model, joints) && others.has_only_link_inertia(base.v)
+    }) {
         let v = base.v;
         let block_columns = |first: usize, block: Mat3<'g>| {
             (0..3).map(move |k| {
@@ -80,7 +79,7 @@ struct FreeBase {
 impl FreeBase {
     /// Returns whether the masses, gravity and joints of all other links are independent of the pose and the
     /// velocity of the base, whether or not these links are descendants of the base.
-    fn carries_all_uniformly<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
+    fn is_dynamics_independent_of_base<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
         let mut all = model.gravity.0.to_vec();
         for (k, (link, joint)) in model.links.iter().zip(joints).enumerate() {
             let Inertia { mass, moment, tensor } = link.inertia;
@@ -131,7 +130,8 @@ impl<'g> NoninertialTerms<'g> {
         let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
         let forces = rnea::inverse_dynamics(&massless, joints, &v, Some(&a));
         let forces_depend_on_acceleration = |k: usize| {
-            let mut d = Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
+            let mut d =
+                DirectionalDerivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
             forces.iter().any(|force| !d.differentiate(*force).is_zero())
         };
         let inertial = (0..model.nv()).map(forces_depend_on_acceleration).collect();
@@ -140,7 +140,7 @@ impl<'g> NoninertialTerms<'g> {
 
     /// Returns true if no inertia except that of the links acts on the linear acceleration of the base whose
     /// velocities begin at `v`.
-    fn falls_freely(&self, v: usize) -> bool {
+    fn has_only_link_inertia(&self, v: usize) -> bool {
         !self.inertial[v..v + 3].contains(&true)
     }
 }
@@ -164,12 +164,12 @@ impl<'g> InvariantColumns<'g> {
     }
 
     /// Returns all known columns, concatenated: columns of `∂v̇/∂q`, then columns of `∂v̇/∂v`.
-    pub fn all_known_columns(&self) -> Vec<Expr<'g>> {
+    pub fn all_invariant_columns(&self) -> Vec<Expr<'g>> {
         self.by_q.iter().chain(&self.by_v).flat_map(|(_, column)| column.iter().copied()).collect()
     }
 
     /// Returns the indices of the known columns of `∂v̇/∂q` and of `∂v̇/∂v`.
-    pub fn known_column_indices(&self) -> [Vec<usize>; 2] {
+    pub fn invariant_column_indices(&self) -> [Vec<usize>; 2] {
         [&self.by_q, &self.by_v].map(|columns| columns.iter().map(|(k, _)| *k).collect())
     }
 }

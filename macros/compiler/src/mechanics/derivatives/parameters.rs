@@ -5,7 +5,7 @@ use super::super::crba::Matrix;
 use super::super::{acceleration_symbols, added_mass, crba, forces, rnea, velocity_symbols};
 use super::Factor;
 use crate::expr::Expr;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
@@ -22,8 +22,10 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix
 }
 
 fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
-    let parameter_derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
-    let derivative_column = |mut d: Derivative<'g>| values.iter().map(|e| d.differentiate(*e)).collect();
+    let parameter_derivative =
+        |k| DirectionalDerivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
+    let derivative_column =
+        |mut d: DirectionalDerivative<'g>| values.iter().map(|e| d.differentiate(*e)).collect();
     (0..model.parameters.len()).map(|k| derivative_column(parameter_derivative(k))).collect()
 }
 

@@ -25,14 +25,14 @@
 
 use super::super::crba::{Matrix, momentum};
 use super::super::{acceleration_symbols, constraints, rnea, velocity_symbols};
-use super::columns::{Column, cross, derivative_columns, link_motions};
-use super::subtree::{Subtree, of_body, subtree_sums};
+use super::columns::{DofMotionChanges, cross, derivative_columns, link_motions};
+use super::subtree::{Subtree, subtree_sums, sums_of_single_body};
 use super::{analytic, has_constant_subspaces, symbolic};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
 use crate::mechanics::passive::passive_forces;
-use crate::mechanism::{Chart, Inertia, Model, Quantity, Supplied};
-use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
+use crate::mechanism::{Chart, Inertia, Model, Quantity, SuppliedQuantity};
+use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, PropagationVisitor};
 
 /// Second derivatives of a function of configuration, velocity and acceleration. The function is linear in
 /// the acceleration, without mixed derivatives with respect to velocity and acceleration.
@@ -49,8 +49,8 @@ pub struct Hessian<'g> {
 }
 
 /// Returns the factors `λ` of the forces as symbols of an argument.
-pub fn factor_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.nv()).map(|k| Quantity::Given(Supplied::Factor, k).expr(model.graph)).collect()
+pub fn force_factor_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    (0..model.nv()).map(|k| Quantity::Given(SuppliedQuantity::Factor, k).expr(model.graph)).collect()
 }
 
 /// Returns the second derivatives of `λᵀ τ` of inverse dynamics by recursion, in up to `most` lanes, or
@@ -59,17 +59,19 @@ pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     if !has_constant_subspaces(model) {
         return None;
     }
-    let (v, a, lambda) = (velocity_symbols(model), acceleration_symbols(model), factor_symbols(model));
+    let (v, a, lambda) = (velocity_symbols(model), acceleration_symbols(model), force_factor_symbols(model));
     let motions = link_motions(model, joints, &v, &a);
     let virtual_twists = twists(model, joints, &lambda);
-    let columns: Vec<Vec<ColumnDirections<'g>>> = joints
+    let columns: Vec<Vec<ColumnWithTwistChange<'g>>> = joints
         .iter()
         .zip(&motions)
         .map(|(joint, motion)| {
             let ground = Spatial::zero(model);
             let above = joint.parent.map_or(ground, |p| joint.twist_to_child(&virtual_twists[p.0]));
-            let directions_of_column =
-                |column: Column<'g>| ColumnDirections { factor: cross(&above, &column.subspace), column };
+            let directions_of_column = |column: DofMotionChanges<'g>| ColumnWithTwistChange {
+                factor: cross(&above, &column.subspace),
+                column,
+            };
             derivative_columns(joint, motion).into_iter().map(directions_of_column).collect()
         })
         .collect();
@@ -79,8 +81,8 @@ pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     let sums = contract_subtree_sums(model, joints, (&own, &virtual_twists), sums);
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = Hessian { qq: zero_matrix(), qv: zero_matrix(), vv: zero_matrix(), qa: zero_matrix() };
-    let paths = Paths::new(joints, most);
-    let mut entries = HessianEntries {
+    let paths = PathsToRoot::new(joints, most);
+    let mut entries = HessianAssembly {
         columns: &columns,
         all: columns.concat(),
         links: paths.links_of_freedoms(),
@@ -97,7 +99,7 @@ pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
 pub fn hessian_by_differentiation<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Hessian<'g> {
     let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
-    hessian_of_power(model, &tau, &factor_symbols(model))
+    hessian_of_power(model, &tau, &force_factor_symbols(model))
 }
 
 /// Returns the second derivatives of the power of springs, dashpots, friction, potentials and loads.
@@ -118,7 +120,7 @@ pub fn hessian_of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<
         qq: second.by_q,
         qv: second.by_v,
         vv: symbolic::force_derivatives(model, &by_v).by_v,
-        qa: symbolic::by_acceleration(model, &by_q),
+        qa: symbolic::acceleration_derivative_matrix(model, &by_q),
     }
 }
 
@@ -136,10 +138,11 @@ pub struct InputHessian<'g> {
 
 /// Returns the second derivatives of the power `λᵀ τ` of the input forces `tau`.
 pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
-    let lambda = factor_symbols(model);
+    let lambda = force_factor_symbols(model);
     let zero = model.graph.zero();
     let power = tau.iter().zip(&lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
-    let by_u = symbolic::by_input(model, &[power]).into_iter().next().unwrap_or_default();
+    let by_u =
+        symbolic::input_derivatives_of_expressions(model, &[power]).into_iter().next().unwrap_or_default();
     let mixed = symbolic::force_derivatives(model, &by_u);
     let transposed_matrix =
         |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
@@ -147,7 +150,7 @@ pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
         state: hessian_of_power(model, tau, &lambda),
         qu: transposed_matrix(mixed.by_q),
         vu: transposed_matrix(mixed.by_v),
-        uu: symbolic::by_input(model, &by_u),
+        uu: symbolic::input_derivatives_of_expressions(model, &by_u),
     }
 }
 
@@ -163,15 +166,18 @@ pub struct ConstraintHessian<'g> {
 /// The arguments of the generated function are the multipliers `λ`, then `w`, `z` and `y`.
 pub fn hessian_of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
-    let argument_expressions = |block: Supplied, n: usize| -> Vec<Expr<'g>> {
+    let supplied_argument_symbols = |block: SuppliedQuantity, n: usize| -> Vec<Expr<'g>> {
         (0..n).map(|k| Quantity::Given(block, k).expr(model.graph)).collect()
     };
     let dot_product =
         |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
-    let (lambda, w) = (constraints::multiplier_symbols(model), argument_expressions(Supplied::Direction, nv));
+    let (lambda, w) = (
+        constraints::multiplier_argument_symbols(model),
+        supplied_argument_symbols(SuppliedQuantity::Direction, nv),
+    );
     let (z, y) = (
-        argument_expressions(Supplied::AccelerationFactor, nc),
-        argument_expressions(Supplied::VelocityFactor, nc),
+        supplied_argument_symbols(SuppliedQuantity::AccelerationFactor, nc),
+        supplied_argument_symbols(SuppliedQuantity::VelocityFactor, nc),
     );
     let (rows, a) = (constraints::jacobian(model), acceleration_symbols(model));
     let along: Vec<Expr<'g>> = rows.iter().map(|row| dot_product(row, &w)).collect();
@@ -191,8 +197,8 @@ pub fn symmetrise_block<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for chart in &model.charts {
         let block = match *chart {
             Chart::Plain(..) => continue,
-            Chart::Ball(_, v) => v.and_next(3),
-            Chart::Free(_, v) => v.and_next(6),
+            Chart::Ball(_, v) => v.range_of_entries(3),
+            Chart::Free(_, v) => v.range_of_entries(6),
         };
         for i in block.clone() {
             for j in block.start..i {
@@ -205,15 +211,15 @@ pub fn symmetrise_block<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
 
 /// Column of a degree of freedom together with `Ω`, the change of the virtual twists with its displacement.
 #[derive(Clone, Copy)]
-struct ColumnDirections<'g> {
-    column: Column<'g>,
+struct ColumnWithTwistChange<'g> {
+    column: DofMotionChanges<'g>,
     factor: Spatial<'g>,
 }
 
-impl<'g> ColumnDirections<'g> {
-    fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> ColumnDirections<'g> {
+impl<'g> ColumnWithTwistChange<'g> {
+    fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> ColumnWithTwistChange<'g> {
         let factor = Spatial { linear: self.factor.linear.map(f), angular: self.factor.angular.map(f) };
-        ColumnDirections { column: self.column.map(f), factor }
+        ColumnWithTwistChange { column: self.column.map(f), factor }
     }
 }
 
@@ -231,11 +237,13 @@ struct SubtreeSums<'g> {
 impl<'g> SubtreeSums<'g> {
     /// Returns the moment of `Q X + X ×* P`, which has no force.
     fn mapped_moment_with_momentum(&self, x: &Spatial<'g>) -> Vec3<'g> {
-        self.mapped_moment(x) + x.angular.cross(self.momentum.angular) + x.linear.cross(self.momentum.linear)
+        self.subtree_wrench_moment(x)
+            + x.angular.cross(self.momentum.angular)
+            + x.linear.cross(self.momentum.linear)
     }
 
     /// Returns the moment of the wrench `Q X` for a spatial vector `X`.
-    fn mapped_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
+    fn subtree_wrench_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
         x.linear.cross(self.momentum.linear) + self.tensor * x.angular
     }
 }
@@ -251,7 +259,7 @@ fn contract_subtree_sums<'g>(
     for ((link, own), w) in model.links.iter().zip(own).zip(virtual_twists) {
         let p = momentum(&link.inertia, w);
         let zero = Vec3::zero(model.graph);
-        let n = of_body(&link.inertia, own, 2.0).transposed_map(w);
+        let n = sums_of_single_body(&link.inertia, own, 2.0).transposed_map(w);
         changes.push(inertia_rate(&link.inertia, w, p.linear));
         wrenches.push([p, Spatial { linear: zero, angular: n }]);
     }
@@ -294,16 +302,16 @@ fn inertia_rate<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia
     }
 }
 
-struct HessianEntries<'a, 'g> {
+struct HessianAssembly<'a, 'g> {
     /// Columns of the degrees of freedom of each link; the field `all` holds the same columns in one list.
-    columns: &'a [Vec<ColumnDirections<'g>>],
-    all: Vec<ColumnDirections<'g>>,
+    columns: &'a [Vec<ColumnWithTwistChange<'g>>],
+    all: Vec<ColumnWithTwistChange<'g>>,
     links: &'a [usize],
     sums: &'a [SubtreeSums<'g>],
     out: Hessian<'g>,
 }
 
-impl<'g> Visitor<'g> for HessianEntries<'_, 'g> {
+impl<'g> PropagationVisitor<'g> for HessianAssembly<'_, 'g> {
     type Item = FactoredContribution<'g>;
 
     fn start(&mut self, dof: usize) -> FactoredContribution<'g> {
@@ -311,13 +319,13 @@ impl<'g> Visitor<'g> for HessianEntries<'_, 'g> {
         let changes = FactoredContribution::new(&own, sums);
         let out = &mut self.out;
         for other in &self.columns[self.links[dof]] {
-            let [qq, _, vq, _, _, aq] = changes.entries_with_ancestor(other);
+            let [qq, _, vq, _, _, aq] = changes.hessian_entries_with_ancestor(other);
             // Half of the value for each of the two orders.
             out.add_entry(|h| &mut h.qq, &own, other, qq * 0.5);
             out.add_entry(|h| &mut h.qq, other, &own, qq * 0.5);
             out.add_entry(|h| &mut h.qv, other, &own, vq);
             out.add_entry(|h| &mut h.qa, other, &own, aq);
-            let vv = sums.mapped_moment(&own.column.subspace).dot(other.column.subspace.angular)
+            let vv = sums.subtree_wrench_moment(&own.column.subspace).dot(other.column.subspace.angular)
                 + sums.momentum.linear.cross(own.column.subspace.angular).dot(other.column.subspace.linear);
             out.add_entry(|h| &mut h.vv, &own, other, vv);
         }
@@ -326,7 +334,8 @@ impl<'g> Visitor<'g> for HessianEntries<'_, 'g> {
 
     fn visit(&mut self, group: &LaneGroup<FactoredContribution<'g>>) {
         for other in &self.columns[group.link] {
-            let met = group.item.entries_with_ancestor(&other.map(&|e| group.repeat_for_members(e)));
+            let met =
+                group.item.hessian_entries_with_ancestor(&other.map(&|e| group.repeat_for_group_members(e)));
             for (part, entry) in met.into_iter().enumerate() {
                 for (dof, entry) in group.lanes_of_members(entry) {
                     let own = &self.all[dof];
@@ -355,8 +364,8 @@ impl<'g> Hessian<'g> {
     fn add_entry(
         &mut self,
         block: for<'h> fn(&'h mut Hessian<'g>) -> &'h mut Matrix<'g>,
-        row: &ColumnDirections<'g>,
-        column: &ColumnDirections<'g>,
+        row: &ColumnWithTwistChange<'g>,
+        column: &ColumnWithTwistChange<'g>,
         entry: Expr<'g>,
     ) {
         let (row, column) = (&row.column, &column.column);
@@ -397,7 +406,7 @@ struct FactoredContribution<'g> {
 }
 
 impl<'g> FactoredContribution<'g> {
-    fn new(own: &ColumnDirections<'g>, sums: &SubtreeSums<'g>) -> FactoredContribution<'g> {
+    fn new(own: &ColumnWithTwistChange<'g>, sums: &SubtreeSums<'g>) -> FactoredContribution<'g> {
         let (column, plain) = (&own.column, &sums.plain);
         let s = &column.subspace;
         let momentum_of_twist = |x: &Spatial<'g>| momentum(&plain.inertia, x);
@@ -418,8 +427,8 @@ impl<'g> FactoredContribution<'g> {
     /// Returns the six entries with a degree of freedom of an ancestor, by the variation of this degree of
     /// freedom and that of the other: displacement and displacement; displacement and velocity; velocity and
     /// displacement; velocity and velocity; displacement and acceleration; acceleration and displacement.
-    fn entries_with_ancestor(&self, other: &ColumnDirections<'g>) -> [Expr<'g>; 6] {
-        let Column { subspace, first, second, rate, .. } = &other.column;
+    fn hessian_entries_with_ancestor(&self, other: &ColumnWithTwistChange<'g>) -> [Expr<'g>; 6] {
+        let DofMotionChanges { subspace, first, second, rate, .. } = &other.column;
         [
             other.factor.dot(&self.by_q) + second.dot(&self.factored) + first.angular.dot(self.moment_by_q),
             subspace.angular.dot(self.moment_by_q) + rate.dot(&self.factored),

@@ -54,7 +54,7 @@ pub fn subtree_sums<'g>(
     let inertias = crba::composite_inertias(model, joints);
     let bodies = model.links.iter().map(|link| &link.inertia);
     let mut sums: Vec<Subtree<'g>> =
-        bodies.zip(twists).map(|(body, twist)| of_body(body, twist, multiple)).collect();
+        bodies.zip(twists).map(|(body, twist)| sums_of_single_body(body, twist, multiple)).collect();
     for (sum, (inertia, wrench)) in sums.iter_mut().zip(inertias.into_iter().zip(wrenches)) {
         (sum.inertia, sum.wrench) = (inertia, *wrench);
     }
@@ -64,8 +64,8 @@ pub fn subtree_sums<'g>(
             let sum = &mut sums[parent.0];
             sum.wrench = joint.add_wrench(&sum.wrench, &child.wrench);
             let momentum = joint.rotation.to_parent(child.momentum);
-            let moments =
-                joint.rotation.mat_to_parent(child.moments) + outer_product(momentum, joint.translation);
+            let moments = joint.rotation.tensor_in_parent_axes(child.moments)
+                + outer_product(momentum, joint.translation);
             sum.momentum += momentum.map(|c| joint.lane_sum(c));
             sum.moments = sum.moments + Mat3(moments.0.map(|row| row.map(|c| joint.lane_sum(c))));
         }
@@ -75,7 +75,7 @@ pub fn subtree_sums<'g>(
 
 /// Returns the sums of a single body, without wrench. With its first moment `h` and `J = Σ m r rᵀ`:
 /// `p = m v + w × h`, `K = v hᵀ + [w]× J`.
-pub fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
+pub fn sums_of_single_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
     let second = second_moments(&body.tensor);
     let (mass, h) = (body.mass * multiple, body.moment.map(|c| c * multiple));
     let j = Mat3::from_fn(|i, k| second.entry(i, k) * multiple);

@@ -4,8 +4,8 @@
 use super::super::crba::Matrix;
 use super::ForceDerivatives;
 use crate::expr::Expr;
-use crate::expr::diff::Derivative;
-use crate::kinematics::{configuration_rate, rotation_rates};
+use crate::expr::diff::DirectionalDerivative;
+use crate::kinematics::{configuration_rate, rotation_entries_with_rates};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Model, Quantity};
 
@@ -15,13 +15,13 @@ pub fn force_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivati
 }
 
 /// Returns the derivatives of springs, dashpots, friction, potentials and loads.
-pub fn of_passive_forces<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
+pub fn passive_force_state_derivatives<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
     force_derivatives(model, &passive_forces(model, true))
 }
 
 /// Adds the derivatives of springs, dashpots, friction, potentials and loads.
-pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>) {
-    let found = of_passive_forces(model);
+pub fn add_passive_force_derivatives<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>) {
+    let found = passive_force_state_derivatives(model);
     for (to, from) in [(&mut out.by_q, found.by_q), (&mut out.by_v, found.by_v)] {
         for (entry, change) in to.iter_mut().flatten().zip(from.into_iter().flatten()) {
             *entry += change;
@@ -34,44 +34,48 @@ pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>)
 pub fn configuration_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> =
         (0..model.nq()).map(|k| configuration_rate(model.configuration_space(), k)).collect();
-    let turning = rotation_rates(model.configuration_space());
+    let turning = rotation_entries_with_rates(model.configuration_space());
     let configuration_derivative = |i: usize| {
-        let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
+        let mut by = DirectionalDerivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
         let rate_seed =
             |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.differentiate(*rate));
         let own =
             rates.iter().enumerate().map(rate_seed).filter(|(_, rate)| !rate.is_zero()).collect::<Vec<_>>();
-        let given = model.passive.iter().flat_map(|passive| passive.changes_by_configuration(i));
+        let given = model.passive.iter().flat_map(|passive| passive.force_symbol_position_derivatives(i));
         let known = turning.iter().map(|(entry, rate)| (*entry, by.differentiate(*rate))).collect::<Vec<_>>();
-        Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph)
+        DirectionalDerivative::differentiation_with_rates(own.into_iter().chain(given).collect(), model.graph)
             .with_preset_derivatives(known)
     };
     derivative_columns(e, (0..model.nv()).map(configuration_derivative))
 }
 
 fn velocity_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let velocity_derivative = |k: usize| {
-        let given = model.passive.iter().flat_map(|passive| passive.changes_by_velocity(k));
+    let velocity_differentiation = |k: usize| {
+        let given = model.passive.iter().flat_map(|passive| passive.velocity_derivatives_of_forces(k));
         let own = [(Quantity::Velocity(k).symbol(), model.graph.one())];
-        Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph)
+        DirectionalDerivative::differentiation_with_rates(own.into_iter().chain(given).collect(), model.graph)
     };
-    derivative_columns(e, (0..model.nv()).map(velocity_derivative))
+    derivative_columns(e, (0..model.nv()).map(velocity_differentiation))
 }
 
 /// Returns the derivatives of expressions with respect to the inputs.
-pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let input_derivative = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
-    derivative_columns(e, (0..model.nu()).map(input_derivative))
+pub fn input_derivatives_of_expressions<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+    let input_differentiation =
+        |k: usize| DirectionalDerivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
+    derivative_columns(e, (0..model.nu()).map(input_differentiation))
 }
 
 /// Returns the derivatives of expressions with respect to the accelerations.
-pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
+pub fn acceleration_derivative_matrix<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let acceleration_derivative =
-        |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
+        |k: usize| DirectionalDerivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
     derivative_columns(e, (0..model.nv()).map(acceleration_derivative))
 }
 
-fn derivative_columns<'g>(e: &[Expr<'g>], directions: impl Iterator<Item = Derivative<'g>>) -> Matrix<'g> {
+fn derivative_columns<'g>(
+    e: &[Expr<'g>],
+    directions: impl Iterator<Item = DirectionalDerivative<'g>>,
+) -> Matrix<'g> {
     let mut rows = vec![Vec::new(); e.len()];
     for mut d in directions {
         for (row, e) in rows.iter_mut().zip(e) {

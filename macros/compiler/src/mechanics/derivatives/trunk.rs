@@ -34,7 +34,7 @@ struct Limb {
 impl Trunk {
     /// Returns for each velocity whether its link, or a descendant of the link, has more than one child. A
     /// group of limbs in SIMD lanes is not divided further.
-    pub fn branching_velocities(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
+    pub fn has_branching_descendant(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
         let mut children = vec![0; joints.len()];
         let mut branches = vec![false; joints.len()];
         for (k, joint) in joints.iter().enumerate().rev() {
@@ -92,12 +92,12 @@ impl Trunk {
     }
 
     /// Returns the partition in which all velocities belong to the trunk.
-    pub fn whole_trunk(joints: &[Joint<'_>], nv: usize) -> Trunk {
+    pub fn trunk_of_all_velocities(joints: &[Joint<'_>], nv: usize) -> Trunk {
         Trunk { velocities: elimination_order(joints, nv), limbs: Vec::new() }
     }
 
     /// Returns the velocities of each limb in ascending order.
-    pub fn velocities_of_limbs(&self) -> Vec<Vec<usize>> {
+    pub fn velocity_indices_of_limbs(&self) -> Vec<Vec<usize>> {
         let sorted_velocities_of_limb = |limb: &Limb| {
             let mut velocities = limb.velocities.clone();
             velocities.sort_unstable();
@@ -116,11 +116,11 @@ impl Limb {
 
 /// Returns the terms of `M⁻¹` that remain to be computed if runtime loops do the remainder: `C⁻¹` in the
 /// columns of the limbs, and the trunk's columns of `M` in the order of the trunk's velocities.
-pub fn divided_inverse_terms<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
+pub fn inverse_terms_for_runtime_loops<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
     let zero_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
     let mut inverses: Matrix<'g> = mass.iter().map(zero_row).collect();
     for limb in &trunk.limbs {
-        let inverse = Factor::factorise_in_order(mass, &limb.velocities).inverse();
+        let inverse = Factor::factorise_from_leaves_to_root(mass, &limb.velocities).inverse();
         for &i in &limb.velocities {
             inverses[i].clone_from_slice(&inverse[i]);
         }
@@ -146,7 +146,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
         let mut parts = vec![vec![zero; n]; n];
         let mut rest = mass.clone();
         for limb in &trunk.limbs {
-            let inverse = Factor::factorise_in_order(mass, &limb.velocities).inverse();
+            let inverse = Factor::factorise_from_leaves_to_root(mass, &limb.velocities).inverse();
             for &i in &limb.velocities {
                 parts[i].clone_from_slice(&inverse[i]);
                 for &t in &trunk.velocities {
@@ -161,7 +161,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
                 }
             }
         }
-        let inverse = Factor::factorise_in_order(&rest, &trunk.velocities).inverse();
+        let inverse = Factor::factorise_from_leaves_to_root(&rest, &trunk.velocities).inverse();
         for &t in &trunk.velocities {
             parts[t].clone_from_slice(&inverse[t]);
         }
@@ -169,7 +169,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
     }
 
     /// Returns the product `M⁻¹ r` from the blocks for trunk and limbs.
-    pub fn solve_divided(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn solve_by_trunk_and_limbs(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut x = r.to_vec();
         for limb in &self.trunk.limbs {
@@ -192,7 +192,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
     }
 
     /// Returns a matrix with the columns of `H` for the trunk and the columns of `C⁻¹` for the limbs.
-    pub fn inverse_columns(&self) -> Matrix<'g> {
+    pub fn trunk_and_limb_inverse_columns(&self) -> Matrix<'g> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut columns = parts.clone();
         for &i in self.trunk.limbs.iter().flat_map(|limb| &limb.velocities) {
@@ -205,7 +205,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
 
     /// Returns the rows of `G` for the limbs, with zero rows for the trunk. The columns are in the order of
     /// the trunk's velocities.
-    pub fn limb_factor_rows(&self) -> Matrix<'g> {
+    pub fn limb_to_trunk_factors(&self) -> Matrix<'g> {
         let mut factors: Matrix<'g> =
             self.parts.iter().map(|row| vec![row[0].zero(); self.trunk.velocities.len()]).collect();
         for &i in self.trunk.limbs.iter().flat_map(|limb| &limb.velocities) {

@@ -13,7 +13,7 @@
 //! difference of the separations. If two edges of a face share a point, it counts once; the gap of the
 //! duplicate is the size of the boxes.
 
-use super::cylinders::{Drum, pipe_on_box};
+use super::cylinders::{Drum, unbounded_cylinder_box_contacts};
 use super::geometry::{PointContact, clamp, is_positive, nearest, rim};
 use super::pair::{SurfacePair, sphere_contact};
 use super::surface::SurfaceForm;
@@ -58,12 +58,12 @@ struct BoxPair<'g> {
 }
 
 /// Returns `first` if `which` is one, `second` if it is zero.
-fn select<'g>(which: Expr<'g>, first: Expr<'g>, second: Expr<'g>) -> Expr<'g> {
+fn select_by_indicator<'g>(which: Expr<'g>, first: Expr<'g>, second: Expr<'g>) -> Expr<'g> {
     first * which + second * (which.num(1.0) - which)
 }
 
-fn select_vector<'g>(which: Expr<'g>, first: Vec3<'g>, second: Vec3<'g>) -> Vec3<'g> {
-    Vec3(std::array::from_fn(|k| select(which, first[k], second[k])))
+fn select_vector_by_indicator<'g>(which: Expr<'g>, first: Vec3<'g>, second: Vec3<'g>) -> Vec3<'g> {
+    Vec3(std::array::from_fn(|k| select_by_indicator(which, first[k], second[k])))
 }
 
 fn absolute(x: Expr<'_>) -> Expr<'_> {
@@ -79,7 +79,7 @@ fn minimum<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
 }
 
 /// Returns the one of three values that a selector (0 or 1 for each) picks.
-fn select_of_three<'g>(which: &[Expr<'g>; 3], values: [Expr<'g>; 3]) -> Expr<'g> {
+fn select_one_of_three<'g>(which: &[Expr<'g>; 3], values: [Expr<'g>; 3]) -> Expr<'g> {
     values[0] * which[0] + values[1] * which[1] + values[2] * which[2]
 }
 
@@ -88,13 +88,13 @@ fn select_axis<'g>(which: &[Expr<'g>; 3], axes: &[Vec3<'g>; 3]) -> Vec3<'g> {
 }
 
 /// Returns the selector of the cyclically next of three axes.
-fn next_axis<'g>(which: &[Expr<'g>; 3]) -> [Expr<'g>; 3] {
+fn next_axis_selector<'g>(which: &[Expr<'g>; 3]) -> [Expr<'g>; 3] {
     let [a, b, c] = *which;
     [c, a, b]
 }
 
 /// Multiplies the three entries of a selector by a factor.
-fn scaled<'g>(which: [Expr<'g>; 3], factor: Expr<'g>) -> [Expr<'g>; 3] {
+fn scale_selector<'g>(which: [Expr<'g>; 3], factor: Expr<'g>) -> [Expr<'g>; 3] {
     which.map(|x| x * factor)
 }
 
@@ -108,31 +108,42 @@ impl<'g> SurfacePair<'_, 'g> {
             half: lengths.map(|length| length * 0.5),
             center,
         };
-        let (rotate_a, rotate_b) = (|v| self.first_direction(v).value, |v| self.second_direction(v).value);
-        let target = block(lengths, Vec3::zero(g), &rotate_b);
-        let sphere_on_box = |radius: Expr<'g>, place: Vec3<'g>| {
+        let (first_surface_to_common_axes, second_surface_to_common_axes) =
+            (|v| self.first_direction(v).value, |v| self.direction_of_second_body(v).value);
+        let target = block(lengths, Vec3::zero(g), &second_surface_to_common_axes);
+        let sphere_box_contact = |radius: Expr<'g>, place: Vec3<'g>| {
             let inner = (0..3).fold(Vec3::zero(g), |sum, k| {
                 sum + target.axes[k] * clamp(target.axes[k].dot(place), target.half[k])
             });
-            sphere_contact(radius, &SurfaceForm::Sphere(g.zero()), place - inner, &rotate_b)
+            sphere_contact(
+                radius,
+                &SurfaceForm::Sphere(g.zero()),
+                place - inner,
+                &second_surface_to_common_axes,
+            )
         };
         match &self.a.form {
-            SurfaceForm::Sphere(radius) => sphere_on_box(*radius, c).into_iter().collect(),
+            SurfaceForm::Sphere(radius) => sphere_box_contact(*radius, c).into_iter().collect(),
             SurfaceForm::Capsule(radius, length, axis) => {
-                let (own, reach) = (rotate_a(*axis), *length * 0.5);
-                let end = |side: f64| {
+                let (own, reach) = (first_surface_to_common_axes(*axis), *length * 0.5);
+                let contact_of_end_sphere = |side: f64| {
                     let place = own * (reach * side);
-                    sphere_on_box(*radius, c + place)
+                    sphere_box_contact(*radius, c + place)
                         .map(|touch| PointContact { point: touch.point + place, ..touch })
                 };
-                let ends = [-1.0, 1.0].into_iter().filter_map(end);
+                let ends = [-1.0, 1.0].into_iter().filter_map(contact_of_end_sphere);
                 ends.chain(capsule_axis_contacts(*radius, (own, reach), &target, c)).collect()
             }
-            SurfaceForm::Cuboid(own) => box_contact_candidates(&block(own, c, &rotate_a), &target),
-            SurfaceForm::Cylinder(radius, axis) => pipe_on_box(*radius, rotate_a(*axis), &target, c),
+            SurfaceForm::Cuboid(own) => {
+                box_contact_candidates(&block(own, c, &first_surface_to_common_axes), &target)
+            }
+            SurfaceForm::Cylinder(radius, axis) => {
+                unbounded_cylinder_box_contacts(*radius, first_surface_to_common_axes(*axis), &target, c)
+            }
             SurfaceForm::Drum(radius, length, axis) => {
-                let drum = Drum { radius: *radius, half: *length * 0.5, axis: rotate_a(*axis) };
-                drum.box_contacts(&target, c, &|normal| rim(*axis, normal, &rotate_a))
+                let drum =
+                    Drum { radius: *radius, half: *length * 0.5, axis: first_surface_to_common_axes(*axis) };
+                drum.box_contacts(&target, c, &|normal| rim(*axis, normal, &first_surface_to_common_axes))
             }
             _ => Vec::new(),
         }
@@ -145,7 +156,7 @@ fn box_contact_candidates<'g>(a: &OrientedBox<'g>, b: &OrientedBox<'g>) -> Vec<P
     let size = a.half.into_iter().chain(b.half).fold(a.half[0].zero(), |sum, half| sum + half);
     let cosines = a.axes.map(|own| b.axes.map(|other| own.dot(other)));
     let boxes = BoxPair { a: *a, b: *b, cosines, size };
-    let (face, face_is_second) = boxes.best_face();
+    let (face, face_is_second) = boxes.face_of_largest_separation();
     let edge = boxes.best_edge_pair();
     let by_edges = is_positive(edge.distance - face.distance - size * TIE_TOLERANCE);
     let (holder, other) = boxes.order_by_face_owner(face_is_second);
@@ -156,11 +167,11 @@ fn box_contact_candidates<'g>(a: &OrientedBox<'g>, b: &OrientedBox<'g>) -> Vec<P
         let side = face_is_second * 2.0 - face_is_second.num(1.0);
         point.axes[0].1 = point.axes[0].1 * side;
         let other = maximum(point.gap, edge.distance - face.distance);
-        point.gap = select(by_edges, other, point.gap);
+        point.gap = select_by_indicator(by_edges, other, point.gap);
     }
     let crossing = boxes.edge_contact(&edge);
     let other = maximum(crossing.gap, face.distance - edge.distance);
-    points.push(PointContact { gap: select(by_edges, crossing.gap, other), ..crossing });
+    points.push(PointContact { gap: select_by_indicator(by_edges, crossing.gap, other), ..crossing });
     points
 }
 
@@ -173,23 +184,23 @@ impl<'g> BoxPair<'g> {
     /// the second box (otherwise zero). Between equal separations, a face of the larger box is chosen; for
     /// boxes of equal size, of the lower one along a fixed direction. The order in which the boxes are
     /// written has no effect.
-    fn best_face(&self) -> (SeparatingDirection<'g>, Expr<'g>) {
+    fn face_of_largest_separation(&self) -> (SeparatingDirection<'g>, Expr<'g>) {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
-        let [first, second] = [false, true].map(|is_second| self.best_face_of(is_second));
+        let [first, second] = [false, true].map(|is_second| self.best_separating_face(is_second));
         let sum = |block: &OrientedBox<'g>| block.half.into_iter().fold(zero, |sum, half| sum + half);
         let size_difference = sum(&self.a) - sum(&self.b);
         let same = one - is_positive(absolute(size_difference) - self.size * TIE_TOLERANCE);
         let c = self.center_offset();
         let lower = -(c[0] * TIE_BREAK[0] + c[1] * TIE_BREAK[1] + c[2] * TIE_BREAK[2]);
-        let preference = (select(same, lower, size_difference)).apply_function(Function::Signum);
+        let preference = (select_by_indicator(same, lower, size_difference)).apply_function(Function::Signum);
         let is_first = is_positive(first.distance - second.distance + preference * self.size * TIE_TOLERANCE);
-        let which = std::array::from_fn(|k| select(is_first, first.first[k], second.first[k]));
-        let distance = select(is_first, first.distance, second.distance);
+        let which = std::array::from_fn(|k| select_by_indicator(is_first, first.first[k], second.first[k]));
+        let distance = select_by_indicator(is_first, first.distance, second.distance);
         (SeparatingDirection { distance, first: which, second: which }, one - is_first)
     }
 
     /// Returns the face of one box along whose normal the other is farthest from it.
-    fn best_face_of(&self, is_second: bool) -> SeparatingDirection<'g> {
+    fn best_separating_face(&self, is_second: bool) -> SeparatingDirection<'g> {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
         let c = self.center_offset();
         let (own, other) = if is_second { (&self.b, &self.a) } else { (&self.a, &self.b) };
@@ -201,13 +212,19 @@ impl<'g> BoxPair<'g> {
             let reach = (0..3).fold(zero, |sum, k| sum + other.half[k] * absolute(along[k]));
             absolute(own.axes[k].dot(c)) - own.half[k] - reach
         };
-        let unit = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
-        let mut best = SeparatingDirection { distance: distance(0), first: unit(0), second: unit(0) };
+        let unit_vector_of_axis = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
+        let mut best = SeparatingDirection {
+            distance: distance(0),
+            first: unit_vector_of_axis(0),
+            second: unit_vector_of_axis(0),
+        };
         for k in [1, 2] {
             let found = distance(k);
             let better = is_positive(found - best.distance - self.size * TIE_TOLERANCE);
-            let which = std::array::from_fn(|i| select(better, unit(k)[i], best.first[i]));
-            let distance = select(better, found, best.distance);
+            let which = std::array::from_fn(|i| {
+                select_by_indicator(better, unit_vector_of_axis(k)[i], best.first[i])
+            });
+            let distance = select_by_indicator(better, found, best.distance);
             best = SeparatingDirection { distance, first: which, second: which };
         }
         best
@@ -234,15 +251,15 @@ impl<'g> BoxPair<'g> {
                 let better = is_positive(distance - best.distance - self.size * TIE_TOLERANCE)
                     * is_positive(square - zero.num(PARALLEL));
                 let other = better.num(1.0) - better;
-                let select_index = |known: [Expr<'g>; 3], k: usize| {
-                    let mut which = scaled(known, other);
+                let selector_choosing_index = |known: [Expr<'g>; 3], k: usize| {
+                    let mut which = scale_selector(known, other);
                     which[k] += better;
                     which
                 };
                 best = SeparatingDirection {
-                    distance: select(better, distance, best.distance),
-                    first: select_index(best.first, i),
-                    second: select_index(best.second, j),
+                    distance: select_by_indicator(better, distance, best.distance),
+                    first: selector_choosing_index(best.first, i),
+                    second: selector_choosing_index(best.second, j),
                 };
             }
         }
@@ -251,12 +268,14 @@ impl<'g> BoxPair<'g> {
 
     /// Returns the box that has the determining face, and the other box.
     fn order_by_face_owner(&self, face_is_second: Expr<'g>) -> (OrientedBox<'g>, OrientedBox<'g>) {
-        let select_box = |first: &OrientedBox<'g>, second: &OrientedBox<'g>| OrientedBox {
-            axes: std::array::from_fn(|k| select_vector(face_is_second, first.axes[k], second.axes[k])),
-            half: std::array::from_fn(|k| select(face_is_second, first.half[k], second.half[k])),
-            center: select_vector(face_is_second, first.center, second.center),
+        let choose_between_boxes = |first: &OrientedBox<'g>, second: &OrientedBox<'g>| OrientedBox {
+            axes: std::array::from_fn(|k| {
+                select_vector_by_indicator(face_is_second, first.axes[k], second.axes[k])
+            }),
+            half: std::array::from_fn(|k| select_by_indicator(face_is_second, first.half[k], second.half[k])),
+            center: select_vector_by_indicator(face_is_second, first.center, second.center),
         };
-        (select_box(&self.b, &self.a), select_box(&self.a, &self.b))
+        (choose_between_boxes(&self.b, &self.a), choose_between_boxes(&self.a, &self.b))
     }
 
     /// Returns the contact between an edge of each box.
@@ -267,9 +286,12 @@ impl<'g> BoxPair<'g> {
         let across = own.cross(axis);
         let length = maximum(across.dot(across), one * PARALLEL).sqrt();
         let normal = across * (c.dot(across).apply_function(Function::Signum) / length);
-        let (on_a, on_b) =
-            (edge_middle(&self.a, &edge.first, -normal), edge_middle(&self.b, &edge.second, normal));
-        let reach = [select_of_three(&edge.first, self.a.half), select_of_three(&edge.second, self.b.half)];
+        let (on_a, on_b) = (
+            farthest_edge_center(&self.a, &edge.first, -normal),
+            farthest_edge_center(&self.b, &edge.second, normal),
+        );
+        let reach =
+            [select_one_of_three(&edge.first, self.a.half), select_one_of_three(&edge.second, self.b.half)];
         let offset = c + on_a - on_b;
         let (near, far) = nearest(offset, (own, reach[0]), (axis, reach[1]));
         let separation = offset + own * near - axis * far;
@@ -302,11 +324,11 @@ impl<'g> Face<'g> {
         c: Vec3<'g>,
         size: Expr<'g>,
     ) -> Self {
-        let [next, last] = [next_axis(which), next_axis(&next_axis(which))];
+        let [next, last] = [next_axis_selector(which), next_axis_selector(&next_axis_selector(which))];
         let normal = select_axis(which, &holder.axes);
         let normal = normal * normal.dot(c).apply_function(Function::Signum);
         let sides = [&next, &last].map(|which| select_axis(which, &holder.axes));
-        let half = [which, &next, &last].map(|which| select_of_three(which, holder.half));
+        let half = [which, &next, &last].map(|which| select_one_of_three(which, holder.half));
         Face { axes: [normal, sides[0], sides[1]], half, size }
     }
 
@@ -317,7 +339,11 @@ impl<'g> Face<'g> {
 
     /// Returns the range of `t` within −1 and 1 for which `start + t direction` is within the sides. If the
     /// range is empty, its end is less than its beginning.
-    pub(super) fn clip_range(&self, start: &[Expr<'g>; 3], direction: &[Expr<'g>; 3]) -> [Expr<'g>; 2] {
+    pub(super) fn clip_line_to_face_sides(
+        &self,
+        start: &[Expr<'g>; 3],
+        direction: &[Expr<'g>; 3],
+    ) -> [Expr<'g>; 2] {
         let one = self.size.num(1.0);
         let (mut from, mut to) = (-one, one);
         for k in [1, 2] {
@@ -331,7 +357,7 @@ impl<'g> Face<'g> {
 
     /// Returns a contact midway between the face and a position relative to the centre of the box, at this
     /// distance from the face.
-    fn midway_contact(&self, gap: Expr<'g>, place: Vec3<'g>, distance: Expr<'g>) -> PointContact<'g> {
+    fn contact_midway_to_face(&self, gap: Expr<'g>, place: Vec3<'g>, distance: Expr<'g>) -> PointContact<'g> {
         self.contact(gap, place - self.axes[0] * (distance * 0.5))
     }
 
@@ -362,11 +388,11 @@ fn face_contacts<'g>(
     let third = is_positive(z - maximum(x, y) - one * TIE_TOLERANCE);
     let second = is_positive(y - x - one * TIE_TOLERANCE) * (one - third);
     let facing = [one - second - third, second, third];
-    let outward = select_of_three(&facing, cosines).apply_function(Function::Signum);
+    let outward = select_one_of_three(&facing, cosines).apply_function(Function::Signum);
     let facing_axis = select_axis(&facing, &other.axes);
-    let middle = c - facing_axis * (select_of_three(&facing, other.half) * outward);
-    let side_axes = [next_axis(&facing), next_axis(&next_axis(&facing))];
-    let [h1, h2] = [0, 1].map(|k| select_of_three(&side_axes[k], other.half));
+    let middle = c - facing_axis * (select_one_of_three(&facing, other.half) * outward);
+    let side_axes = [next_axis_selector(&facing), next_axis_selector(&next_axis_selector(&facing))];
+    let [h1, h2] = [0, 1].map(|k| select_one_of_three(&side_axes[k], other.half));
     let (d1, d2) =
         (select_axis(&side_axes[0], &other.axes) * h1, select_axis(&side_axes[1], &other.axes) * h2);
     let (f, e1, e2) = (face.components(middle), face.components(d1), face.components(d2));
@@ -382,14 +408,14 @@ fn face_contacts<'g>(
     ] {
         let start: [Expr<'g>; 3] = std::array::from_fn(|k| f[k] + off.1[k] * side);
         let direction = along.1.map(|x| x * sense);
-        let [from, to] = face.clip_range(&start, &direction);
+        let [from, to] = face.clip_line_to_face_sides(&start, &direction);
         let outside = minimum((from - to) * smallest, size);
         let is_cut = is_positive(from + one * (1.0 - TIE_TOLERANCE));
         for (t, counts) in [(maximum(to, -one), one), (minimum(from, one), is_cut)] {
             let distance = start[0] + direction[0] * t - height;
             let place = middle + off.0 * (one * side) + along.0 * (t * sense);
-            let gap = select(counts, maximum(distance, outside), size);
-            points.push(face.midway_contact(gap, holder.center + place, distance));
+            let gap = select_by_indicator(counts, maximum(distance, outside), size);
+            points.push(face.contact_midway_to_face(gap, holder.center + place, distance));
         }
     }
     let determinant = e1[1] * e2[2] - e1[2] * e2[1];
@@ -400,7 +426,7 @@ fn face_contacts<'g>(
         let outside = (maximum(absolute(first), absolute(second)) - one * (1.0 + TIE_TOLERANCE)) * smallest;
         let distance = f[0] + first * e1[0] + second * e2[0] - height;
         let place = holder.center + middle + d1 * first + d2 * second;
-        points.push(face.midway_contact(maximum(distance, outside), place, distance));
+        points.push(face.contact_midway_to_face(maximum(distance, outside), place, distance));
     }
     points
 }
@@ -419,13 +445,13 @@ pub(super) fn capsule_axis_contacts<'g>(
     let size = block.half.into_iter().fold(reach + radius, |sum, half| sum + half);
     let cosines = block.axes.map(|axis| own.dot(axis));
     let center_offsets = block.axes.map(|axis| axis.dot(c));
-    let unit = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
+    let unit_vector_of_axis = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
     let distance = |k: usize| absolute(center_offsets[k]) - block.half[k] - reach * absolute(cosines[k]);
-    let (mut face_distance, mut which) = (distance(0), unit(0));
+    let (mut face_distance, mut which) = (distance(0), unit_vector_of_axis(0));
     for k in [1, 2] {
         let better = is_positive(distance(k) - face_distance - size * TIE_TOLERANCE);
-        face_distance = select(better, distance(k), face_distance);
-        which = std::array::from_fn(|i| select(better, unit(k)[i], which[i]));
+        face_distance = select_by_indicator(better, distance(k), face_distance);
+        which = std::array::from_fn(|i| select_by_indicator(better, unit_vector_of_axis(k)[i], which[i]));
     }
     let (mut edge_distance, mut edge) = (-size, [zero; 3]);
     for j in 0..3 {
@@ -437,35 +463,35 @@ pub(super) fn capsule_axis_contacts<'g>(
         let found = (along - halves) / sine;
         let better =
             is_positive(found - edge_distance - size * TIE_TOLERANCE) * is_positive(square - one * PARALLEL);
-        edge_distance = select(better, found, edge_distance);
-        edge = std::array::from_fn(|i| select(better, unit(j)[i], edge[i]));
+        edge_distance = select_by_indicator(better, found, edge_distance);
+        edge = std::array::from_fn(|i| select_by_indicator(better, unit_vector_of_axis(j)[i], edge[i]));
     }
     let by_edges = is_positive(edge_distance - face_distance - size * TIE_TOLERANCE);
     let face = Face::facing(block, &which, c, size);
     let (start, direction) = (face.components(c), face.components(own * reach));
-    let [from, to] = face.clip_range(&start, &direction);
+    let [from, to] = face.clip_line_to_face_sides(&start, &direction);
     let outside = minimum((from - to) * reach, size);
     let mut points = Vec::new();
     for t in [minimum(from, one), maximum(to, -one)] {
         let gap = maximum(start[0] + direction[0] * t - face.half[0] - radius, outside);
-        let gap = select(by_edges, maximum(gap, edge_distance - face_distance), gap);
+        let gap = select_by_indicator(by_edges, maximum(gap, edge_distance - face_distance), gap);
         points.push(face.contact(gap, own * (reach * t) - face.axes[0] * radius));
     }
     let axis = select_axis(&edge, &block.axes);
     let across = own.cross(axis);
     let length = maximum(across.dot(across), one * PARALLEL).sqrt();
     let normal = across * (c.dot(across).apply_function(Function::Signum) / length);
-    let middle = edge_middle(block, &edge, normal);
-    let (near, far) = nearest(c - middle, (own, reach), (axis, select_of_three(&edge, block.half)));
+    let middle = farthest_edge_center(block, &edge, normal);
+    let (near, far) = nearest(c - middle, (own, reach), (axis, select_one_of_three(&edge, block.half)));
     // If an end of the axis or of the edge is nearest, it touches as a sphere or as a corner.
     let separation = c - middle + own * near - axis * far;
     let length = separation.norm();
     let gap = edge_distance + length - absolute(edge_distance) - radius;
     let towards =
         separation * (edge_distance.apply_function(Function::Signum) / maximum(length, size * TIE_TOLERANCE));
-    let normal = select_vector(is_positive(length - size * TIE_TOLERANCE), towards, normal);
+    let normal = select_vector_by_indicator(is_positive(length - size * TIE_TOLERANCE), towards, normal);
     points.push(PointContact {
-        gap: select(by_edges, gap, maximum(gap, face_distance - edge_distance)),
+        gap: select_by_indicator(by_edges, gap, maximum(gap, face_distance - edge_distance)),
         point: own * near - normal * radius,
         axes: [("normal", normal), ("first", own), ("second", normal.cross(own))],
         conditions: Vec::new(),
@@ -475,7 +501,7 @@ pub(super) fn capsule_axis_contacts<'g>(
 
 /// Returns the centre, relative to that of the box, of the edge along the selected axis that is farthest
 /// along `n`.
-fn edge_middle<'g>(block: &OrientedBox<'g>, which: &[Expr<'g>; 3], n: Vec3<'g>) -> Vec3<'g> {
+fn farthest_edge_center<'g>(block: &OrientedBox<'g>, which: &[Expr<'g>; 3], n: Vec3<'g>) -> Vec3<'g> {
     let one = which[0].num(1.0);
     (0..3).fold(Vec3::zero(one.graph()), |sum, k| {
         let towards = block.axes[k].dot(n).apply_function(Function::Signum);

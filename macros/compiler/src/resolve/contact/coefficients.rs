@@ -4,7 +4,7 @@ use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::language::Key;
 use crate::mechanism::{Contact, Rule};
-use crate::resolve::scope::{Allowed, Context, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::syntax::{self, WrittenArguments};
 
 /// Coefficients of friction and restitution of a contact.
@@ -37,13 +37,14 @@ impl<'g> ContactCoefficients<'g> {
 }
 
 /// Reads the coefficients of a contact; `None` after an error.
-pub(super) fn read_coefficients<'g>(
+pub(super) fn read_contact_coefficients<'g>(
     scope: &Scope<'_, 'g>,
     contact: &syntax::Contact,
     cx: &mut Diagnostics,
 ) -> Option<ContactCoefficients<'g>> {
     let (name, given) = (&contact.name.text, &contact.arguments);
-    let mut read = |key, what| read_coefficient(scope, given.get(key), what, Rule::NotNegative, name, cx);
+    let mut read =
+        |key, what| resolve_contact_coefficient(scope, given.get(key), what, Rule::NotNegative, name, cx);
     let friction = read(Key::Friction, "friction");
     let stiction = match given.get(Key::StaticFriction) {
         Some(_) => read(Key::StaticFriction, "static friction"),
@@ -67,8 +68,8 @@ pub(super) fn read_coefficients<'g>(
                 return None;
             }
             _ => {
-                let quantity = || format!("the friction of `{name}` and its stiction");
-                scope.record_requirement(Rule::Order, quantity, &[friction, stiction]);
+                let friction_pair_text = || format!("the friction of `{name}` and its stiction");
+                scope.record_parameter_condition(Rule::Order, friction_pair_text, &[friction, stiction]);
             }
         }
     }
@@ -90,12 +91,12 @@ pub(super) fn read_restitution<'g>(
     cx: &mut Diagnostics,
 ) -> (Option<Expr<'g>>, bool) {
     let (e, of_impulses) = given.get(Key::Restitution).map(syntax::restitution_coefficient).unzip();
-    let value = read_coefficient(scope, e, "restitution", Rule::Fraction, name, cx);
+    let value = resolve_contact_coefficient(scope, e, "restitution", Rule::Fraction, name, cx);
     (value, of_impulses == Some(true))
 }
 
 /// Reads a coefficient, zero if it is absent; `None` after an error.
-pub(super) fn read_coefficient<'g>(
+pub(super) fn resolve_contact_coefficient<'g>(
     scope: &Scope<'_, 'g>,
     e: Option<&syntax::Expr>,
     what: &str,
@@ -104,7 +105,8 @@ pub(super) fn read_coefficient<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
     let Some(e) = e else { return Some(scope.graph.zero()) };
-    let value = scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(e, cx))?;
+    let value = scope
+        .call_in_context(Context::new(AllowedQuantities::Constant, None), |s| s.resolve_scalar(e, cx))?;
     let maximum = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
     if let Some(n) = value.constant_value().filter(|n| !(0.0..=maximum).contains(n)) {
         let range = if maximum < 2.0 { "must be between 0 and 1" } else { "cannot be negative" };
@@ -119,6 +121,6 @@ pub(super) fn read_coefficient<'g>(
         );
         return None;
     }
-    scope.record_requirement(rule, || format!("the {what} of `{name}`"), &[value]);
+    scope.record_parameter_condition(rule, || format!("the {what} of `{name}`"), &[value]);
     Some(value)
 }

@@ -70,7 +70,8 @@ fn surface_of_collision<'g>(
         Shape::Capsule(radius, along) => SurfaceForm::Capsule(length(radius), length(along), z),
         Shape::Ellipsoid(radii) => SurfaceForm::Ellipsoid(radii.map(length)),
         Shape::Mesh => {
-            let vertices: Vec<Vec3<'g>> = part.hull.iter().map(|p| Vec3::from_numbers(g, *p)).collect();
+            let vertices: Vec<Vec3<'g>> =
+                part.hull.iter().map(|p| Vec3::vector_from_constants(g, *p)).collect();
             SurfaceForm::Hull(ConvexHull { shape: Hull::new(&part.hull, MAX_VERTICES).ok(), vertices })
         }
     };

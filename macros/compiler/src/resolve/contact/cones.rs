@@ -13,7 +13,7 @@ use crate::diag::Diagnostics;
 use crate::expr::Vec3;
 use crate::kinematics::perpendicular_directions;
 use crate::mechanism::{Constraint, Measure, Rule};
-use crate::resolve::rows::{ConstraintRows, constraint_row};
+use crate::resolve::rows::{ConstraintRows, constraint_from_residual_and_rate};
 use crate::resolve::scope::Scope;
 use crate::syntax;
 
@@ -40,9 +40,10 @@ pub(super) fn rolling_cone_rows<'g>(
             .add_help("give the funnel a larger half angle than the cone");
         return None;
     }
-    let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
-    scope.record_requirement(Rule::Positive, room, &[sine]);
-    let (a, b) = (pair.first_direction(axis), pair.second_direction(axis_b));
+    let sine_of_surface_angle_text =
+        || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
+    scope.record_parameter_condition(Rule::Positive, sine_of_surface_angle_text, &[sine]);
+    let (a, b) = (pair.first_direction(axis), pair.direction_of_second_body(axis_b));
     // Rows of the apex: three positions, or one position and two velocities.
     let apex = match pair.b.form {
         SurfaceForm::Plane(n) => {
@@ -55,9 +56,9 @@ pub(super) fn rolling_cone_rows<'g>(
     let (name, place) = (&constraint.name.text, &constraint.name.place);
     let mut rows = Vec::new();
     for (word, e, is_place) in apex {
-        let e = pair.second_direction(e).value;
+        let e = pair.direction_of_second_body(e).value;
         let gap = is_place.then(|| e.dot(away));
-        rows.push(constraint_row(
+        rows.push(constraint_from_residual_and_rate(
             scope,
             (format!("{name}.{word}"), place),
             Measure::Length,
@@ -70,11 +71,18 @@ pub(super) fn rolling_cone_rows<'g>(
     let lifted = side / sine;
     let tilt = (a.value.dot(b.value) - cosine) * lifted;
     let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
-    let tilt = constraint_row(scope, (format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
+    let tilt = constraint_from_residual_and_rate(
+        scope,
+        (format!("{name}.tilt"), place),
+        Measure::Angle,
+        Some(tilt),
+        rate,
+    );
     let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
     let [w_a, w_b] = pair.angular_velocities();
     let spin = normal.dot(w_a - w_b);
-    let spin = constraint_row(scope, (format!("{name}.spin"), place), Measure::Angle, None, spin);
+    let spin =
+        constraint_from_residual_and_rate(scope, (format!("{name}.spin"), place), Measure::Angle, None, spin);
     rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
     Some(ConstraintRows { rows, surfaces: pair.written_surfaces(), ..ConstraintRows::default() })
 }

@@ -5,20 +5,20 @@
 
 use super::geometry::PointContact;
 use super::pair::{SurfacePair, support_point};
-use super::surface::Sheet;
+use super::surface::ParametricSurface;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Coordinate, Quantity};
-use crate::resolve::scope::{Allowed, Context, Placed, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, Placed, Scope};
 use crate::syntax;
 
 impl<'g> SurfacePair<'_, 'g> {
     /// Returns the contact of a convex body, with the distances that determine the coordinates of the
     /// surface.
-    pub(super) fn contact_point(&self, sheet: &Sheet<'g>) -> Option<PointContact<'g>> {
-        let rotate_surface = |v| self.second_direction(v).value;
+    pub(super) fn contact_of_convex_body(&self, sheet: &ParametricSurface<'g>) -> Option<PointContact<'g>> {
+        let rotate_surface = |v| self.direction_of_second_body(v).value;
         let [u, w] = sheet.tangents.map(rotate_surface);
         let first = u.map(|x| x / u.norm());
         let across = u.cross(w);
@@ -37,33 +37,34 @@ impl<'g> SurfacePair<'_, 'g> {
 
 /// Parses the points of a surface, in the axes of its body, with the two coordinates on which they
 /// depend.
-pub(super) fn read_sheet<'g>(
+pub(super) fn resolve_parametric_surface<'g>(
     scope: &Scope<'_, 'g>,
     frame: &Placed<'g>,
     [u, w, point]: [&syntax::Expr; 3],
     cx: &mut Diagnostics,
-) -> Option<Sheet<'g>> {
-    let (first, second) = (surface_coordinate(scope, u, cx), surface_coordinate(scope, w, cx));
-    let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
-    let terms = scope.in_context(context, |scope| scope.resolve_terms(point, cx));
+) -> Option<ParametricSurface<'g>> {
+    let (first, second) = (declared_coordinate(scope, u, cx), declared_coordinate(scope, w, cx));
+    let context = Context::new(AllowedQuantities::Placement, Some((frame.link, frame.pose.clone())));
+    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(point, cx));
     let (first, second, terms) = (first?, second?, terms?);
     let zero = Vec3::zero(scope.graph);
     let in_link = scope.kinematics.resolve(&terms, frame.link, zero);
     let position = frame.pose.rotation.to_child(in_link);
-    let is_allowed = |q: Quantity| match q {
+    let is_allowed_quantity = |q: Quantity| match q {
         Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
         q => matches!(q, Quantity::Parameter(_)),
     };
-    if !symbols_in(&position.0).into_iter().all(|s| is_allowed(Quantity::from_symbol(s))) {
+    if !symbols_in(&position.0).into_iter().all(|s| is_allowed_quantity(Quantity::from_symbol(s))) {
         cx.report_error(point.place.clone(), "the points of a surface depend only on its two coordinates")
             .add_help("parameters and the axes of the body of the surface are allowed as well");
         return None;
     }
-    let derivatives = |c: &Coordinate| {
-        let mut d = Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), scope.graph);
+    let position_derivatives = |c: &Coordinate| {
+        let mut d =
+            DirectionalDerivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), scope.graph);
         position.map(|e| d.differentiate(e))
     };
-    let tangents = [derivatives(&first), derivatives(&second)];
+    let tangents = [position_derivatives(&first), position_derivatives(&second)];
     if tangents[0].cross(tangents[1]).is_zero() {
         cx.report_error(
             point.place.clone(),
@@ -75,11 +76,11 @@ pub(super) fn read_sheet<'g>(
         );
         return None;
     }
-    Some(Sheet { point: position, tangents })
+    Some(ParametricSurface { point: position, tangents })
 }
 
 /// Returns the coordinate with this name, which must be declared as a field of its own.
-fn surface_coordinate<'g>(
+fn declared_coordinate<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     cx: &mut Diagnostics,

@@ -39,7 +39,7 @@ pub(super) struct Drum<'g> {
 }
 
 /// Position of a point relative to a cylinder's side and end faces.
-struct DrumPoint<'g> {
+struct DistancesFromCylinder<'g> {
     /// Signed distances from the side and from the nearer end.
     side: Expr<'g>,
     end: Expr<'g>,
@@ -48,21 +48,21 @@ struct DrumPoint<'g> {
     axial: Vec3<'g>,
 }
 
-impl<'g> DrumPoint<'g> {
+impl<'g> DistancesFromCylinder<'g> {
     /// Returns the position relative to the nearest point of the cylinder; zero inside.
     fn offset(&self) -> Vec3<'g> {
-        let outside = |distance: Expr<'g>| distance.minimum_or_maximum(Extreme::Max, distance.zero());
-        self.radial * outside(self.side) + self.axial * outside(self.end)
+        let positive_part = |distance: Expr<'g>| distance.minimum_or_maximum(Extreme::Max, distance.zero());
+        self.radial * positive_part(self.side) + self.axial * positive_part(self.end)
     }
 }
 
 impl<'g> Drum<'g> {
-    fn locate(&self, p: Vec3<'g>) -> DrumPoint<'g> {
+    fn locate_point_on_cylinder(&self, p: Vec3<'g>) -> DistancesFromCylinder<'g> {
         let height = self.axis.dot(p);
         let outward = p - self.axis * height;
         let least = self.radius * ON_SURFACE;
         let size = outward.dot(outward).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
-        DrumPoint {
+        DistancesFromCylinder {
             side: size - self.radius,
             end: height.apply_function(Function::Abs) - self.half,
             radial: outward.map(|x| x / size),
@@ -73,50 +73,50 @@ impl<'g> Drum<'g> {
     /// Returns the signed distance of a point, relative to the centre, and the outward normal at the nearest
     /// point of the surface.
     fn distance(&self, p: Vec3<'g>) -> (Expr<'g>, Vec3<'g>) {
-        let DrumPoint { side, end, radial, axial } = self.locate(p);
+        let DistancesFromCylinder { side, end, radial, axial } = self.locate_point_on_cylinder(p);
         let (zero, least) = (side.zero(), self.radius * ON_SURFACE);
         let (over, beyond) =
             (side.minimum_or_maximum(Extreme::Max, zero), end.minimum_or_maximum(Extreme::Max, zero));
         let distance =
             (over.square() + beyond.square()).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
-        let outside = (radial * over + axial * beyond).map(|x| x / distance);
+        let positive_part = (radial * over + axial * beyond).map(|x| x / distance);
         let inside = radial + (axial - radial) * is_positive(end - side);
         let (depth, is_outside) =
             (side.minimum_or_maximum(Extreme::Max, end), is_positive(distance - least * 1.5));
-        (depth + (distance - depth) * is_outside, inside + (outside - inside) * is_outside)
+        (depth + (distance - depth) * is_outside, inside + (positive_part - inside) * is_outside)
     }
 
     /// Returns the position of the nearest point of a segment, which extends from `c` by `reach` in both
     /// directions of the unit vector `own`.
-    fn nearest_on(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> Expr<'g> {
+    fn nearest_position_on_segment(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> Expr<'g> {
         // The derivative of the signed distance, which increases along the line.
-        let slope = |t: Expr<'g>| self.distance(c + own * t).1.dot(own);
+        let distance_slope_along_line = |t: Expr<'g>| self.distance(c + own * t).1.dot(own);
         let (mut low, mut high) = (-reach, reach);
-        let narrow = |low: &mut Expr<'g>, high: &mut Expr<'g>, t: Expr<'g>| {
-            let is_beyond = is_positive(slope(t));
+        let narrow_bracket = |low: &mut Expr<'g>, high: &mut Expr<'g>, t: Expr<'g>| {
+            let is_beyond = is_positive(distance_slope_along_line(t));
             *high += (t - *high) * is_beyond;
             *low = t + (*low - t) * is_beyond;
         };
         for _ in 0..BISECTIONS {
             let middle = (low + high) * 0.5;
-            narrow(&mut low, &mut high, middle);
+            narrow_bracket(&mut low, &mut high, middle);
         }
         let mut t = low;
         for _ in 0..FALSE_POSITIONS {
-            let (first, last) = (slope(low), slope(high));
+            let (first, last) = (distance_slope_along_line(low), distance_slope_along_line(high));
             let rise = (last - first).minimum_or_maximum(Extreme::Max, reach.num(LEAST_RISE));
             t = low - first * ((high - low) / rise);
             t = t.minimum_or_maximum(Extreme::Max, low).minimum_or_maximum(Extreme::Min, high);
-            narrow(&mut low, &mut high, t);
+            narrow_bracket(&mut low, &mut high, t);
         }
         t
     }
 
     /// Returns the positions on a segment where its line crosses the unbounded side; if it does not, twice
     /// the position nearest to the axis. Positions beyond the segment are replaced by its ends.
-    fn side_crossings(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
-        let across = |v: Vec3<'g>| v - self.axis * self.axis.dot(v);
-        let (start, direction) = (across(c), across(own));
+    fn crossings_of_cylinder_side(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
+        let normal_to_axis = |v: Vec3<'g>| v - self.axis * self.axis.dot(v);
+        let (start, direction) = (normal_to_axis(c), normal_to_axis(own));
         let a = direction.dot(direction).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
         let b = start.dot(direction);
         let discriminant = b.square() - a * (start.dot(start) - self.radius.square());
@@ -127,10 +127,11 @@ impl<'g> Drum<'g> {
 
     /// Returns the positions on a segment where its line crosses the planes of both ends. Positions beyond
     /// the segment are replaced by its ends.
-    fn end_crossings(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
+    fn end_plane_crossings_of_segment(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
         let (height, rise) = (self.axis.dot(c), self.axis.dot(own));
-        let slope = rise.apply_function(Function::Abs).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
-        let inverse = rise.apply_function(Function::Signum) / slope;
+        let distance_slope_along_line =
+            rise.apply_function(Function::Abs).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+        let inverse = rise.apply_function(Function::Signum) / distance_slope_along_line;
         [-self.half, self.half].map(|end| clamp((end - height) * inverse, reach))
     }
 
@@ -141,15 +142,17 @@ impl<'g> Drum<'g> {
     }
 
     /// Returns the contacts of a capsule whose centre is at `c` relative to that of the cylinder.
-    pub(super) fn capsule_contacts(
+    pub(super) fn capsule_contacts_with_cylinder(
         &self,
         radius: Expr<'g>,
         (own, reach): (Vec3<'g>, Expr<'g>),
         c: Vec3<'g>,
     ) -> Vec<PointContact<'g>> {
-        let crossings =
-            self.end_crossings(c, own, reach).into_iter().chain(self.side_crossings(c, own, reach));
-        let places = crossings.chain([self.nearest_on(c, own, reach)]);
+        let crossings = self
+            .end_plane_crossings_of_segment(c, own, reach)
+            .into_iter()
+            .chain(self.crossings_of_cylinder_side(c, own, reach));
+        let places = crossings.chain([self.nearest_position_on_segment(c, own, reach)]);
         let touches = places.map(|t| {
             let touch = self.sphere_contact(radius, c + own * t);
             PointContact { point: touch.point + own * t, ..touch }
@@ -166,38 +169,40 @@ impl<'g> Drum<'g> {
         c: Vec3<'g>,
         rim: &dyn Fn(Vec3<'g>) -> [Vec3<'g>; 4],
     ) -> Vec<PointContact<'g>> {
-        let mut points = self.contacts_on_face(block, c, rim);
-        let place = |e: Vec3<'g>| {
+        let mut points = self.cylinder_contacts_on_box_face(block, c, rim);
+        let contact_of_cylinder_point = |e: Vec3<'g>| {
             let (distance, normal) = self.distance(e - c);
             contact(distance, e - c, -normal)
         };
         // The edges of the face that is opposite to an end.
         let cosines = block.axes.map(|axis| axis.dot(self.axis).apply_function(Function::Abs));
-        let facing = largest(cosines);
+        let facing = select_largest_of_three(cosines);
         let face = Face::facing(block, &facing, c, self.half);
         let [_, first, second] = face.axes;
         let middle = face.axes[0] * face.half[0];
-        for (along, across, reach, offset) in
+        for (along, normal_to_axis, reach, offset) in
             [(first, second, face.half[1], face.half[2]), (second, first, face.half[2], face.half[1])]
         {
             for side in [-1.0, 1.0] {
-                let middle = middle + across * (offset * side);
-                let crossings = self.side_crossings(middle - c, along, reach);
-                points.extend(crossings.map(|t| place(middle + along * t)));
+                let middle = middle + normal_to_axis * (offset * side);
+                let crossings = self.crossings_of_cylinder_side(middle - c, along, reach);
+                points.extend(crossings.map(|t| contact_of_cylinder_point(middle + along * t)));
             }
         }
         // The edges at the corner that is nearest to the cylinder.
-        let sides = self.nearest_sides(block, c);
+        let sides = self.vectors_to_nearest_box_faces(block, c);
         for k in 0..3 {
             let middle = sides[(k + 1) % 3] + sides[(k + 2) % 3];
             let (along, reach) = (block.axes[k], block.half[k]);
-            points.push(place(middle + along * self.nearest_on(middle - c, along, reach)));
+            points.push(contact_of_cylinder_point(
+                middle + along * self.nearest_position_on_segment(middle - c, along, reach),
+            ));
         }
         points
     }
 
     /// Returns the contacts of points of the cylinder with the nearest face of a box.
-    fn contacts_on_face(
+    fn cylinder_contacts_on_box_face(
         &self,
         block: &OrientedBox<'g>,
         c: Vec3<'g>,
@@ -211,40 +216,41 @@ impl<'g> Drum<'g> {
             let reach = self.half * cosine.apply_function(Function::Abs) + self.radius * sine;
             axis.dot(c).apply_function(Function::Abs) - block.half[k] - reach
         });
-        let face = Face::facing(block, &largest(separations), c, self.half);
+        let face = Face::facing(block, &select_largest_of_three(separations), c, self.half);
         let normal = face.axes[0];
         let directions = rim(normal);
         let (down, along) = (directions[0] * self.radius, self.axis * self.half);
         let (start, direction) = (face.components(c + down), face.components(along));
-        let [from, to] = face.clip_range(&start, &direction);
-        let outside = ((from - to) * self.half).minimum_or_maximum(Extreme::Min, self.half);
+        let [from, to] = face.clip_line_to_face_sides(&start, &direction);
+        let positive_part = ((from - to) * self.half).minimum_or_maximum(Extreme::Min, self.half);
         let line = [from.minimum_or_maximum(Extreme::Min, one), to.minimum_or_maximum(Extreme::Max, -one)]
             .map(|t| {
                 let height = start[0] + direction[0] * t - face.half[0];
-                face.contact(height.minimum_or_maximum(Extreme::Max, outside), down + along * t)
+                face.contact(height.minimum_or_maximum(Extreme::Max, positive_part), down + along * t)
             });
         let lower = along * -(self.axis.dot(normal).apply_function(Function::Signum));
         let rim = directions[1..].iter().map(|direction| {
             let point = lower + *direction * self.radius;
             let at = face.components(c + point);
             let distance_beyond_half_width = |k: usize| at[k].apply_function(Function::Abs) - face.half[k];
-            let outside =
+            let positive_part =
                 distance_beyond_half_width(1).minimum_or_maximum(Extreme::Max, distance_beyond_half_width(2));
-            face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, outside), point)
+            face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, positive_part), point)
         });
         line.into_iter().chain(rim).collect()
     }
 
     /// Returns vectors from the centre of a box to the three faces at the corner that is nearest to the
     /// cylinder, by alternating projections on both.
-    fn nearest_sides(&self, block: &OrientedBox<'g>, c: Vec3<'g>) -> [Vec3<'g>; 3] {
-        let inner = |v: Vec3<'g>| {
-            let part = |k: usize| block.axes[k] * clamp(block.axes[k].dot(v), block.half[k]);
-            part(0) + part(1) + part(2)
+    fn vectors_to_nearest_box_faces(&self, block: &OrientedBox<'g>, c: Vec3<'g>) -> [Vec3<'g>; 3] {
+        let nearest_point_in_block = |v: Vec3<'g>| {
+            let clamped_axis_component =
+                |k: usize| block.axes[k] * clamp(block.axes[k].dot(v), block.half[k]);
+            clamped_axis_component(0) + clamped_axis_component(1) + clamped_axis_component(2)
         };
-        let mut point = inner(c);
+        let mut point = nearest_point_in_block(c);
         for _ in 0..PROJECTIONS {
-            point = inner(point - self.locate(point - c).offset());
+            point = nearest_point_in_block(point - self.locate_point_on_cylinder(point - c).offset());
         }
         std::array::from_fn(|k| {
             let axis = block.axes[k];
@@ -256,7 +262,7 @@ impl<'g> Drum<'g> {
 /// Returns the contacts of an unbounded cylinder with a box, which touches it as a capsule that is longer
 /// than the box. `c` leads from the centre of the box to that of the cylinder; points are relative to the
 /// latter.
-pub(super) fn pipe_on_box<'g>(
+pub(super) fn unbounded_cylinder_box_contacts<'g>(
     radius: Expr<'g>,
     axis: Vec3<'g>,
     block: &OrientedBox<'g>,
@@ -279,9 +285,9 @@ pub(super) fn capsule_on_pipe<'g>(
     c: Vec3<'g>,
     rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Vec<PointContact<'g>> {
-    let across = own - axis * axis.dot(own);
-    let square = across.dot(across).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
-    let near = clamp(-(c.dot(across) / square), reach);
+    let normal_to_axis = own - axis * axis.dot(own);
+    let square = normal_to_axis.dot(normal_to_axis).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+    let near = clamp(-(c.dot(normal_to_axis) / square), reach);
     let touches = [-reach, near, reach].into_iter().filter_map(|t| {
         let touch = sphere_contact(radius, pipe, c + own * t, rotate)?;
         Some(PointContact { point: touch.point + own * t, ..touch })
@@ -297,7 +303,7 @@ fn contact<'g>(gap: Expr<'g>, point: Vec3<'g>, normal: Vec3<'g>) -> PointContact
 }
 
 /// Returns the selector (0 or 1 for each) of the largest of three values.
-fn largest(values: [Expr<'_>; 3]) -> [Expr<'_>; 3] {
+fn select_largest_of_three(values: [Expr<'_>; 3]) -> [Expr<'_>; 3] {
     let [x, y, z] = values;
     let one = x.num(1.0);
     let third = is_positive(z - x.minimum_or_maximum(Extreme::Max, y));

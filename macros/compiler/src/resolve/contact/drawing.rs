@@ -2,7 +2,7 @@
 
 use super::surface::{Surface, SurfaceForm};
 use crate::expr::{Expr, Vec3};
-use crate::mechanism::drawing::{anchor_of_pose, entries_by_row, entries_of_vectors};
+use crate::mechanism::drawing::{entries_by_row, entries_of_vectors, pose_relative_to_named_frame};
 use crate::mechanism::{NamedFrame, Piece, PieceKind, Role};
 
 /// Returns the pieces for surfaces with the names of their contacts, each once, and the heights of terrains.
@@ -13,12 +13,14 @@ pub fn surface_pieces<'g>(
     let (mut pieces, mut heights) = (Vec::<Piece<'g>>::new(), Vec::new());
     for (name, surface) in surfaces {
         let edges = hull_pieces(frames, name, surface);
-        for piece in edges.into_iter().chain(surface_piece(frames, name, surface, &mut heights)) {
-            let is_same = |known: &Piece<'g>| {
-                known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
+        for drawing_piece in edges.into_iter().chain(surface_piece(frames, name, surface, &mut heights)) {
+            let is_same_drawn_piece = |known: &Piece<'g>| {
+                known.kind == drawing_piece.kind
+                    && known.frames == drawing_piece.frames
+                    && known.numbers == drawing_piece.numbers
             };
-            if !pieces.iter().any(is_same) {
-                pieces.push(piece);
+            if !pieces.iter().any(is_same_drawn_piece) {
+                pieces.push(drawing_piece);
             }
         }
     }
@@ -32,18 +34,20 @@ fn hull_pieces<'g>(
     Surface { frame, form }: &Surface<'g>,
 ) -> Vec<Piece<'g>> {
     let SurfaceForm::Hull(hull) = form else { return Vec::new() };
-    let Some((index, pose)) = anchor_of_pose(frames, frame.link, &frame.pose) else { return Vec::new() };
+    let Some((index, pose)) = pose_relative_to_named_frame(frames, frame.link, &frame.pose) else {
+        return Vec::new();
+    };
     let position = |p: Vec3<'g>| pose.translation + pose.rotation.to_parent(p);
-    let piece = |kind, frames, ends: &[Vec3<'g>]| {
+    let drawing_piece = |kind, frames, ends: &[Vec3<'g>]| {
         let numbers = entries_of_vectors(&ends.iter().map(|p| position(*p)).collect::<Vec<_>>());
         Piece { name: name.to_string(), role: Role::Surface, kind, frames, numbers }
     };
     match &hull.shape {
         Some(shape) => {
             let ends = shape.edges.iter().map(|edge| edge.map(|k| hull.vertices[k]));
-            ends.map(|ends| piece(PieceKind::Bar, [index, index], &ends)).collect()
+            ends.map(|ends| drawing_piece(PieceKind::Bar, [index, index], &ends)).collect()
         }
-        None => hull.vertices.iter().map(|p| piece(PieceKind::Point, [index, None], &[*p])).collect(),
+        None => hull.vertices.iter().map(|p| drawing_piece(PieceKind::Point, [index, None], &[*p])).collect(),
     }
 }
 
@@ -53,26 +57,30 @@ fn surface_piece<'g>(
     Surface { frame, form }: &Surface<'g>,
     heights: &mut Vec<Expr<'g>>,
 ) -> Option<Piece<'g>> {
-    let (index, pose) = anchor_of_pose(frames, frame.link, &frame.pose)?;
+    let (index, pose) = pose_relative_to_named_frame(frames, frame.link, &frame.pose)?;
     let at = entries_of_vectors(&[pose.translation]);
-    let round = |axis, numbers: &[Expr<'g>]| {
+    let round_piece_numbers = |axis, numbers: &[Expr<'g>]| {
         [entries_of_vectors(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()].concat()
     };
-    let along_axes = |lengths: &[Expr<'g>; 3]| {
+    let numbers_of_oriented_shape = |lengths: &[Expr<'g>; 3]| {
         [at.clone(), entries_by_row(&pose.rotation.rotation_matrix()), lengths.to_vec()].concat()
     };
     let (kind, numbers) = match form {
-        SurfaceForm::Circle(r, n) => (PieceKind::Ring, round(*n, &[*r])),
-        SurfaceForm::Torus(r, tube, n) => (PieceKind::Torus, round(*n, &[*r, *tube])),
+        SurfaceForm::Circle(r, n) => (PieceKind::Ring, round_piece_numbers(*n, &[*r])),
+        SurfaceForm::Torus(r, tube, n) => (PieceKind::Torus, round_piece_numbers(*n, &[*r, *tube])),
         SurfaceForm::Sphere(r) => (PieceKind::Sphere, [at.clone(), vec![*r]].concat()),
         SurfaceForm::Bowl(r) => (PieceKind::Bowl, [at.clone(), vec![*r]].concat()),
-        SurfaceForm::Ellipsoid(lengths) => (PieceKind::Ellipsoid, along_axes(lengths)),
-        SurfaceForm::Cuboid(lengths) => (PieceKind::Cuboid, along_axes(lengths)),
-        SurfaceForm::Plane(n) => (PieceKind::Plane, round(*n, &[])),
-        SurfaceForm::Cylinder(r, n) | SurfaceForm::Tube(r, n) => (PieceKind::Pipe, round(*n, &[*r])),
-        SurfaceForm::Drum(r, length, n) => (PieceKind::Cylinder, round(*n, &[*r, *length])),
-        SurfaceForm::Capsule(r, length, n) => (PieceKind::Capsule, round(*n, &[*r, *length])),
-        SurfaceForm::Cone(half, n) | SurfaceForm::Funnel(half, n) => (PieceKind::Funnel, round(*n, &[*half])),
+        SurfaceForm::Ellipsoid(lengths) => (PieceKind::Ellipsoid, numbers_of_oriented_shape(lengths)),
+        SurfaceForm::Cuboid(lengths) => (PieceKind::Cuboid, numbers_of_oriented_shape(lengths)),
+        SurfaceForm::Plane(n) => (PieceKind::Plane, round_piece_numbers(*n, &[])),
+        SurfaceForm::Cylinder(r, n) | SurfaceForm::Tube(r, n) => {
+            (PieceKind::Pipe, round_piece_numbers(*n, &[*r]))
+        }
+        SurfaceForm::Drum(r, length, n) => (PieceKind::Cylinder, round_piece_numbers(*n, &[*r, *length])),
+        SurfaceForm::Capsule(r, length, n) => (PieceKind::Capsule, round_piece_numbers(*n, &[*r, *length])),
+        SurfaceForm::Cone(half, n) | SurfaceForm::Funnel(half, n) => {
+            (PieceKind::Funnel, round_piece_numbers(*n, &[*half]))
+        }
         SurfaceForm::Point => (PieceKind::Point, at.clone()),
         SurfaceForm::Terrain(terrain) => {
             let known = heights.iter().position(|height| *height == terrain.height);
@@ -84,7 +92,7 @@ fn surface_piece<'g>(
             )
         }
         // A sheet is unbounded and has no axis of symmetry; a hull is drawn by its edges.
-        SurfaceForm::Sheet(_) | SurfaceForm::Hull(_) => return None,
+        SurfaceForm::ParametricSurface(_) | SurfaceForm::Hull(_) => return None,
     };
     Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
 }

@@ -7,12 +7,12 @@ use crate::kinematics::{symbols_in, velocity_gradient};
 use crate::language::Key;
 use crate::mechanism::{LinkId, Quantity};
 use crate::resolve::call::Call;
-use crate::resolve::scope::{Allowed, Axes, Scope, Value};
+use crate::resolve::scope::{AllowedQuantities, Axes, Scope, Value};
 use crate::syntax;
 
 /// Whether expressions use no contact forces, or use them without reactions and accelerations. Reactions and
 /// accelerations are those of the motion without contact forces.
-pub fn has_consistent_forces(values: &[Expr<'_>]) -> bool {
+pub fn uses_contact_forces_consistently(values: &[Expr<'_>]) -> bool {
     let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::from_symbol).collect();
     let any = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
     !any(|q| matches!(q, Quantity::ContactForce(_)))
@@ -23,15 +23,15 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `contact_force(name)`: the force of the second surface on the first, summed over the contact
     /// points.
     pub fn contact_force(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let name = self.named_contact(call, cx)?;
+        let name = self.contact_name_argument(call, cx)?;
         let kinematics = &self.kinematics;
-        Some(sum_by_axes(&kinematics.contact_loads.get(name)?.forces))
+        Some(sum_forces_by_axes(&kinematics.contact_loads.get(name)?.forces))
     }
 
-    /// Resolves `contact_moment(name)`: the moment of friction of the second surface on the first, against
-    /// spin and rolling.
-    pub fn contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let name = self.named_contact(call, cx)?;
+    /// Resolves `resolve_contact_moment(name)`: the moment of friction of the second surface on the first,
+    /// against spin and rolling.
+    pub fn resolve_contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let name = self.contact_name_argument(call, cx)?;
         let kinematics = &self.kinematics;
         let moments = &kinematics.contact_loads.get(name)?.moments;
         if moments.is_empty() {
@@ -39,11 +39,11 @@ impl<'g> Scope<'_, 'g> {
                 .add_help("`torsional = …` and `rolling = …`, m, are moments per normal force");
             return None;
         }
-        Some(sum_by_axes(moments))
+        Some(sum_forces_by_axes(moments))
     }
 
     /// Returns the name of the contact that is the argument of a function.
-    fn named_contact<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
+    fn contact_name_argument<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
         let kinematics = &self.kinematics;
         let contact_names = || kinematics.contact_loads.keys().map(String::as_str);
         let [e] = call.take_arguments(cx)?;
@@ -51,14 +51,14 @@ impl<'g> Scope<'_, 'g> {
             cx.report_error(e.place.clone(), "expected a contact").suggest_name("", contact_names());
             return None;
         };
-        if !self.check_allowed(Allowed::Reaction, "a force at a contact", call.place, cx) {
+        if !self.check_allowed_quantity(AllowedQuantities::Reaction, "a force at a contact", call.place, cx) {
             return None;
         }
         if !kinematics.contact_loads.contains_key(name) {
             if self.is_first_report(name, cx) {
                 let error = cx.report_error(e.place.clone(), format!("unknown contact `{name}`"));
                 error.suggest_name(name, contact_names());
-                if error.is_bare() {
+                if error.has_no_help() {
                     error.add_help(
                         "name a field of type `Contact`; the forces of stops are among those of \
                          `contact::acting`",
@@ -72,7 +72,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 /// Returns the sum of forces, grouped by the links in whose axes they are expressed.
-fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
+fn sum_forces_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
     let mut terms: Vec<(Axes, Vec3<'g>)> = Vec::new();
     for (link, force) in forces {
         let axes = Axes::Link(*link);
@@ -85,7 +85,7 @@ fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
 }
 
 /// Reports coefficients of torsional or rolling friction at contacts without the corresponding rotation.
-pub(super) fn check_relative_rotation(
+pub(super) fn report_friction_without_rotation(
     contact: &syntax::Contact,
     points: &[CandidatePoint<'_>],
     cx: &mut Diagnostics,

@@ -11,7 +11,7 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::hull::{Hull, HullError, MAX_VERTICES};
 use crate::mechanism::Rule;
-use crate::resolve::scope::{Allowed, Context, Placed, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, Placed, Scope};
 use crate::syntax::{self, ExprKind};
 
 /// Distance from a face below which a point is treated as part of it, relative to the size of the hull.
@@ -38,14 +38,16 @@ pub(super) fn read_hull<'g>(
             return None;
         }
     };
-    let context = || Context::new(Allowed::Constant, None);
-    let points: Vec<Option<Vec3<'g>>> =
-        items.iter().map(|e| scope.in_context(context(), |s| s.own_vector(e, cx))).collect();
+    let constant_context = || Context::new(AllowedQuantities::Constant, None);
+    let points: Vec<Option<Vec3<'g>>> = items
+        .iter()
+        .map(|e| scope.call_in_context(constant_context(), |s| s.resolve_own_axes_vector(e, cx)))
+        .collect();
     let points: Vec<Vec3<'g>> = points.into_iter().collect::<Option<_>>()?;
     points.iter().flat_map(|p| p.0).for_each(|x| {
-        scope.record_requirement(Rule::Length, || "a point of a hull".to_string(), &[x]);
+        scope.record_parameter_condition(Rule::Length, || "a point of a hull".to_string(), &[x]);
     });
-    let too_many = |count: usize, cx: &mut Diagnostics| {
+    let report_too_many_vertices = |count: usize, cx: &mut Diagnostics| {
         let message = format!("a hull of {count} vertices, more than {MAX_VERTICES}");
         cx.report_error(place.clone(), message).add_help("each vertex is a point of contact: write fewer");
     };
@@ -54,7 +56,7 @@ pub(super) fn read_hull<'g>(
         // The coordinates depend on parameters, and so does which points are vertices.
         None if (4..=MAX_VERTICES).contains(&points.len()) => ConvexHull { vertices: points, shape: None },
         None if points.len() > MAX_VERTICES => {
-            too_many(points.len(), cx);
+            report_too_many_vertices(points.len(), cx);
             return None;
         }
         None => {
@@ -63,11 +65,12 @@ pub(super) fn read_hull<'g>(
         }
         Some(numbers) => match Hull::new(&numbers, MAX_VERTICES) {
             Ok(shape) if shape.error > 0.0 => {
-                too_many(numbers.len(), cx);
+                report_too_many_vertices(numbers.len(), cx);
                 return None;
             }
             Ok(shape) => {
-                let vertices = shape.vertices.iter().map(|p| Vec3::from_numbers(scope.graph, *p)).collect();
+                let vertices =
+                    shape.vertices.iter().map(|p| Vec3::vector_from_constants(scope.graph, *p)).collect();
                 ConvexHull { vertices, shape: Some(shape) }
             }
             Err(error) => {
@@ -94,8 +97,11 @@ pub(super) fn sphere_on_hull<'g>(
 ) -> Option<PointContact<'g>> {
     let g = radius.graph();
     let p = Vec3(axes.map(|axis| axis.dot(c)));
-    let planes: Vec<(Vec3<'g>, Expr<'g>)> =
-        hull.faces.iter().map(|face| (Vec3::from_numbers(g, face.normal), g.num(face.offset))).collect();
+    let planes: Vec<(Vec3<'g>, Expr<'g>)> = hull
+        .faces
+        .iter()
+        .map(|face| (Vec3::vector_from_constants(g, face.normal), g.num(face.offset)))
+        .collect();
     let (mut normal, mut height) = planes.first().map(|(n, offset)| (*n, n.dot(p) - *offset))?;
     for (n, offset) in &planes[1..] {
         let other = n.dot(p) - *offset;
@@ -106,7 +112,7 @@ pub(super) fn sphere_on_hull<'g>(
     let outside = planes.iter().map(|(n, offset)| n.dot(foot) - *offset);
     let outside = outside.reduce(|a, b| a.minimum_or_maximum(Extreme::Max, b))?;
     let on_face = is_positive(g.num(ON_FACE * hull.size) - outside);
-    let (offset, square) = offset_from_edges(hull, p)?;
+    let (offset, square) = offset_from_nearest_edge(hull, p)?;
     let distance = square.minimum_or_maximum(Extreme::Max, g.num((ON_FACE * hull.size).powi(2))).sqrt();
     let from_edge = offset.map(|x| x / distance);
     let normal = from_edge + (normal - from_edge) * on_face;
@@ -121,13 +127,14 @@ pub(super) fn sphere_on_hull<'g>(
 }
 
 /// Returns the position of a point relative to the nearest point of the edges, and its square.
-fn offset_from_edges<'g>(hull: &Hull, p: Vec3<'g>) -> Option<(Vec3<'g>, Expr<'g>)> {
+fn offset_from_nearest_edge<'g>(hull: &Hull, p: Vec3<'g>) -> Option<(Vec3<'g>, Expr<'g>)> {
     let g = p[0].graph();
     let mut nearest: Option<(Vec3<'g>, Expr<'g>)> = None;
     for [from, to] in hull.edges.iter().map(|edge| edge.map(|k| hull.vertices[k])) {
         let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
         let square = along.iter().map(|x| x * x).sum::<f64>();
-        let (along, offset) = (Vec3::from_numbers(g, along), p - Vec3::from_numbers(g, from));
+        let (along, offset) =
+            (Vec3::vector_from_constants(g, along), p - Vec3::vector_from_constants(g, from));
         let t = along.dot(offset) * (1.0 / square);
         let t = t.minimum_or_maximum(Extreme::Max, g.zero()).minimum_or_maximum(Extreme::Min, g.one());
         let offset = offset - along * t;

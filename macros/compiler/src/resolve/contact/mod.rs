@@ -26,14 +26,14 @@ mod terrain;
 mod unilateral;
 
 pub use drawing::surface_pieces;
-pub use force::has_consistent_forces;
-pub use slipping::{check_pressed, slipping_rows};
+pub use force::uses_contact_forces_consistently;
+pub use slipping::{report_undetermined_normal_forces, slipping_rows};
 pub use stops::resolve_stops;
 pub use surface::Surface;
 pub use terrain::TERRAIN_COORDINATES;
 pub use unilateral::resolve_contact;
 
-use super::rows::{ConstraintRows, constraint_row};
+use super::rows::{ConstraintRows, constraint_from_residual_and_rate};
 use super::scope::Scope;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
@@ -43,7 +43,7 @@ use crate::mechanism::{Constraint, FrictionTerm, Measure, Model};
 use crate::syntax::{self, ExprKind};
 use cones::rolling_cone_rows;
 use geometry::PointContact;
-use pair::{SurfacePair, ordered_pair};
+use pair::{SurfacePair, surfaces_in_known_order};
 use read::read_surface;
 use surface::SurfaceForm;
 
@@ -59,7 +59,7 @@ pub fn rolling_rows<'g>(
     constraint: &syntax::Constraint,
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
-    let pair = read_pair(scope, model, constraint, cx)?;
+    let pair = read_surface_pair(scope, model, constraint, cx)?;
     if let SurfaceForm::Cone(..) = pair.a.form {
         return rolling_cone_rows(scope, constraint, &pair, cx);
     }
@@ -69,7 +69,13 @@ pub fn rolling_rows<'g>(
     let [_, tangents @ ..] = contact.axes;
     for (word, e) in tangents {
         let name = format!("{}.{word}", constraint.name.text);
-        rows.push(constraint_row(scope, (name, &constraint.name.place), Measure::Length, None, e.dot(slip)));
+        rows.push(constraint_from_residual_and_rate(
+            scope,
+            (name, &constraint.name.place),
+            Measure::Length,
+            None,
+            e.dot(slip),
+        ));
     }
     let contact_point = Some(pair.contact_position(contact.point));
     let surfaces = pair.written_surfaces();
@@ -93,28 +99,30 @@ fn contact_rows<'g>(
         false => time_derivative(scope.configuration_space(), contact.gap),
     };
     let name = |word| (format!("{}.{word}", constraint.name.text), place);
-    let distance = constraint_row(scope, name(word), Measure::Length, Some(contact.gap), rate);
+    let distance =
+        constraint_from_residual_and_rate(scope, name(word), Measure::Length, Some(contact.gap), rate);
     let conditions = contact.conditions.iter().map(|(word, distance)| {
         let rate = time_derivative(scope.configuration_space(), *distance);
-        let row = constraint_row(scope, name(word), Measure::Length, Some(*distance), rate);
+        let row =
+            constraint_from_residual_and_rate(scope, name(word), Measure::Length, Some(*distance), rate);
         Constraint { determines: true, ..row }
     });
     [Constraint { friction, ..distance }].into_iter().chain(conditions).collect()
 }
 
 /// Reports the errors of a pair.
-pub fn check_pair<'g>(
+pub fn report_surface_pair_errors<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     constraint: &syntax::Constraint,
     cx: &mut Diagnostics,
 ) {
-    let _ = read_pair(scope, model, constraint, cx);
+    let _ = read_surface_pair(scope, model, constraint, cx);
 }
 
 /// Parses `rolls(surface, surface)` or `slips(surface, surface)`. The first surface of the result is the
 /// one that rolls.
-fn read_pair<'s, 'g>(
+fn read_surface_pair<'s, 'g>(
     scope: &'s Scope<'_, 'g>,
     model: &Model<'g>,
     constraint: &syntax::Constraint,
@@ -137,8 +145,8 @@ fn read_pair<'s, 'g>(
         return None;
     }
     let b = read_surface(scope, second, &example, cx);
-    let pair = ordered_pair(scope, model, a?, b?, SurfaceForm::rolls_on, second, cx)?;
-    if !pair.a.form.rolls_on(&pair.b.form) {
+    let pair = surfaces_in_known_order(scope, model, a?, b?, SurfaceForm::can_roll_on, second, cx)?;
+    if !pair.a.form.can_roll_on(&pair.b.form) {
         cx.report_error(e.place.clone(), "the contact point of these surfaces is not supported")
             .add_help(SUPPORTED_PAIRS);
         return None;
@@ -148,7 +156,7 @@ fn read_pair<'s, 'g>(
 
 impl<'g> SurfaceForm<'g> {
     /// Whether the surface can roll on the other surface.
-    fn rolls_on(&self, b: &SurfaceForm<'g>) -> bool {
+    fn can_roll_on(&self, b: &SurfaceForm<'g>) -> bool {
         let rollers = b.id().map_or(&[][..], |id| id.row().rollers);
         self.id().is_some_and(|id| rollers.contains(&id))
     }

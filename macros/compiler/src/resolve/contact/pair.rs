@@ -4,31 +4,31 @@ use super::geometry::{PointContact, tangents_of};
 use super::surface::{Surface, SurfaceForm};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Graph, Vec3};
-use crate::kinematics::jet::{self, Moving, Relative};
+use crate::kinematics::jet::{self, MovingVector, RelativeLinkMotion};
 use crate::kinematics::perpendicular_directions;
 use crate::mechanism::Model;
-use crate::resolve::scope::{Kinematics, Scope, Terms};
+use crate::resolve::scope::{PlacedElements, Scope, Terms};
 use crate::syntax;
 
 /// Two surfaces with the motions of their bodies relative to the link that carries both, in the axes of that
 /// link.
 pub(super) struct SurfacePair<'s, 'g> {
-    kinematics: &'s Kinematics<'g>,
+    kinematics: &'s PlacedElements<'g>,
     /// First surface: the one that rolls on, or collides with, the other.
     pub(super) a: Surface<'g>,
     pub(super) b: Surface<'g>,
-    pub(super) on_a: Relative<'g>,
-    pub(super) on_b: Relative<'g>,
+    pub(super) on_a: RelativeLinkMotion<'g>,
+    pub(super) on_b: RelativeLinkMotion<'g>,
     /// Position of the first surface.
-    pub(super) center: Moving<'g>,
+    pub(super) center: MovingVector<'g>,
     /// Position of the second surface.
-    pub(super) base: Moving<'g>,
+    pub(super) base: MovingVector<'g>,
     /// Whether the second surface is written before the first.
     swapped: bool,
 }
 
 /// Returns two surfaces with their motions, in the order that `is_known` accepts.
-pub(super) fn ordered_pair<'s, 'g>(
+pub(super) fn surfaces_in_known_order<'s, 'g>(
     scope: &'s Scope<'_, 'g>,
     model: &Model<'g>,
     mut a: Surface<'g>,
@@ -77,12 +77,12 @@ impl<'g> SurfacePair<'_, 'g> {
     }
 
     /// Returns a direction of the first body, with its rate, in the common axes.
-    pub(super) fn first_direction(&self, v: Vec3<'g>) -> Moving<'g> {
+    pub(super) fn first_direction(&self, v: Vec3<'g>) -> MovingVector<'g> {
         jet::motion_of_direction(&self.kinematics.joints, &self.on_a, self.a.frame.pose.rotation.to_parent(v))
     }
 
     /// Returns a direction of the second body, with its rate, in the common axes.
-    pub(super) fn second_direction(&self, v: Vec3<'g>) -> Moving<'g> {
+    pub(super) fn direction_of_second_body(&self, v: Vec3<'g>) -> MovingVector<'g> {
         jet::motion_of_direction(&self.kinematics.joints, &self.on_b, self.b.frame.pose.rotation.to_parent(v))
     }
 
@@ -97,21 +97,22 @@ impl<'g> SurfacePair<'_, 'g> {
 
     /// Returns the angular velocities of both bodies relative to their common link.
     pub(super) fn angular_velocities(&self) -> [Vec3<'g>; 2] {
-        [&self.on_a, &self.on_b].map(|on| jet::direction_out(&self.kinematics.joints, on, on.twist.angular))
+        [&self.on_a, &self.on_b]
+            .map(|on| jet::direction_in_ancestor(&self.kinematics.joints, on, on.twist.angular))
     }
 
     /// Returns the contact of a pair; `None` for pairs that touch along a line.
     pub(super) fn contact(&self) -> Option<PointContact<'g>> {
-        let rotate_a = |v| self.first_direction(v).value;
-        let rotate_b = |v| self.second_direction(v).value;
+        let first_surface_to_common_axes = |v| self.first_direction(v).value;
+        let second_surface_to_common_axes = |v| self.direction_of_second_body(v).value;
         let c = self.center.value - self.base.value;
         match (&self.a.form, &self.b.form) {
-            (_, SurfaceForm::Sheet(sheet)) => self.contact_point(sheet),
+            (_, SurfaceForm::ParametricSurface(sheet)) => self.contact_of_convex_body(sheet),
             (a, SurfaceForm::Plane(n)) => {
                 let [(first, e1), (second, e2)] =
-                    perpendicular_directions(*n).map(|(word, e)| (word, rotate_b(e)));
-                let normal = rotate_b(*n);
-                let point = -support_point(a, normal, 0.0, &rotate_a)?;
+                    perpendicular_directions(*n).map(|(word, e)| (word, second_surface_to_common_axes(e)));
+                let normal = second_surface_to_common_axes(*n);
+                let point = -support_point(a, normal, 0.0, &first_surface_to_common_axes)?;
                 let gap = normal.dot(c + point);
                 Some(PointContact {
                     gap,
@@ -120,7 +121,7 @@ impl<'g> SurfacePair<'_, 'g> {
                     conditions: Vec::new(),
                 })
             }
-            (SurfaceForm::Sphere(radius), b) => sphere_contact(*radius, b, c, &rotate_b),
+            (SurfaceForm::Sphere(radius), b) => sphere_contact(*radius, b, c, &second_surface_to_common_axes),
             _ => None,
         }
     }
@@ -132,7 +133,7 @@ pub(super) fn sphere_contact<'g>(
     radius: Expr<'g>,
     b: &SurfaceForm<'g>,
     c: Vec3<'g>,
-    rotate_b: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+    second_surface_to_common_axes: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Option<PointContact<'g>> {
     let inside = matches!(b, SurfaceForm::Bowl(_) | SurfaceForm::Tube(..) | SurfaceForm::Funnel(..));
     let side = |x: Expr<'g>| if inside { -x } else { x };
@@ -144,7 +145,7 @@ pub(super) fn sphere_contact<'g>(
             (normal, side(size - *r), [("first", first), ("second", second)])
         }
         SurfaceForm::Cylinder(r, u) | SurfaceForm::Tube(r, u) => {
-            let axis = rotate_b(*u);
+            let axis = second_surface_to_common_axes(*u);
             let outward = c - axis * axis.dot(c);
             let size = outward.norm();
             let normal = outward.map(|x| side(x / size));
@@ -152,7 +153,7 @@ pub(super) fn sphere_contact<'g>(
         }
         SurfaceForm::Cone(half, u) | SurfaceForm::Funnel(half, u) => {
             let (sine, cosine) = (half.sin(), half.cos());
-            let axis = rotate_b(*u);
+            let axis = second_surface_to_common_axes(*u);
             let height = axis.dot(c);
             let outward = c - axis * height;
             let size = outward.norm();

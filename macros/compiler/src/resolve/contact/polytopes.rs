@@ -49,10 +49,10 @@ impl<'g> PolytopeFrame<'g> {
 
     /// Returns `first` if `which` is one, `second` if it is zero.
     fn select(which: Expr<'g>, first: &Self, second: &Self) -> Self {
-        let select_vector = |a: Vec3<'g>, b: Vec3<'g>| b + (a - b) * which;
+        let select_vector_by_indicator = |a: Vec3<'g>, b: Vec3<'g>| b + (a - b) * which;
         PolytopeFrame {
-            axes: std::array::from_fn(|k| select_vector(first.axes[k], second.axes[k])),
-            origin: select_vector(first.origin, second.origin),
+            axes: std::array::from_fn(|k| select_vector_by_indicator(first.axes[k], second.axes[k])),
+            origin: select_vector_by_indicator(first.origin, second.origin),
         }
     }
 }
@@ -97,7 +97,7 @@ impl<'g> SurfacePair<'_, 'g> {
             std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k)))
         };
         let own_axes: [Vec3<'g>; 3] = axes_of(&|v| self.first_direction(v).value);
-        let other_axes: [Vec3<'g>; 3] = axes_of(&|v| self.second_direction(v).value);
+        let other_axes: [Vec3<'g>; 3] = axes_of(&|v| self.direction_of_second_body(v).value);
         let second = self.rounded_polytope(&self.b.form, 0.0)?;
         let first = self.rounded_polytope(&self.a.form, second.polytope.reach())?;
         let c = self.center.value - self.base.value;
@@ -161,8 +161,8 @@ fn relative_pose<'g>(
     let g = own.origin[0].graph();
     let offset = other.origin - own.origin;
     let centers = [(own, first), (other, second)]
-        .map(|(frame, shape)| frame.position(Vec3::from_numbers(g, shape.center())));
-    let height = (centers[1] - centers[0]).dot(Vec3::from_numbers(g, TIE_BREAK));
+        .map(|(frame, shape)| frame.position(Vec3::vector_from_constants(g, shape.center())));
+    let height = (centers[1] - centers[0]).dot(Vec3::vector_from_constants(g, TIE_BREAK));
     let rotation = other.axes.iter().flat_map(|axis| own.axes.map(|own| own.dot(*axis)));
     let position = own.axes.map(|axis| axis.dot(offset));
     let values: Vec<Expr<'g>> = rotation.chain(position).chain([height]).collect();
@@ -205,7 +205,7 @@ impl<'g> PlacedPair<'g> {
     fn edge_contact(&self, face_normal: Vec3<'g>) -> PointContact<'g> {
         let (values, one) = (&self.features.values, self.unused.num(1.0));
         let (side, is_closest) = (values[6], values[7]);
-        let is_crossing = side.square();
+        let crosses_singular_configuration = side.square();
         let (start, own) =
             (self.first.position(self.features.vector(8)), self.first.direction(self.features.vector(11)));
         let (end, along) =
@@ -217,13 +217,14 @@ impl<'g> PlacedPair<'g> {
             |v: Vec3<'g>, least: f64| v.dot(v).minimum_or_maximum(Extreme::Max, one * least).sqrt();
         let distance = limited_norm(separation, LEAST_SQUARE);
         let crossing = across * (side / limited_norm(across, PARALLEL));
-        let normal =
-            crossing + separation * (is_closest / distance) + face_normal * (one - is_crossing - is_closest);
+        let normal = crossing
+            + separation * (is_closest / distance)
+            + face_normal * (one - crosses_singular_configuration - is_closest);
         let [own_radius, other_radius] = self.radii;
         let depth = crossing.dot(separation) + distance * is_closest - own_radius - other_radius;
         let (first, second) = tangents_of(normal);
         PointContact {
-            gap: self.unused + (depth - self.unused) * (is_crossing + is_closest),
+            gap: self.unused + (depth - self.unused) * (crosses_singular_configuration + is_closest),
             point: (start + end) * (one * 0.5) + normal * ((other_radius - own_radius) * 0.5),
             axes: [("normal", normal), ("first", first), ("second", second)],
             conditions: Vec::new(),

@@ -1,14 +1,14 @@
 //! Resolution of surfaces, written as `body.form(arguments)`.
 
-use super::contact_point::read_sheet;
+use super::contact_point::resolve_parametric_surface;
 use super::hull::read_hull;
 use super::surface::{Surface, SurfaceForm};
 use super::terrain::read_terrain;
-use crate::diag::{Diagnostics, all_of};
+use crate::diag::{Diagnostics, join_names_with_and};
 use crate::expr::{Expr, Vec3};
 use crate::language::{Argument, ArgumentKind, Method, SurfaceId};
 use crate::mechanism::Rule;
-use crate::resolve::scope::{Allowed, Context, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::syntax::{self, ExprKind, GROUND};
 use std::f64::consts::FRAC_PI_2;
 
@@ -33,10 +33,10 @@ pub fn read_surface<'g>(
     let Some(Method::Surface(id)) = word.id else {
         let error = cx.report_error(word.place.clone(), format!("unknown surface `{}`", word.text));
         error.suggest_name(&word.text, SurfaceId::names());
-        if error.is_bare() {
+        if error.has_no_help() {
             let mut list: Vec<String> = SurfaceId::names().map(|word| format!("`{word}`")).collect();
             list.dedup();
-            error.add_help(format!("the surfaces are {}", all_of(&list)));
+            error.add_help(format!("the surfaces are {}", join_names_with_and(&list)));
         }
         return None;
     };
@@ -53,9 +53,10 @@ pub fn read_surface<'g>(
         return None;
     }
     match (id, arguments.as_slice()) {
-        (SurfaceId::Sheet, [u, w, point]) => {
+        (SurfaceId::ParametricSurface, [u, w, point]) => {
             let frame = frame?;
-            let form = SurfaceForm::Sheet(read_sheet(scope, &frame, [u, w, point], cx)?);
+            let form =
+                SurfaceForm::ParametricSurface(resolve_parametric_surface(scope, &frame, [u, w, point], cx)?);
             return Some(Surface { frame, form });
         }
         (SurfaceId::Terrain, [height]) => {
@@ -67,19 +68,19 @@ pub fn read_surface<'g>(
     }
     let (mut numbers, mut axis) = (Vec::new(), None);
     for (e, Argument { name, kind }) in arguments.iter().zip(row.arguments) {
-        let context = Context::new(Allowed::Constant, None);
+        let context = Context::new(AllowedQuantities::Constant, None);
         if kind.is_direction() {
-            axis = Some(scope.in_context(context, |s| s.unit_vector(e, false, cx))?);
+            axis = Some(scope.call_in_context(context, |s| s.unit_vector(e, false, cx))?);
             continue;
         }
-        let value = scope.in_context(context, |s| s.resolve_scalar(e, cx))?;
+        let value = scope.call_in_context(context, |s| s.resolve_scalar(e, cx))?;
         let is_angle = *kind == ArgumentKind::HalfAngle;
         if !check_size(is_angle, e, value, cx) {
             return None;
         }
         let rule = if is_angle { Rule::HalfAngle } else { Rule::Positive };
         let quantity = || format!("the {} of a {}", name.replace('_', " "), row.name);
-        scope.record_requirement(rule, quantity, &[value]);
+        scope.record_parameter_condition(rule, quantity, &[value]);
         numbers.push(value);
     }
     Some(Surface {
@@ -106,7 +107,7 @@ fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<SurfaceF
         SurfaceId::Cuboid => SurfaceForm::Cuboid([number(0)?, number(1)?, number(2)?]),
         SurfaceId::Capsule => SurfaceForm::Capsule(number(0)?, number(1)?, n),
         // The arguments of these surfaces are not numbers and a direction.
-        SurfaceId::Sheet | SurfaceId::Terrain | SurfaceId::Hull => return None,
+        SurfaceId::ParametricSurface | SurfaceId::Terrain | SurfaceId::Hull => return None,
     })
 }
 

@@ -2,13 +2,13 @@
 //! The normal force `λ` keeps the surfaces in contact. The force in the tangent plane is
 //! `−μ |λ| s / √(|s|² + v₀²)` for the slip velocity `s`: Coulomb's law, regularised around zero slip.
 
-use super::{contact_rows, read_pair};
+use super::{contact_rows, read_surface_pair};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::language::Key;
 use crate::mechanism::{Constraint, FrictionTerm, Model, Pose, Rule};
 use crate::resolve::rows::ConstraintRows;
-use crate::resolve::scope::{Allowed, Context, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::syntax;
 
 /// Returns the row of a slipping pair; `None` after an error.
@@ -18,7 +18,10 @@ pub fn slipping_rows<'g>(
     constraint: &syntax::Constraint,
     cx: &mut Diagnostics,
 ) -> Option<ConstraintRows<'g>> {
-    let found = (read_pair(scope, model, constraint, cx), read_friction(scope, model, constraint, cx));
+    let found = (
+        read_surface_pair(scope, model, constraint, cx),
+        friction_and_regularisation_speed(scope, model, constraint, cx),
+    );
     let (Some(pair), Some((coefficient, speed))) = found else { return None };
     let Some(contact) = pair.contact() else {
         cx.report_error(constraint.value.place.clone(), "these surfaces touch along a line").add_help(
@@ -41,7 +44,7 @@ pub fn slipping_rows<'g>(
 }
 
 /// Returns the coefficient of friction and the speed of the regularisation.
-fn read_friction<'g>(
+fn friction_and_regularisation_speed<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     constraint: &syntax::Constraint,
@@ -49,8 +52,9 @@ fn read_friction<'g>(
 ) -> Option<(Expr<'g>, Expr<'g>)> {
     let written = constraint.arguments.get(Key::Friction)?;
     let ground = Some((None, Pose::identity(scope.graph)));
-    let coefficient =
-        scope.in_context(Context::new(Allowed::Placement, ground), |s| s.resolve_scalar(written, cx))?;
+    let coefficient = scope.call_in_context(Context::new(AllowedQuantities::Placement, ground), |s| {
+        s.resolve_scalar(written, cx)
+    })?;
     if let Some(n) = coefficient.constant_value().filter(|n| *n < 0.0) {
         cx.report_error(
             written.place.clone(),
@@ -59,11 +63,17 @@ fn read_friction<'g>(
         .add_help("friction opposes the motion by definition: give its magnitude");
     }
     let name = &constraint.name.text;
-    scope.record_requirement(Rule::NotNegative, || format!("the friction of `{name}`"), &[coefficient]);
+    scope.record_parameter_condition(
+        Rule::NotNegative,
+        || format!("the friction of `{name}`"),
+        &[coefficient],
+    );
     let Some(written) = constraint.arguments.get(Key::Speed) else {
         return Some((coefficient, model.friction_speed));
     };
-    let speed = scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(written, cx))?;
+    let speed = scope.call_in_context(Context::new(AllowedQuantities::Constant, None), |s| {
+        s.resolve_scalar(written, cx)
+    })?;
     if let Some(n) = speed.constant_value().filter(|n| *n <= 0.0) {
         let message = format!("this speed must be positive, but it is {n}");
         cx.report_error(written.place.clone(), message).add_help(
@@ -71,13 +81,17 @@ fn read_friction<'g>(
              rest",
         );
     }
-    scope.record_requirement(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
+    scope.record_parameter_condition(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
     Some((coefficient, speed))
 }
 
 /// Reports slipping contacts whose row is redundant: the normal force, and therefore the friction, is
 /// undetermined.
-pub fn check_pressed(rows: &[Constraint<'_>], redundant: &[String], cx: &mut Diagnostics) {
+pub fn report_undetermined_normal_forces(
+    rows: &[Constraint<'_>],
+    redundant: &[String],
+    cx: &mut Diagnostics,
+) {
     for row in rows.iter().filter(|c| !c.friction.is_empty() && redundant.contains(&c.name)) {
         cx.report_error(
             row.place.clone(),

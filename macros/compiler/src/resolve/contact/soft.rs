@@ -10,7 +10,7 @@ use crate::kinematics::velocity_gradient;
 use crate::language::Key;
 use crate::mechanism::{Load, Rule};
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, ContactLoads, Context, Scope};
+use crate::resolve::scope::{AllowedQuantities, ContactLoads, Context, Scope};
 use crate::syntax::{self, WrittenArguments};
 
 /// Default slip speed below which friction of compliant contacts is regularised, m/s.
@@ -29,7 +29,7 @@ pub(super) struct CompliantContact<'g> {
 
 impl<'g> CompliantContact<'g> {
     /// Returns the effects of a contact point: potential energy of the penetration, dissipation and friction.
-    pub(super) fn forces_at(
+    pub(super) fn effects_of_contact_point(
         &self,
         point: &CandidatePoint<'g>,
         coefficients: ContactCoefficients<'g>,
@@ -40,7 +40,7 @@ impl<'g> CompliantContact<'g> {
         let root = if self.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
         let elastic = self.stiffness * overlap * root;
         let energy = elastic * overlap * g.num(if self.hertz { 0.4 } else { 0.5 });
-        let mut forces = Forces::of_potentials([energy]);
+        let mut forces = Forces::forces_of_potentials([energy]);
         let [(normal, rate), tangents @ ..] = point.rates;
         // Surfaces do not pull at each other.
         let damping = (-(elastic * self.dissipation * rate)).minimum_or_maximum(Extreme::Max, -elastic);
@@ -51,7 +51,7 @@ impl<'g> CompliantContact<'g> {
         exerted.forces.push((point.ancestor, normal * pressure));
         for (about, most) in [(0..1, coefficients.torsional), (1..3, coefficients.rolling)] {
             let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.angular_rates[k])).collect();
-            let moments = add_moment(&turns, most, pressure, self.speed, &mut forces);
+            let moments = add_friction_moments(&turns, most, pressure, self.speed, &mut forces);
             exerted.moments.extend(moments.into_iter().map(|moment| (point.ancestor, moment)));
         }
         let friction = coefficients.friction;
@@ -79,14 +79,15 @@ pub(super) fn read_compliance<'g>(
 ) -> Option<CompliantContact<'g>> {
     let g = scope.graph;
     let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
-        let value = scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(e, cx))?;
+        let value = scope
+            .call_in_context(Context::new(AllowedQuantities::Constant, None), |s| s.resolve_scalar(e, cx))?;
         let positive = rule == Rule::Positive;
         if let Some(n) = value.constant_value().filter(|n| *n < 0.0 || positive && *n == 0.0) {
             let must = if positive { "must be positive" } else { "cannot be negative" };
             cx.report_error(e.place.clone(), format!("the {what} of a contact {must}, but it is {n}"));
             return None;
         }
-        scope.record_requirement(rule, || format!("the {what} of a contact"), &[value]);
+        scope.record_parameter_condition(rule, || format!("the {what} of a contact"), &[value]);
         Some(value)
     };
     let (linear, hertz) = (given.get(Key::Stiffness), given.get(Key::Hertz));
@@ -110,7 +111,7 @@ pub(super) fn read_compliance<'g>(
 /// Adds and returns friction moments about directions, each with its angular velocity. The maximum moment
 /// is `coefficient` times the normal force. The moment is smaller if `coefficient` times the angular
 /// velocity is below the regularisation speed.
-fn add_moment<'g>(
+fn add_friction_moments<'g>(
     rotations: &[(Vec3<'g>, Expr<'g>)],
     coefficient: Expr<'g>,
     pressure: Expr<'g>,

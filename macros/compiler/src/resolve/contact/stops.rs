@@ -6,7 +6,7 @@ use crate::expr::Expr;
 use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::language::Key;
 use crate::mechanism::Contact;
-use crate::resolve::scope::{Allowed, Context, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::resolve::target::resolve_limited_coordinate;
 use crate::syntax;
 
@@ -17,18 +17,19 @@ pub fn resolve_stops<'g>(
     cx: &mut Diagnostics,
 ) -> Vec<Contact<'g>> {
     let (restitution, of_impulses) = read_restitution(scope, &limit.arguments, &limit.name.text, cx);
-    let (Some(restitution), Some((limited, rate, turns))) = (restitution, stop_value(scope, limit, cx))
+    let (Some(restitution), Some((limited, rate, turns))) =
+        (restitution, limited_value_and_rate(scope, limit, cx))
     else {
         return Vec::new();
     };
     let g = scope.graph;
-    let bound_value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
+    let resolve_bound_value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
         // Errors are reported by the pass that reads the limit.
-        true => scope.plane_angle(e, &mut Diagnostics::discarded_diagnostics()),
+        true => scope.resolve_plane_angle(e, &mut Diagnostics::discarded_diagnostics()),
         false => scope.resolve_scalar(e, &mut Diagnostics::discarded_diagnostics()),
     };
     let stop_at_bound = |(key, side): (Key, f64)| {
-        let bound = bound_value(limit.arguments.get(key)?)?;
+        let bound = resolve_bound_value(limit.arguments.get(key)?)?;
         let gap = (limited - bound) * g.num(side);
         let name = format!("{}.{}", limit.name.text, key.name());
         let coefficients = ContactCoefficients {
@@ -45,7 +46,7 @@ pub fn resolve_stops<'g>(
 }
 
 /// Returns the limited value, its rate, and whether it is an angle.
-fn stop_value<'g>(
+fn limited_value_and_rate<'g>(
     scope: &Scope<'_, 'g>,
     limit: &syntax::Limit,
     cx: &mut Diagnostics,
@@ -57,8 +58,9 @@ fn stop_value<'g>(
         let ratio = g.num(c.ratio);
         return Some((q * ratio + g.num(c.offset), v * ratio, angle == Some(true)));
     }
-    let value = scope
-        .in_context(Context::new(Allowed::Placement, None), |scope| scope.resolve_scalar(&limit.on, cx))?;
+    let value = scope.call_in_context(Context::new(AllowedQuantities::Placement, None), |scope| {
+        scope.resolve_scalar(&limit.on, cx)
+    })?;
     let rate = time_derivative(scope.configuration_space(), value);
     if velocity_gradient(rate).is_empty() {
         cx.report_error(limit.on.place.clone(), "the limited quantity is constant").add_help(

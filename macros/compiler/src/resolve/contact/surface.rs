@@ -32,7 +32,7 @@ pub enum SurfaceForm<'g> {
     /// Inside of a cone: half angle, axis from the apex to the opening.
     Funnel(Expr<'g>, Vec3<'g>),
     /// Parametric surface, given by the position of its points.
-    Sheet(Sheet<'g>),
+    ParametricSurface(ParametricSurface<'g>),
     /// Terrain, given by the height as a function of x and y.
     Terrain(Box<Terrain<'g>>),
     /// Point as a degenerate surface, for unilateral contacts only.
@@ -47,7 +47,7 @@ pub enum SurfaceForm<'g> {
 
 /// Surface given by its points as expressions of two coordinates, in body axes relative to its position.
 #[derive(Clone)]
-pub struct Sheet<'g> {
+pub struct ParametricSurface<'g> {
     /// Position of the surface point as a function of the surface parameters.
     pub point: Vec3<'g>,
     /// Derivatives of the point by the coordinates; their cross product points towards the body that rolls.
@@ -87,7 +87,7 @@ impl SurfaceForm<'_> {
             SurfaceForm::Tube(..) => Some(SurfaceId::Tube),
             SurfaceForm::Cone(..) => Some(SurfaceId::Cone),
             SurfaceForm::Funnel(..) => Some(SurfaceId::Funnel),
-            SurfaceForm::Sheet(_) => Some(SurfaceId::Sheet),
+            SurfaceForm::ParametricSurface(_) => Some(SurfaceId::ParametricSurface),
             SurfaceForm::Terrain(_) => Some(SurfaceId::Terrain),
             SurfaceForm::Cuboid(_) => Some(SurfaceId::Cuboid),
             SurfaceForm::Capsule(..) => Some(SurfaceId::Capsule),

@@ -3,12 +3,12 @@
 
 use super::geometry::{PointContact, tangents_of};
 use crate::diag::Diagnostics;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::symbols_in;
-use crate::mechanism::{Quantity, Supplied};
-use crate::resolve::scope::{Allowed, Context, Scope};
+use crate::mechanism::{Quantity, SuppliedQuantity};
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
 use crate::syntax;
 
 /// Names of the coordinates in the expression of the height.
@@ -43,11 +43,11 @@ pub(super) fn read_terrain<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Terrain<'g>> {
     let g = scope.graph;
-    let symbols = [0, 1].map(|k| Quantity::Given(Supplied::Position, k).symbol());
+    let symbols = [0, 1].map(|k| Quantity::Given(SuppliedQuantity::Position, k).symbol());
     let [u, w] = TERRAIN_COORDINATES;
     let locals = vec![(u, g.symbol(symbols[0])), (w, g.symbol(symbols[1]))];
-    let context = Context::new(Allowed::Constant, None).with_locals(locals);
-    let height_of = scope.in_context(context, |s| s.resolve_scalar(height, cx))?;
+    let context = Context::new(AllowedQuantities::Constant, None).with_locals(locals);
+    let height_of = scope.call_in_context(context, |s| s.resolve_scalar(height, cx))?;
     if !symbols_in(&[height_of]).into_iter().any(|s| symbols.contains(&s)) {
         cx.report_error(height.place.clone(), "this height is constant").add_help(
             "write it as a function of `u` and `w`, the positions along the body's x and y axes, as in \
@@ -55,7 +55,8 @@ pub(super) fn read_terrain<'g>(
         );
         return None;
     }
-    let derivative = |e: Expr<'g>, k: usize| Derivative::with_respect_to(symbols[k], g).differentiate(e);
+    let derivative =
+        |e: Expr<'g>, k: usize| DirectionalDerivative::with_respect_to(symbols[k], g).differentiate(e);
     let slopes = [derivative(height_of, 0), derivative(height_of, 1)];
     let curvatures = [derivative(slopes[0], 0), derivative(slopes[0], 1), derivative(slopes[1], 1)];
     Some(Terrain { height: height_of, slopes, curvatures })
@@ -63,7 +64,8 @@ pub(super) fn read_terrain<'g>(
 
 impl<'g> Terrain<'g> {
     fn evaluate(&self, [x, y]: [Expr<'g>; 2]) -> TerrainPoint<'g> {
-        let place = [(0, x), (1, y)].map(|(k, e)| (Quantity::Given(Supplied::Position, k).symbol(), e));
+        let place =
+            [(0, x), (1, y)].map(|(k, e)| (Quantity::Given(SuppliedQuantity::Position, k).symbol(), e));
         let all = [&[self.height][..], &self.slopes, &self.curvatures].concat();
         let found = replace_all(&all, &|s| place.iter().find(|(known, _)| *known == s).map(|(_, e)| *e));
         let entry = |k: usize| found.get(k).copied().unwrap_or(self.height);
@@ -97,10 +99,10 @@ impl<'g> Terrain<'g> {
     /// Returns the nearest point of the terrain, by Newton's method from the point straight below. The
     /// nearest point of a sphere far above may be ambiguous. Such a sphere is lowered for the iteration, and
     /// the omitted height is added to the distance.
-    fn nearest(&self, radius: Expr<'g>, c: Vec3<'g>, below: &TerrainPoint<'g>) -> NearestPoint<'g> {
+    fn nearest(&self, radius: Expr<'g>, c: Vec3<'g>, below: &TerrainPoint<'g>) -> NearestTerrainPoint<'g> {
         let above = c[2] - below.height;
         if radius.is_zero() {
-            return NearestPoint { normal: below.normal(), distance: above / below.normal_length() };
+            return NearestTerrainPoint { normal: below.normal(), distance: above / below.normal_length() };
         }
         let near = above.minimum_or_maximum(Extreme::Min, radius * below.normal_length() * NEAR_RATIO);
         let z = below.height + near;
@@ -117,12 +119,12 @@ impl<'g> Terrain<'g> {
         let found = self.evaluate(place);
         let normal = found.normal();
         let offset = Vec3([c[0] - place[0], c[1] - place[1], z - found.height]);
-        NearestPoint { normal, distance: normal.dot(offset) + (above - near) / below.normal_length() }
+        NearestTerrainPoint { normal, distance: normal.dot(offset) + (above - near) / below.normal_length() }
     }
 }
 
 /// Nearest point of a terrain: the normal there, and the distance.
-struct NearestPoint<'g> {
+struct NearestTerrainPoint<'g> {
     normal: Vec3<'g>,
     distance: Expr<'g>,
 }

@@ -1,20 +1,20 @@
 //! Unilateral contacts: surfaces of bodies that separate and collide, and coordinates at their bounds.
 
-use super::coefficients::{ContactCoefficients, read_coefficients};
+use super::coefficients::{ContactCoefficients, read_contact_coefficients};
 use super::collision::read_collisions;
-use super::force::check_relative_rotation;
+use super::force::report_friction_without_rotation;
 use super::geometry::CandidatePoint;
-use super::pair::ordered_pair;
+use super::pair::surfaces_in_known_order;
 use super::read::read_surface;
 use super::soft::read_compliance;
 use super::surface::{Surface, SurfaceForm};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{motion_rates, velocity_gradient};
+use crate::kinematics::{time_derivatives_along_motion, velocity_gradient};
 use crate::language::{Method, OtherKind};
 use crate::mechanism::{Contact, Model, PolytopePair, Quantity};
 use crate::resolve::element_forces::Forces;
-use crate::resolve::power::{is_power_used, power_of};
+use crate::resolve::power::{is_power_used, power_of_element};
 use crate::resolve::scope::{ContactLoads, ElementPower, Scope, Terms};
 use crate::syntax::contact::collision_link;
 use crate::syntax::{self, ExprKind, GROUND};
@@ -33,7 +33,7 @@ const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, c
 
 /// Contact points and forces of a declared contact, which the builder adds to the model.
 #[derive(Default)]
-pub struct ContactParts<'g> {
+pub struct ResolvedContact<'g> {
     /// Rigid contact points, and their friction against spin and rolling.
     pub contacts: Vec<Contact<'g>>,
     /// Positions of the rigid contact points, by the names of their contacts.
@@ -57,8 +57,8 @@ pub fn resolve_contact<'g>(
     model: &Model<'g>,
     contact: &syntax::Contact,
     cx: &mut Diagnostics,
-) -> Option<ContactParts<'g>> {
-    let coefficients = read_coefficients(scope, contact, cx);
+) -> Option<ResolvedContact<'g>> {
+    let coefficients = read_contact_coefficients(scope, contact, cx);
     let firsts = contact_surfaces(scope, &contact.first, cx);
     // Two bodies written instead of two surfaces are one error.
     let seconds = match firsts {
@@ -79,28 +79,28 @@ pub fn resolve_contact<'g>(
         return None;
     }
     let surfaces = [firsts, seconds].concat();
-    let mut parts = ContactParts { surfaces, polytopes, ..ContactParts::default() };
+    let mut parts = ResolvedContact { surfaces, polytopes, ..ResolvedContact::default() };
     if points.is_empty() {
         return Some(parts);
     }
-    check_relative_rotation(contact, &points, cx);
+    report_friction_without_rotation(contact, &points, cx);
     let several = points.len() > 1;
     for (k, point) in points.iter().enumerate() {
         let name = &contact.name.text;
         let name = if several { format!("{name}.{k}") } else { name.clone() };
         match &soft {
             Some(soft) => {
-                let forces = soft.forces_at(point, coefficients, &mut parts.loads);
+                let forces = soft.effects_of_contact_point(point, coefficients, &mut parts.loads);
                 parts.forces.potentials.extend(forces.potentials);
                 parts.forces.loads.extend(forces.loads);
             }
-            None => parts.add_point(model, name, point, coefficients),
+            None => parts.add_rigid_contact_point(model, name, point, coefficients),
         }
     }
     if is_power_used(scope.description, &contact.name) {
         parts.power = Some(match (&soft, parts.loads.power) {
             (None, Some(power)) => Ok(power),
-            _ => power_of(scope, model, &parts.forces, &contact.name.text),
+            _ => power_of_element(scope, model, &parts.forces, &contact.name.text),
         });
     }
     Some(parts)
@@ -116,7 +116,7 @@ fn separable_points<'g>(
     polytopes: &mut Vec<PolytopePair<'g>>,
     cx: &mut Diagnostics,
 ) -> Option<Vec<CandidatePoint<'g>>> {
-    let place = contact.first.place.extend_to(&contact.second.place);
+    let place = contact.first.place.extend_to_end_of(&contact.second.place);
     let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision_link(e), Some(None)));
     let mut points: Vec<CandidatePoint<'g>> = Vec::new();
     for first in firsts {
@@ -126,7 +126,7 @@ fn separable_points<'g>(
                 continue;
             }
             let places = (&contact.second, &place);
-            points.extend(candidate_points(scope, model, [first, second], places, polytopes, cx)?);
+            points.extend(contact_candidate_points(scope, model, [first, second], places, polytopes, cx)?);
         }
     }
     let count = points.len();
@@ -142,9 +142,9 @@ fn separable_points<'g>(
     Some(points)
 }
 
-impl<'g> ContactParts<'g> {
+impl<'g> ResolvedContact<'g> {
     /// Adds a rigid contact point, and its forces on the first surface. `model` has all contacts before.
-    fn add_point(
+    fn add_rigid_contact_point(
         &mut self,
         model: &Model<'g>,
         name: String,
@@ -157,7 +157,9 @@ impl<'g> ContactParts<'g> {
             .filter(|(_, rate)| !coefficients.friction.is_zero() && !velocity_gradient(*rate).is_empty());
         let rates: Vec<(Vec3<'g>, Expr<'g>)> = std::iter::once(normal).chain(slides).collect();
         let normal_contact = model.contacts.len() + self.contacts.len();
-        self.add_loads(model, &rates, |loads, force| loads.forces.push((point.ancestor, force)));
+        self.add_loads_along_directions(model, &rates, |loads, force| {
+            loads.forces.push((point.ancestor, force))
+        });
         self.points.push((name.clone(), point.place.clone()));
         let rates = rates.into_iter().map(|(_, rate)| rate).collect();
         self.contacts.push(coefficients.contact(name.clone(), (point.gap, false), None, rates));
@@ -167,7 +169,9 @@ impl<'g> ContactParts<'g> {
             let turns = about.map(|k| (point.rates[k].0, point.angular_rates[k]));
             let turns: Vec<_> = turns.filter(|(_, rate)| !velocity_gradient(*rate).is_empty()).collect();
             if !coefficient.is_zero() && !turns.is_empty() {
-                self.add_loads(model, &turns, |loads, moment| loads.moments.push((point.ancestor, moment)));
+                self.add_loads_along_directions(model, &turns, |loads, moment| {
+                    loads.moments.push((point.ancestor, moment))
+                });
                 let rates = turns.into_iter().map(|(_, rate)| rate).collect();
                 let coefficients = ContactCoefficients {
                     friction: coefficient,
@@ -188,7 +192,7 @@ impl<'g> ContactParts<'g> {
     }
 
     /// Adds the forces or moments along directions, each with its rate, and their power.
-    fn add_loads(
+    fn add_loads_along_directions(
         &mut self,
         model: &Model<'g>,
         rates: &[(Vec3<'g>, Expr<'g>)],
@@ -199,14 +203,14 @@ impl<'g> ContactParts<'g> {
         for (k, (direction, rate)) in rates.iter().enumerate() {
             let magnitude = Quantity::ContactForce(first + k).expr(model.graph);
             add(&mut self.loads, *direction * magnitude);
-            self.loads.add_power(magnitude * *rate);
+            self.loads.add_contact_power(magnitude * *rate);
         }
     }
 }
 
 /// Returns the points where two surfaces may touch, and adds the surfaces to the pairs of polytopes if their
 /// features determine these points; `None` after an error.
-fn candidate_points<'g>(
+fn contact_candidate_points<'g>(
     scope: &Scope<'_, 'g>,
     model: &Model<'g>,
     [first, second]: [&Surface<'g>; 2],
@@ -215,21 +219,23 @@ fn candidate_points<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Vec<CandidatePoint<'g>>> {
     let first_link = first.frame.link;
-    let mut pair = ordered_pair(
+    let mut pair = surfaces_in_known_order(
         scope,
         model,
         first.clone(),
         second.clone(),
-        SurfaceForm::has_contact_with,
+        SurfaceForm::supports_contact_with,
         second_place,
         cx,
     )?;
     // Equals the velocity from the twists of links, with fewer terms to differentiate.
-    let [x, y, z] = motion_rates(scope.configuration_space(), &pair.center.value.0, false)[..] else {
+    let [x, y, z] =
+        time_derivatives_along_motion(scope.configuration_space(), &pair.center.value.0, false)[..]
+    else {
         return None;
     };
     pair.center.rate = Vec3([x, y, z]);
-    let is_listed = pair.a.form.has_contact_with(&pair.b.form);
+    let is_listed = pair.a.form.supports_contact_with(&pair.b.form);
     let candidate_contacts = match &pair.b.form {
         _ if !is_listed => Vec::new(),
         SurfaceForm::Hull(_) if !matches!(pair.a.form, SurfaceForm::Sphere(_)) => {
@@ -287,7 +293,7 @@ fn contact_surfaces<'g>(
 
 impl<'g> SurfaceForm<'g> {
     /// Whether the contact of this surface with another one is supported.
-    fn has_contact_with(&self, b: &SurfaceForm<'g>) -> bool {
+    fn supports_contact_with(&self, b: &SurfaceForm<'g>) -> bool {
         b.id().is_some_and(|id| id.row().contacts.contains(&self.id()))
     }
 }

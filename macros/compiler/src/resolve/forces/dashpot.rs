@@ -3,15 +3,15 @@
 use crate::diag::Diagnostics;
 use crate::mechanism::{Dashpot, Pose, Rule};
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, Context, Scope};
-use crate::resolve::terms::ActedOn;
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
+use crate::resolve::terms::ForceElementCoordinate;
 use crate::syntax::{Action, Key};
 
 /// Returns the force of a dashpot. A linear dashpot on a coordinate is stored separately in the model.
 pub fn dashpot_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
-    on: ActedOn<'g>,
+    on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let damping = action.get(Key::Damping);
@@ -21,7 +21,7 @@ pub fn dashpot_force<'g>(
             cx.report_error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
                 .add_help("a dashpot dissipates energy; an element that supplies energy is a `Force` or `Torque` with `value = …`");
         }
-        scope.record_requirement(
+        scope.record_parameter_condition(
             Rule::NotNegative,
             || format!("the damping of `{}`", action.name.text),
             &[damping],
@@ -33,9 +33,9 @@ pub fn dashpot_force<'g>(
         Some(damping) => scope.resolve_scalar(damping, cx)? * rate,
         None => {
             let ground = Some((None, Pose::identity(scope.graph)));
-            let context = Context::new(Allowed::Motion, ground).with_locals(vec![("speed", rate)]);
+            let context = Context::new(AllowedQuantities::Motion, ground).with_locals(vec![("speed", rate)]);
             let written = action.get(Key::Force)?;
-            scope.in_context(context, |scope| scope.resolve_scalar(written, cx))?
+            scope.call_in_context(context, |scope| scope.resolve_scalar(written, cx))?
         }
     };
     Some(Forces::resisting_force(rate, force))

@@ -5,7 +5,7 @@ use crate::expr::{Expr, Function};
 use crate::mechanism::Rule;
 use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::Scope;
-use crate::resolve::terms::ActedOn;
+use crate::resolve::terms::ForceElementCoordinate;
 use crate::syntax::{self, Action, Key};
 
 /// Default regularisation speed of friction, m/s or rad/s.
@@ -15,7 +15,7 @@ const FRICTION_SPEED: f64 = 0.01;
 pub fn friction_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
-    on: ActedOn<'g>,
+    on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
@@ -47,7 +47,7 @@ pub fn dry_friction<'g>(
     let mut check = |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
         if let Some(found) = found {
             let rule = if positive { Rule::Positive } else { Rule::NotNegative };
-            scope.record_requirement(rule, || format!("a {what} of dry friction"), &[found]);
+            scope.record_parameter_condition(rule, || format!("a {what} of dry friction"), &[found]);
         }
         let (Some(written), Some(n)) = (written, found.and_then(|e| e.constant_value())) else { return };
         if n < 0.0 || positive && n == 0.0 {

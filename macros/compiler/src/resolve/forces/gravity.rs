@@ -4,19 +4,19 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::Scope;
-use crate::resolve::terms::{ActedOn, Stretch, distance_between_points};
+use crate::resolve::terms::{ForceElementCoordinate, Stretch, distance_between_points};
 use crate::syntax::{self, Action, ExprKind, Key, Target};
 
 /// Returns the inverse-square force of an attraction between two points.
 pub fn attraction_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
-    on: ActedOn<'g>,
+    on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let stretch = on.stretch(scope)?;
     let strength = scope.resolve_scalar(action.get(Key::Strength)?, cx)?;
-    Some(Forces::of_potentials([attraction_energy(&stretch, strength)]))
+    Some(Forces::forces_of_potentials([attraction_energy(&stretch, strength)]))
 }
 
 /// Returns central gravity: between two bodies with a gravitational constant, or towards a point with a
@@ -39,7 +39,7 @@ pub fn central_gravity_force<'g>(
     let stretch = distance_between_points(scope, first, second, cx);
     // An unresolved position has already been reported.
     let is_placed = stretch.is_some();
-    let mut mass = |e: &syntax::Expr| if is_placed { mass_of(scope, e, cx) } else { None };
+    let mut mass = |e: &syntax::Expr| if is_placed { mass_of_named_body(scope, e, cx) } else { None };
     match (action.get(Key::Constant), action.get(Key::Mu)) {
         (Some(constant), None) => {
             let masses = [mass(first), mass(second)];
@@ -47,15 +47,16 @@ pub fn central_gravity_force<'g>(
             let ([Some(m1), Some(m2)], Some(stretch)) = (masses, stretch) else { return None };
             let own = attraction_energy(&stretch, g * m1 * m2);
             let torques = [(first, second, g * m1), (second, first, g * m2)];
-            let torques = torques.map(|(center, body, mu)| torque_energy(scope, center, body, mu, cx));
-            Some(Forces::of_potentials([own].into_iter().chain(torques.into_iter().flatten())))
+            let torques =
+                torques.map(|(center, body, mu)| central_gravity_torque_energy(scope, center, body, mu, cx));
+            Some(Forces::forces_of_potentials([own].into_iter().chain(torques.into_iter().flatten())))
         }
         (None, Some(mu)) => {
             let m = mass(second);
             let mu = scope.resolve_scalar(mu, cx)?;
             let own = attraction_energy(&stretch?, mu * m?);
-            let torque = torque_energy(scope, first, second, mu, cx);
-            Some(Forces::of_potentials([own].into_iter().chain(torque)))
+            let torque = central_gravity_torque_energy(scope, first, second, mu, cx);
+            Some(Forces::forces_of_potentials([own].into_iter().chain(torque)))
         }
         _ => {
             cx.report_error(action.name.place.clone(), "gravity has a `constant` or a `mu`").add_help(
@@ -67,7 +68,7 @@ pub fn central_gravity_force<'g>(
 }
 
 /// Returns the mass of a body or particle. Its origin must be its centre of mass.
-fn mass_of<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+fn mass_of_named_body<'g>(scope: &Scope<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
     if let ExprKind::Name(name) = &e.kind {
         if let Some(p) = scope.description.particles.iter().find(|p| p.name.text == *name) {
             return scope.resolve_scalar(&p.mass, cx);
@@ -99,7 +100,7 @@ fn attraction_energy<'g>(stretch: &Stretch<'g>, strength: Expr<'g>) -> Expr<'g> 
 
 /// Returns the energy of the torque of central gravity on a body with inertia, to second order in size over
 /// distance (MacCullagh): `U = −μ m / r − μ (tr I − 3 n · I n) / (2 r³)`.
-fn torque_energy<'g>(
+fn central_gravity_torque_energy<'g>(
     scope: &Scope<'_, 'g>,
     center: &syntax::Expr,
     body: &syntax::Expr,

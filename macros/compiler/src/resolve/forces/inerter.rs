@@ -5,14 +5,14 @@ use crate::expr::Expr;
 use crate::mechanism::{Inertance, Rule};
 use crate::resolve::element_forces::Forces;
 use crate::resolve::scope::Scope;
-use crate::resolve::terms::ActedOn;
+use crate::resolve::terms::ForceElementCoordinate;
 use crate::syntax::{self, Action, Key};
 
 /// Returns the force of an inerter as `Forces`.
 pub fn inerter_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
-    on: ActedOn<'g>,
+    on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     inertance_force(scope, on.stretch(scope)?.rate, action.get(Key::Inertance)?, cx)
@@ -30,6 +30,6 @@ pub fn inertance_force<'g>(
         cx.report_error(written.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
             .add_help("it resists accelerations as a mass does: give its magnitude");
     }
-    scope.record_requirement(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
+    scope.record_parameter_condition(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
     Some(Forces { inertances: vec![Inertance { rate, inertance }], ..Forces::default() })
 }

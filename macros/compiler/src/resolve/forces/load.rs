@@ -1,13 +1,13 @@
 //! Applied forces and torques: with a value, or as inputs.
 
 use crate::diag::{Diagnostics, Place};
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr as Value, Function, Vec3};
 use crate::kinematics::symbols_in;
-use crate::mechanism::{AccelerationForce, Direction, Input, Load, Pose, Quantity};
+use crate::mechanism::{AccelerationForce, Input, Load, Pose, Quantity, SumOfLinkVectors};
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, Context, Placed, PlacedKind, Scope};
+use crate::resolve::scope::{AllowedQuantities, Context, Placed, PlacedElementKind, Scope};
 use crate::resolve::target::{ResolvedTarget, resolve_target};
 use crate::resolve::terms::{coordinate_stretch, distance_between_points};
 use crate::syntax::{Action, Expr, ExprKind, Key, Target};
@@ -19,9 +19,9 @@ pub fn load<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) ->
     match (&action.on, action.get(Key::Value)) {
         (Target::On(on), None) => {
             let target = resolve_target(scope, on, cx)?;
-            input_force(scope, action, on, target, direction, torque, cx)
+            resolve_input_force(scope, action, on, target, direction, torque, cx)
         }
-        (Target::On(on), Some(value)) => value_on(scope, on, direction, value, torque, cx),
+        (Target::On(on), Some(value)) => force_of_expression_value(scope, on, direction, value, torque, cx),
         (Target::Between(first, second), value) => {
             force_between(scope, action, [first, second], direction, value, cx)
         }
@@ -29,7 +29,7 @@ pub fn load<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) ->
 }
 
 /// Returns a force or torque element whose value is an expression.
-fn value_on<'g>(
+fn force_of_expression_value<'g>(
     scope: &Scope<'_, 'g>,
     on: &Expr,
     direction: Option<&Expr>,
@@ -45,23 +45,23 @@ fn value_on<'g>(
     let place = match resolve_target(scope, on, cx)? {
         ResolvedTarget::Point(place) => place,
         ResolvedTarget::Coordinate(_, Some(angle)) if angle != torque => {
-            report_wrong_kind(on, angle, cx);
+            report_length_angle_mismatch(on, angle, cx);
             return None;
         }
         ResolvedTarget::Coordinate(c, _) => {
-            return scalar_load(scope, coordinate_stretch(scope, &c).rate, value, cx);
+            return load_conjugate_to_rate(scope, coordinate_stretch(scope, &c).rate, value, cx);
         }
-        ResolvedTarget::Expression(stretch) => return scalar_load(scope, stretch.rate, value, cx),
+        ResolvedTarget::Expression(stretch) => return load_conjugate_to_rate(scope, stretch.rate, value, cx),
     };
-    if torque && !check_torque_target(on, &place, cx) {
+    if torque && !can_torque_act_on_element(on, &place, cx) {
         return None;
     }
     let Some(link) = place.link else {
         cx.report_error(on.place.clone(), "this is fixed to the ground: a force on it has no effect");
         return None;
     };
-    let context = Context::new(Allowed::Acceleration, Some((place.link, place.pose.clone())));
-    let terms = scope.in_context(context, |scope| scope.resolve_terms(value, cx))?;
+    let context = Context::new(AllowedQuantities::Acceleration, Some((place.link, place.pose.clone())));
+    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(value, cx))?;
     let kinematics = &scope.kinematics;
     let force = kinematics.resolve(&terms, place.link, Vec3::zero(scope.graph));
     let twist = kinematics.twists[link.0];
@@ -71,7 +71,7 @@ fn value_on<'g>(
     };
     let mut all = Forces::default();
     for k in (0..3).filter(|k| !force[*k].is_zero()) {
-        let component = value_load(rate[k], force[k], &value.place, cx)?;
+        let component = load_split_by_acceleration(rate[k], force[k], &value.place, cx)?;
         all.loads.extend(component.loads);
         all.acceleration_forces.extend(component.acceleration_forces);
     }
@@ -80,15 +80,15 @@ fn value_on<'g>(
 
 /// Returns the load whose power is `value × rate`. Vectors in the scalar expression `value` are in ground
 /// axes.
-fn scalar_load<'g>(
+fn load_conjugate_to_rate<'g>(
     scope: &Scope<'_, 'g>,
     rate: Value<'g>,
     value: &Expr,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(scope.graph))));
-    let force = scope.in_context(context, |scope| scope.resolve_scalar(value, cx))?;
-    value_load(rate, force, &value.place, cx)
+    let context = Context::new(AllowedQuantities::Acceleration, Some((None, Pose::identity(scope.graph))));
+    let force = scope.call_in_context(context, |scope| scope.resolve_scalar(value, cx))?;
+    load_split_by_acceleration(rate, force, &value.place, cx)
 }
 
 /// Returns a force along the line between two points, with a value or as an input. A positive force
@@ -111,13 +111,13 @@ fn force_between<'g>(
         false => stretch.rate,
     };
     match value {
-        Some(value) => scalar_load(scope, rate, value, cx),
-        None => Some(input_load(scope.input_index(&action.name.text)?, rate)),
+        Some(value) => load_conjugate_to_rate(scope, rate, value, cx),
+        None => Some(load_of_input(scope.input_index(&action.name.text)?, rate)),
     }
 }
 
 /// Returns an input on a coordinate, an expression, or a point of a body.
-fn input_force<'g>(
+fn resolve_input_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
     on: &Expr,
@@ -134,7 +134,7 @@ fn input_force<'g>(
     };
     let input = match target {
         ResolvedTarget::Coordinate(_, Some(angle)) if angle != torque => {
-            report_wrong_kind(on, angle, cx);
+            report_length_angle_mismatch(on, angle, cx);
             return None;
         }
         ResolvedTarget::Coordinate(c, _) => {
@@ -143,7 +143,7 @@ fn input_force<'g>(
         }
         ResolvedTarget::Expression(stretch) => {
             refuse_direction("expression");
-            return Some(input_load(scope.input_index(&action.name.text)?, stretch.rate));
+            return Some(load_of_input(scope.input_index(&action.name.text)?, stretch.rate));
         }
         ResolvedTarget::Point(place) => {
             match point_input(scope, action, on, &place, direction, torque, cx)? {
@@ -153,7 +153,7 @@ fn input_force<'g>(
                     let twist = &kinematics.twists[link.0];
                     let along = kinematics.resolve(&along, Some(link), Vec3::zero(scope.graph));
                     let rate = (twist.linear + twist.angular.cross(point)).dot(along);
-                    return Some(input_load(scope.input_index(&action.name.text)?, rate));
+                    return Some(load_of_input(scope.input_index(&action.name.text)?, rate));
                 }
                 Input::Torque { .. } if is_moving(place.pose.translation) => return None,
                 input => input,
@@ -164,13 +164,13 @@ fn input_force<'g>(
 }
 
 /// Returns the input with this index in `u`, as a force on a rate.
-pub fn input_load<'g>(index: usize, rate: Value<'g>) -> Forces<'g> {
+pub fn load_of_input<'g>(index: usize, rate: Value<'g>) -> Forces<'g> {
     let force = Quantity::Input(index).expr(rate.graph());
     Forces { loads: vec![Load { rate, force, dissipative: false }], ..Forces::default() }
 }
 
 /// Returns a force on a rate. Terms that are linear in the accelerations are separated from the others.
-pub fn value_load<'g>(
+pub fn load_split_by_acceleration<'g>(
     rate: Value<'g>,
     force: Value<'g>,
     place: &Place,
@@ -188,10 +188,17 @@ pub fn value_load<'g>(
         forces.loads.push(Load { rate, force, dissipative: false });
         return Some(forces);
     }
-    let factor = |(s, k): &(_, usize)| (*k, Derivative::with_respect_to(*s, graph).differentiate(force));
-    let factors: Vec<(usize, Value<'g>)> =
-        acceleration_symbols.iter().map(factor).filter(|(_, f)| !f.is_zero()).collect();
-    let all: Vec<Value<'g>> = factors.iter().map(|(_, factor)| *factor).collect();
+    let acceleration_coefficient_of_force =
+        |(s, k): &(_, usize)| (*k, DirectionalDerivative::with_respect_to(*s, graph).differentiate(force));
+    let factors: Vec<(usize, Value<'g>)> = acceleration_symbols
+        .iter()
+        .map(acceleration_coefficient_of_force)
+        .filter(|(_, f)| !f.is_zero())
+        .collect();
+    let all: Vec<Value<'g>> = factors
+        .iter()
+        .map(|(_, acceleration_coefficient_of_force)| *acceleration_coefficient_of_force)
+        .collect();
     let quantities: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::from_symbol).collect();
     if quantities.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
         cx.report_error(place.clone(), "a force can depend on accelerations only linearly")
@@ -229,17 +236,17 @@ fn point_input<'g>(
             .add_help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
         return None;
     };
-    if torque && !check_torque_target(on, place, cx) {
+    if torque && !can_torque_act_on_element(on, place, cx) {
         return None;
     }
-    let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
-    let terms = scope.in_context(context, |scope| scope.resolve_terms(direction, cx))?;
+    let context = Context::new(AllowedQuantities::Constant, Some((place.link, place.pose.clone())));
+    let terms = scope.call_in_context(context, |scope| scope.resolve_terms(direction, cx))?;
     let Some(link) = place.link else {
         cx.report_error(on.place.clone(), "this body is fixed to the ground: a force on it has no effect")
             .add_help("name a body that moves");
         return None;
     };
-    let sum: Direction<'g> = terms;
+    let sum: SumOfLinkVectors<'g> = terms;
     if sum.iter().all(|(_, v)| v.is_zero()) {
         cx.report_error(direction.place.clone(), "this direction is zero")
             .add_help("write `x`, `y`, `z` or another vector of some length");
@@ -259,9 +266,9 @@ fn is_moving(v: Vec3<'_>) -> bool {
 }
 
 /// Whether a torque can act on an element; reports particles and points, which have no rotation.
-fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
+fn can_torque_act_on_element(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     let ExprKind::Name(name) = &on.kind else { return true };
-    if place.kind == PlacedKind::Point {
+    if place.kind == PlacedElementKind::Point {
         cx.report_error(on.place.clone(), format!("`{name}` is a point, on which a torque has no effect"))
             .add_help("let it act on a body, or write a `Force`");
         return false;
@@ -269,7 +276,7 @@ fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> b
     true
 }
 
-fn report_wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
+fn report_length_angle_mismatch(on: &Expr, angle: bool, cx: &mut Diagnostics) {
     let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
     cx.report_error(on.place.clone(), format!("this coordinate is {is}"))
         .add_help(format!("the element that acts on it is a {other}"));

@@ -9,18 +9,18 @@ mod spring;
 
 pub use friction::dry_friction;
 pub use inerter::inertance_force;
-pub use load::{input_load, value_load};
-pub use spring::{SpringLaw, spring_law};
+pub use load::{load_of_input, load_split_by_acceleration};
+pub use spring::{SpringLaw, spring_force_of_law};
 
 use super::element_forces::Forces;
 use super::scope::Scope;
 use super::target::{ResolvedTarget, resolve_target};
-use super::terms::{ActedOn, distance_between_points};
+use super::terms::{ForceElementCoordinate, distance_between_points};
 use crate::diag::Diagnostics;
 use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target};
 
 /// Resolves force elements on coordinates, which need no positions.
-pub fn check_actions<'g>(scope: &Scope<'_, 'g>, cx: &mut Diagnostics) {
+pub fn resolve_coordinate_actions<'g>(scope: &Scope<'_, 'g>, cx: &mut Diagnostics) {
     for action in &scope.description.actions {
         let on_joint = match &action.on {
             Target::On(e) => match &e.kind {
@@ -30,14 +30,18 @@ pub fn check_actions<'g>(scope: &Scope<'_, 'g>, cx: &mut Diagnostics) {
             },
             Target::Between(..) => false,
         };
-        if on_joint && !needs_motion(action) {
-            let _ = forces_of(scope, action, cx);
+        if on_joint && !needs_positions_and_velocities(action) {
+            let _ = forces_of_element(scope, action, cx);
         }
     }
 }
 
 /// Returns the forces of an element; `None` after an error.
-pub fn forces_of<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
+pub fn forces_of_element<'g>(
+    scope: &Scope<'_, 'g>,
+    action: &Action,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
     let forces = match action.kind {
         ForceKind::Gravity => return gravity::central_gravity_force(scope, action, cx),
         ForceKind::Force | ForceKind::Torque => return load::load(scope, action, cx),
@@ -47,19 +51,23 @@ pub fn forces_of<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostic
         ForceKind::Friction => friction::friction_force,
         ForceKind::Attraction => gravity::attraction_force,
     };
-    let on = acted_on(scope, action, cx)?;
+    let on = length_or_angle_acted_on(scope, action, cx)?;
     forces(scope, action, on, cx)
 }
 
 /// Returns the length or the angle on which a force element acts.
-fn acted_on<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<ActedOn<'g>> {
+fn length_or_angle_acted_on<'g>(
+    scope: &Scope<'_, 'g>,
+    action: &Action,
+    cx: &mut Diagnostics,
+) -> Option<ForceElementCoordinate<'g>> {
     match &action.on {
         Target::On(e) => match resolve_target(scope, e, cx)? {
             ResolvedTarget::Coordinate(c, angle) => {
-                Some(ActedOn { stretch: None, angle, coordinate: Some(c) })
+                Some(ForceElementCoordinate { stretch: None, angle, coordinate: Some(c) })
             }
             ResolvedTarget::Expression(stretch) => {
-                Some(ActedOn { stretch: Some(stretch), angle: None, coordinate: None })
+                Some(ForceElementCoordinate { stretch: Some(stretch), angle: None, coordinate: None })
             }
             ResolvedTarget::Point(_) => {
                 let phrase = action.kind.name_with_article();
@@ -73,14 +81,14 @@ fn acted_on<'g>(scope: &Scope<'_, 'g>, action: &Action, cx: &mut Diagnostics) ->
         },
         Target::Between(a, b) => {
             let stretch = Some(distance_between_points(scope, a, b, cx)?);
-            Some(ActedOn { stretch, angle: Some(false), coordinate: None })
+            Some(ForceElementCoordinate { stretch, angle: Some(false), coordinate: None })
         }
     }
 }
 
 /// Whether an element needs positions and velocities: it acts between points or at a point of a body, or it
 /// has a force law or a value.
-fn needs_motion(action: &Action) -> bool {
+fn needs_positions_and_velocities(action: &Action) -> bool {
     let own = match action.kind {
         ForceKind::Force | ForceKind::Torque => !action.is_input(),
         ForceKind::Gravity | ForceKind::Attraction => true,

@@ -1,15 +1,15 @@
 //! Springs: linear, and with a force or an energy as an expression of the stretch.
 
 use crate::diag::Diagnostics;
-use crate::expr::diff::Derivative;
+use crate::expr::diff::DirectionalDerivative;
 use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::kinematics::symbols_in;
 use crate::language::Callable;
 use crate::mechanism::{Pose, Quantity, Spring};
 use crate::resolve::element_forces::Forces;
-use crate::resolve::scope::{Allowed, Context, Scope};
-use crate::resolve::terms::{ActedOn, Stretch};
+use crate::resolve::scope::{AllowedQuantities, Context, Scope};
+use crate::resolve::terms::{ForceElementCoordinate, Stretch};
 use crate::syntax::{self, Action, ExprKind, Key};
 use std::collections::BTreeSet;
 
@@ -30,7 +30,7 @@ pub enum SpringLaw<'e> {
 pub fn spring_force<'g>(
     scope: &Scope<'_, 'g>,
     action: &Action,
-    on: ActedOn<'g>,
+    on: ForceElementCoordinate<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let law = match action.written_law()? {
@@ -47,11 +47,11 @@ pub fn spring_force<'g>(
     let angle = on.angle;
     let stretch = on.stretch(scope)?;
     let free = free_length(scope, action, angle, cx)?;
-    spring_law(scope, stretch, &law, free, cx)
+    spring_force_of_law(scope, stretch, &law, free, cx)
 }
 
 /// Returns the force of a spring with any force law.
-pub fn spring_law<'g>(
+pub fn spring_force_of_law<'g>(
     scope: &Scope<'_, 'g>,
     stretch: Stretch<'g>,
     law: &SpringLaw<'_>,
@@ -67,27 +67,28 @@ pub fn spring_law<'g>(
     let value = length - free;
     let symbol = Quantity::Stretch.symbol();
     let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
-    let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
+    let context =
+        Context::new(AllowedQuantities::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
     let energy = match law {
         // Smooth even where the points coincide.
         SpringLaw::Linear(k) if free.is_zero() => scope.resolve_scalar(k, cx)? * 0.5 * stretch.square,
         SpringLaw::Linear(k) => scope.resolve_scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
-        SpringLaw::Energy(e) => scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?,
-        SpringLaw::Force(e) => energy_of(scope, e, &context, cx)?,
+        SpringLaw::Energy(e) => scope.call_in_context(context, |scope| scope.resolve_scalar(e, cx))?,
+        SpringLaw::Force(e) => spring_energy_of_force(scope, e, &context, cx)?,
     };
-    Some(Forces::of_potentials([substitute_symbols(energy, &|s| (s == symbol).then_some(value))]))
+    Some(Forces::forces_of_potentials([substitute_symbols(energy, &|s| (s == symbol).then_some(value))]))
 }
 
 /// Returns the energy of a force. A piecewise force with a condition on the stretch or the length has the
 /// sum of the energies of its pieces.
-fn energy_of<'g>(
+fn spring_energy_of_force<'g>(
     scope: &Scope<'_, 'g>,
     e: &syntax::Expr,
     context: &Context<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
     let read_scalar = |e: &syntax::Expr, cx: &mut Diagnostics| {
-        scope.in_context(context.clone(), |scope| scope.resolve_scalar(e, cx))
+        scope.call_in_context(context.clone(), |scope| scope.resolve_scalar(e, cx))
     };
     let force = read_scalar(e, cx)?;
     if symbols_in(&[force]).iter().any(|s| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_))) {
@@ -116,7 +117,7 @@ fn energy_of<'g>(
             let symbol = Quantity::Stretch.symbol();
             let x = scope.graph.symbol(symbol);
             let border = read_scalar(border, cx)? - (own - x);
-            let [below, above] = pieces.map(|piece| energy_of(scope, piece, context, cx));
+            let [below, above] = pieces.map(|piece| spring_energy_of_force(scope, piece, context, cx));
             let substitute_stretch =
                 |energy: Expr<'g>, x| substitute_symbols(energy, &|s| (s == symbol).then_some(x));
             let (below, above) = (below?, above?);
@@ -128,12 +129,12 @@ fn energy_of<'g>(
             );
         }
     }
-    energy_of_force(scope, force, e, cx)
+    integrate_force_over_stretch(scope, force, e, cx)
 }
 
 /// Returns the energy of a force that is a polynomial in the stretch, by integration of its Taylor
 /// series.
-fn energy_of_force<'g>(
+fn integrate_force_over_stretch<'g>(
     scope: &Scope<'_, 'g>,
     force: Expr<'g>,
     e: &syntax::Expr,
@@ -142,7 +143,7 @@ fn energy_of_force<'g>(
     let g = scope.graph;
     let symbol = Quantity::Stretch.symbol();
     let x = g.symbol(symbol);
-    let mut d = Derivative::with_respect_to(symbol, g);
+    let mut d = DirectionalDerivative::with_respect_to(symbol, g);
     let (mut energy, mut derivative, mut power, mut factorial) = (g.zero(), force, x, 1.0);
     for n in 1..=HIGHEST_POWER + 1 {
         factorial *= n as f64;
@@ -151,7 +152,7 @@ fn energy_of_force<'g>(
         power = power * x;
         derivative = d.differentiate(derivative);
         // A law with corner points is a polynomial between them.
-        if derivative.is_zero() && !has_corners(force, symbol) {
+        if derivative.is_zero() && !is_nonsmooth_in_symbol(force, symbol) {
             return Some(energy);
         }
     }
@@ -184,12 +185,12 @@ fn free_length<'g>(
             .add_help(format!("write `{key} = …`"));
         return None;
     }
-    if is_angle { scope.plane_angle(free, cx) } else { scope.resolve_scalar(free, cx) }
+    if is_angle { scope.resolve_plane_angle(free, cx) } else { scope.resolve_scalar(free, cx) }
 }
 
 /// Whether an expression contains a sign, a magnitude or an extreme of a subexpression that depends on the
 /// symbol.
-fn has_corners(e: Expr<'_>, symbol: Symbol) -> bool {
+fn is_nonsmooth_in_symbol(e: Expr<'_>, symbol: Symbol) -> bool {
     let g = e.graph();
     let mut seen = BTreeSet::from([e.id()]);
     let mut todo = vec![e.id()];

@@ -7,8 +7,8 @@
 //! sum have one unit. An argument accepts an expression of coordinates, rates and time only as a number of
 //! the unit that it needs.
 
-use super::unify::{Outcome, System};
-use super::value::{Anchor, UnitValue};
+use super::unify::{DimensionSystem, EquationOutcome};
+use super::value::{Anchor, InferredUnit};
 use crate::language::dimension::{Dimension, PLAIN, Variable};
 use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 /// Reason why two dimensions must be equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason<'a> {
+pub enum DimensionEqualityReason<'a> {
     /// The attribute `#[unit(…)]` of a parameter states the dimension.
     Unit,
     /// An argument or a field expects the dimension.
@@ -37,7 +37,7 @@ pub enum Reason<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct EquationOrigin<'a> {
     /// Reason for the equation.
-    pub reason: Reason<'a>,
+    pub reason: DimensionEqualityReason<'a>,
     /// Expression at which an error is reported: the whole operation, an argument, or a component.
     pub expression: &'a Expr,
     /// Second expression of the comparison, if there is one.
@@ -46,7 +46,7 @@ pub struct EquationOrigin<'a> {
 
 /// Equation between dimensions that contradicts earlier ones.
 #[derive(Clone, Debug)]
-pub struct Mismatch<'a> {
+pub struct DimensionMismatch<'a> {
     /// Origin of the equation.
     pub origin: EquationOrigin<'a>,
     /// Dimension of `origin.expression`, or of the second operand.
@@ -57,7 +57,7 @@ pub struct Mismatch<'a> {
 
 /// Meaning of a name for the inference of units.
 #[derive(Clone, Debug)]
-pub enum Meaning {
+pub enum UnitMeaningOfName {
     /// The name is a parameter or a definition, whose dimension is an unknown.
     Named(Variable, Anchor),
     /// The name is a coordinate or an input, whose dimension is known.
@@ -70,10 +70,10 @@ const MAX_MISMATCHES: usize = 32;
 /// State of the inference of units in a mechanism.
 pub struct Inference<'a> {
     /// Equations between dimensions that have been found so far.
-    pub system: System,
+    pub system: DimensionSystem,
     /// Meanings of the names of parameters, coordinates, inputs and definitions. The first unknowns are those
     /// of the parameters.
-    pub names: BTreeMap<String, Meaning>,
+    pub names: BTreeMap<String, UnitMeaningOfName>,
     /// Unknown dimensions of each table, by name: those of its variables, followed by that of its values.
     pub tables: BTreeMap<String, Vec<Variable>>,
     /// Local names of the current expression, such as `stretch`.
@@ -89,14 +89,14 @@ pub struct Inference<'a> {
     /// the second.
     pub plain_defaults: Vec<(Dimension, Option<Dimension>)>,
     /// Contradictions between dimensions that have been found so far.
-    pub mismatches: Vec<Mismatch<'a>>,
+    pub mismatches: Vec<DimensionMismatch<'a>>,
     /// Whether the limit on the work of the inference was exceeded.
     pub limit_exceeded: bool,
 }
 
 /// Returns the magnitudes of the numbers in the mechanism's gravity, such as 9.81.
-fn numbers_of_gravity(description: &Description) -> Vec<f64> {
-    let parts = description.gravity.iter().flat_map(Expr::subexpressions);
+fn numbers_in_gravity(description: &Description) -> Vec<f64> {
+    let parts = description.gravity.iter().flat_map(Expr::all_subexpressions);
     parts.filter_map(Expr::literal_number).map(f64::abs).filter(|g| *g > 0.0).collect()
 }
 
@@ -104,31 +104,31 @@ impl<'a> Inference<'a> {
     /// Begins the inference with the parameters and tables.
     pub fn new(description: &Description) -> Inference<'a> {
         let mut new = Inference {
-            system: System::default(),
+            system: DimensionSystem::default(),
             names: BTreeMap::new(),
             tables: BTreeMap::new(),
             locals: Vec::new(),
             origins: BTreeMap::new(),
             hints: BTreeMap::new(),
-            gravity: numbers_of_gravity(description),
+            gravity: numbers_in_gravity(description),
             plain_defaults: Vec::new(),
             mismatches: Vec::new(),
             limit_exceeded: false,
         };
         for parameter in &description.parameters {
-            new.assign_unknown(&parameter.text, Anchor::Parameter);
+            new.assign_unknown_dimension(&parameter.text, Anchor::Parameter);
         }
         for table in &description.tables {
-            let unknown = (0..=table.variables).map(|_| new.system.add_variable()).collect();
+            let unknown = (0..=table.variables).map(|_| new.system.add_unknown_dimension()).collect();
             new.tables.insert(table.name.text.clone(), unknown);
         }
         new
     }
 
     /// Assigns an unknown dimension to a name.
-    pub fn assign_unknown(&mut self, name: &str, anchor: Anchor) {
-        let v = self.system.add_variable();
-        self.names.insert(name.to_string(), Meaning::Named(v, anchor));
+    pub fn assign_unknown_dimension(&mut self, name: &str, anchor: Anchor) {
+        let v = self.system.add_unknown_dimension();
+        self.names.insert(name.to_string(), UnitMeaningOfName::Named(v, anchor));
     }
 
     /// Equates two dimensions; returns false if they contradict each other.
@@ -142,15 +142,15 @@ impl<'a> Inference<'a> {
             return true;
         }
         match self.system.equate_dimensions(found, expected) {
-            Outcome::Holds(known) => {
+            EquationOutcome::Holds(known) => {
                 for v in known {
                     self.origins.entry(v).or_insert(origin);
                 }
                 true
             }
-            Outcome::Contradicts => {
+            EquationOutcome::Contradicts => {
                 if self.mismatches.len() < MAX_MISMATCHES {
-                    self.mismatches.push(Mismatch {
+                    self.mismatches.push(DimensionMismatch {
                         origin,
                         found: found.clone(),
                         expected: expected.clone(),
@@ -158,7 +158,7 @@ impl<'a> Inference<'a> {
                 }
                 false
             }
-            Outcome::LimitExceeded => {
+            EquationOutcome::LimitExceeded => {
                 self.limit_exceeded = true;
                 true
             }
@@ -171,9 +171,9 @@ impl<'a> Inference<'a> {
     }
 
     /// Applies the defaults of plain numbers that contradict nothing, in order.
-    pub fn apply_defaults(&mut self) {
+    pub fn make_plain_numbers_dimensionless(&mut self) {
         for (wish, then) in std::mem::take(&mut self.plain_defaults) {
-            if self.system.equate_dimensions(&wish, &PLAIN) != Outcome::Contradicts
+            if self.system.equate_dimensions(&wish, &PLAIN) != EquationOutcome::Contradicts
                 && let Some(then) = then
             {
                 self.system.equate_dimensions(&then, &PLAIN);
@@ -182,48 +182,48 @@ impl<'a> Inference<'a> {
     }
 
     /// Whether two dimensions are known to be different.
-    pub fn are_different(&mut self, a: &Dimension, b: &Dimension) -> bool {
+    pub fn are_different_dimensions(&mut self, a: &Dimension, b: &Dimension) -> bool {
         let quotient = a.dimension_of_quotient(b).and_then(|quotient| self.system.resolve(&quotient));
         quotient.is_some_and(|quotient| quotient.is_known() && !quotient.is_plain())
     }
 
     /// Equates the dimension of an expression with an expected one; `unit` is its notation in this context.
-    pub fn expect_dimension(
+    pub fn equate_with_expected_dimension(
         &mut self,
         e: &'a Expr,
         dimension: &Dimension,
         unit: &str,
-        reason: Reason<'a>,
-    ) -> UnitValue {
+        reason: DimensionEqualityReason<'a>,
+    ) -> InferredUnit {
         let value = match &e.kind {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => self.value_of_sum(e, Some(dimension)),
             _ => self.value_of_expression(e),
         };
-        let UnitValue::Quantity { dimension: found, anchor } = value else { return value };
+        let InferredUnit::Quantity { dimension: found, anchor } = value else { return value };
         // An expression of coordinates may have an implicit factor of one, with any unit.
-        if anchor == Anchor::Motion && self.are_different(&found, dimension) {
-            return UnitValue::Unknown;
+        if anchor == Anchor::Motion && self.are_different_dimensions(&found, dimension) {
+            return InferredUnit::Unknown;
         }
         if !self.equate_dimensions(
             &found,
             dimension,
             EquationOrigin { reason, expression: e, compared_with: None },
         ) {
-            return UnitValue::Unknown;
+            return InferredUnit::Unknown;
         }
-        if let (Some(v), false) = (self.single_name(e), unit.is_empty()) {
+        if let (Some(v), false) = (self.unit_unknown_of_name(e), unit.is_empty()) {
             self.hints.entry(v).or_insert_with(|| unit.to_string());
         }
-        UnitValue::Quantity { dimension: found, anchor }
+        InferredUnit::Quantity { dimension: found, anchor }
     }
 
     /// Returns the unknown of an expression that is a single name.
-    fn single_name(&self, e: &Expr) -> Option<Variable> {
+    fn unit_unknown_of_name(&self, e: &Expr) -> Option<Variable> {
         let dimension = match &e.kind {
-            ExprKind::Neg(inner) => return self.single_name(inner),
+            ExprKind::Neg(inner) => return self.unit_unknown_of_name(inner),
             ExprKind::Name(name) => match self.names.get(name)? {
-                Meaning::Named(v, _) => return Some(*v),
-                Meaning::Moving(dimension, _) => dimension,
+                UnitMeaningOfName::Named(v, _) => return Some(*v),
+                UnitMeaningOfName::Moving(dimension, _) => dimension,
             },
             _ => return None,
         };

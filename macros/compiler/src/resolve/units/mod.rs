@@ -16,34 +16,35 @@ use crate::language::dimension::{self, Dimension, Variable};
 use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Units};
 use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
-use infer::{EquationOrigin, Inference, Meaning, Reason};
-use places::{DimensionedExpressions, Task};
+use infer::{DimensionEqualityReason, EquationOrigin, Inference, UnitMeaningOfName};
+use places::{DimensionedExpressions, DimensionedTask};
 use std::collections::{BTreeMap, BTreeSet};
-use value::{Anchor, UnitValue};
+use value::{Anchor, InferredUnit};
 
 /// Coordinates that expressions can name; the flag is true for an angle.
-pub type Coordinates = [(String, Coordinate, bool)];
+pub type NameableCoordinates = [(String, Coordinate, bool)];
 
 /// Infers the units of a checked description, and reports contradictions.
 pub fn infer_units(
     d: &Description,
     model: &Model<'_>,
-    coordinates: &Coordinates,
+    coordinates: &NameableCoordinates,
     cx: &mut Diagnostics,
 ) -> Units {
     let mut inference = Inference::new(d);
     let mut pinned = vec![None; d.parameters.len()];
     for (k, e) in &d.units {
         let Some((dimension, text)) = si::parse_unit(e, cx) else { continue };
-        let origin = EquationOrigin { reason: Reason::Unit, expression: e, compared_with: None };
+        let origin =
+            EquationOrigin { reason: DimensionEqualityReason::Unit, expression: e, compared_with: None };
         inference.equate_dimensions(&Dimension::unknown_dimension(*k), &dimension, origin);
         if let Some(slot) = pinned.get_mut(*k) {
             *slot = Some(text);
         }
     }
-    let definitions = assign_dimensions(d, coordinates, &mut inference);
-    let mut places = places::collect_expressions(d, &definitions, &mut inference);
-    let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.add_variable()).collect();
+    let definitions = assign_dimensions_to_names(d, coordinates, &mut inference);
+    let mut places = places::collect_dimensioned_expressions(d, &definitions, &mut inference);
+    let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.add_unknown_dimension()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
         // The expression of a diagram is a body, without a dimension. Laws of a file contain numbers with
         // units that the file does not specify.
@@ -51,7 +52,7 @@ pub fn infer_units(
             continue;
         }
         let (dimension, locals) = (Dimension::unknown_dimension(*v), Vec::new());
-        places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
+        places.tasks.push(DimensionedTask { e: &output.value, dimension, unit: "", locals });
     }
     // The rate of a state is the state per second.
     for (name, parameter) in &d.states {
@@ -65,15 +66,15 @@ pub fn infer_units(
         else {
             continue;
         };
-        places.tasks.push(Task { e: &output.value, dimension, unit: "", locals: Vec::new() });
+        places.tasks.push(DimensionedTask { e: &output.value, dimension, unit: "", locals: Vec::new() });
     }
     let sides = std::mem::take(&mut places.sides);
     solve_dimensions(places, &mut inference);
     if inference.limit_exceeded {
         inference.mismatches.clear();
     }
-    report::report_contradictions(d, &mut inference, cx);
-    inference.apply_defaults();
+    report::report_unit_contradictions(d, &mut inference, cx);
+    inference.make_plain_numbers_dimensionless();
     let mut units = Units { outputs: Vec::new(), ..state_units(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {
         units.parameters.push(
@@ -98,7 +99,9 @@ pub fn infer_units(
         units.outputs.push(match output.rank {
             Rank::FreeBody => "N, N·m".to_string(),
             _ if energy => "J".to_string(),
-            _ if output.value.place.file.is_some() => rate_unit(d, &output.name.text, &units.parameters),
+            _ if output.value.place.file.is_some() => {
+                unit_of_state_rate(d, &output.name.text, &units.parameters)
+            }
             _ => unit,
         });
     }
@@ -108,7 +111,7 @@ pub fn infer_units(
 }
 
 /// Returns the unit of the rate of a file's state.
-fn rate_unit(d: &Description, rate: &str, parameters: &[String]) -> String {
+fn unit_of_state_rate(d: &Description, rate: &str, parameters: &[String]) -> String {
     let state = d.states.iter().find(|(name, _)| format!("{}{RATE_OF_STATE}", name.text) == rate);
     match state.and_then(|(_, parameter)| parameters.get(*parameter)).map(String::as_str) {
         Some("any") | None => "any".to_string(),
@@ -118,33 +121,33 @@ fn rate_unit(d: &Description, rate: &str, parameters: &[String]) -> String {
 
 /// Assigns dimensions to coordinates, inputs and definitions. Returns the definitions, each after those that
 /// it uses.
-fn assign_dimensions<'a>(
+fn assign_dimensions_to_names<'a>(
     d: &'a Description,
-    coordinates: &Coordinates,
+    coordinates: &NameableCoordinates,
     inference: &mut Inference<'_>,
 ) -> Vec<&'a Definition> {
     for (name, _, angle) in coordinates {
         let dimension = if *angle { dimension::PLAIN } else { dimension::LENGTH };
-        inference.names.insert(name.clone(), Meaning::Moving(dimension, Anchor::Motion));
+        inference.names.insert(name.clone(), UnitMeaningOfName::Moving(dimension, Anchor::Motion));
     }
     let acting: BTreeSet<&str> = d.actions.iter().map(|action| action.name.text.as_str()).collect();
     let free = d.coordinates.iter().map(|c| &c.name);
     for name in free.chain(&d.inputs) {
-        let dimension = Dimension::unknown_dimension(inference.system.add_variable());
+        let dimension = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
         let anchor = if acting.contains(name.text.as_str()) { Anchor::Input } else { Anchor::Motion };
-        inference.names.insert(name.text.clone(), Meaning::Moving(dimension, anchor));
+        inference.names.insert(name.text.clone(), UnitMeaningOfName::Moving(dimension, anchor));
     }
     let definitions = sort_by_dependency(&d.definitions);
     for definition in &definitions {
-        let anchors = definition.value.subexpressions().into_iter().filter_map(|part| match &part.kind {
+        let anchors = definition.value.all_subexpressions().into_iter().filter_map(|part| match &part.kind {
             ExprKind::Name(name) => match inference.names.get(name)? {
-                Meaning::Named(_, anchor) | Meaning::Moving(_, anchor) => Some(*anchor),
+                UnitMeaningOfName::Named(_, anchor) | UnitMeaningOfName::Moving(_, anchor) => Some(*anchor),
             },
             ExprKind::Call(table, _) => inference.tables.get(&table.text).map(|_| Anchor::Parameter),
             _ => None,
         });
         let anchor = anchors.max().unwrap_or(Anchor::Motion);
-        inference.assign_unknown(&definition.name.text, anchor);
+        inference.assign_unknown_dimension(&definition.name.text, anchor);
     }
     definitions
 }
@@ -154,7 +157,7 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     let numbers: BTreeMap<&str, usize> =
         definitions.iter().enumerate().map(|(k, d)| (d.name.text.as_str(), k)).collect();
     let mentioned_definitions = |d: &Definition| -> BTreeSet<usize> {
-        let names = d.value.subexpressions().into_iter().filter_map(Expr::as_name);
+        let names = d.value.all_subexpressions().into_iter().filter_map(Expr::as_name);
         names.filter_map(|name| numbers.get(name).copied()).collect()
     };
     let mut missing: Vec<usize> = Vec::new();
@@ -187,23 +190,31 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
 /// Infers from all uses. Uses that determine the dimension of a single name are first; the others are then
 /// compared with them.
 fn solve_dimensions<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) {
-    let partition_simple_tasks = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
-        tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))
-    };
+    let partition_simple_tasks =
+        |tasks: Vec<DimensionedTask<'a>>| -> (Vec<DimensionedTask<'a>>, Vec<DimensionedTask<'a>>) {
+            tasks
+                .into_iter()
+                .partition(|task| task.locals.is_empty() && is_product_with_single_name(task.e, inference))
+        };
     let ((mut first, definitions), (places_first, others)) =
         (partition_simple_tasks(places.definitions), partition_simple_tasks(places.tasks));
     first.extend(places_first);
-    first.into_iter().chain(definitions).for_each(|task| solve_one(task, inference));
+    first.into_iter().chain(definitions).for_each(|task| infer_dimensions_of_task(task, inference));
     places.points.into_iter().for_each(|e| inference.infer_point(e));
-    others.into_iter().for_each(|task| solve_one(task, inference));
+    others.into_iter().for_each(|task| infer_dimensions_of_task(task, inference));
 }
 
 /// Infers dimensions from one expression and its expected dimension.
-fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
+fn infer_dimensions_of_task<'a>(task: DimensionedTask<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
-    let value = inference.expect_dimension(task.e, &task.dimension, task.unit, Reason::Place);
+    let value = inference.equate_with_expected_dimension(
+        task.e,
+        &task.dimension,
+        task.unit,
+        DimensionEqualityReason::Place,
+    );
     // A definition that is a number is plain, unless its uses require a unit.
-    if !matches!(value, UnitValue::Quantity { .. }) {
+    if !matches!(value, InferredUnit::Quantity { .. }) {
         inference.default_to_plain(task.dimension);
     }
     inference.locals.clear();
@@ -211,7 +222,7 @@ fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
 
 /// Whether an expression is a product with a single name that determines its dimension. Products with
 /// coordinates or inputs are excluded.
-fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
+fn is_product_with_single_name(e: &Expr, inference: &Inference<'_>) -> bool {
     let mut current = e;
     let mut name_count = 0;
     loop {
@@ -225,7 +236,7 @@ fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
         match factor.map(|f| &f.kind) {
             None | Some(ExprKind::Number(_) | ExprKind::Field(..)) => {}
             Some(ExprKind::Name(name)) => match inference.names.get(name) {
-                Some(Meaning::Named(_, Anchor::Motion | Anchor::Input)) => return false,
+                Some(UnitMeaningOfName::Named(_, Anchor::Motion | Anchor::Input)) => return false,
                 found => name_count += usize::from(found.is_some()),
             },
             Some(_) => return false,
@@ -250,7 +261,7 @@ fn notation_of_dimension(inference: &mut Inference<'_>, dimension: &Dimension, v
 }
 
 /// Returns the units of the entries of `q`, `v` and `u`.
-fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inference<'_>) -> Units {
+fn state_units(model: &Model<'_>, coordinates: &NameableCoordinates, inference: &mut Inference<'_>) -> Units {
     let mut units = Units::default();
     let (q, v) = (&mut units.configuration, &mut units.velocities);
     let push_repeated_unit =
@@ -270,7 +281,7 @@ fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inf
             Chart::Plain(k, _) => {
                 let angle = coordinates.iter().find(|(_, c, _)| c.q == k).is_some_and(|(.., angle)| *angle);
                 let (unit, rate) = match inference.names.get(model.configuration.get(k.0).map_or("", |n| n)) {
-                    Some(Meaning::Moving(dimension, _)) if !angle => {
+                    Some(UnitMeaningOfName::Moving(dimension, _)) if !angle => {
                         coordinate_units(dimension.clone(), inference)
                     }
                     _ => ("rad".to_string(), "rad/s".to_string()),
@@ -282,10 +293,10 @@ fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inf
     }
     for k in model.speeds.iter().flat_map(|speeds| &speeds.replaced) {
         let name = model.velocities.get(k.0).map_or("", |(name, _)| name);
-        if let (Some(Meaning::Named(v, _)), Some(unit)) =
+        if let (Some(UnitMeaningOfName::Named(v, _)), Some(unit)) =
             (inference.names.get(name), units.velocities.get_mut(k.0))
         {
-            *unit = speed_unit(*v, inference);
+            *unit = generalized_speed_unit(*v, inference);
         }
     }
     for (name, input) in &model.inputs {
@@ -294,7 +305,7 @@ fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inf
             continue;
         }
         let dimension = match inference.names.get(name) {
-            Some(Meaning::Moving(dimension, _)) => dimension.clone(),
+            Some(UnitMeaningOfName::Moving(dimension, _)) => dimension.clone(),
             _ => dimension::PLAIN,
         };
         units.inputs.push(input_unit(&dimension, inference));
@@ -320,7 +331,7 @@ fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (Str
 }
 
 /// Returns the unit of a generalized speed as text.
-fn speed_unit(v: Variable, inference: &mut Inference<'_>) -> String {
+fn generalized_speed_unit(v: Variable, inference: &mut Inference<'_>) -> String {
     let dimension = Dimension::unknown_dimension(v);
     match inference.system.resolve(&dimension) {
         Some(known) if known == dimension::RATE && !inference.limit_exceeded => "rad/s".to_string(),

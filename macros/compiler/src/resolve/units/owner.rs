@@ -5,10 +5,10 @@ use crate::syntax::{Callee, Description, Expr, ExprKind, Target};
 
 /// Returns the argument and the field that contain an expression, as in ``in `com` of `arm` ``; empty if
 /// unknown.
-pub fn location_of(d: &Description, e: &Expr) -> String {
+pub fn location_text_of_expression(d: &Description, e: &Expr) -> String {
     let contains_expression =
-        |whole: &&Expr| whole.subexpressions().into_iter().any(|part| std::ptr::eq(part, e));
-    let found = owned_expressions(d).into_iter().find(|(.., whole)| contains_expression(whole));
+        |whole: &&Expr| whole.all_subexpressions().into_iter().any(|part| std::ptr::eq(part, e));
+    let found = expressions_with_owners(d).into_iter().find(|(.., whole)| contains_expression(whole));
     match found {
         Some(("", field, _)) => format!(" in `{field}`"),
         Some((argument, field, _)) => format!(" in `{argument}` of `{field}`"),
@@ -17,23 +17,23 @@ pub fn location_of(d: &Description, e: &Expr) -> String {
 }
 
 /// Returns the solid that has an expression as an argument, with its syntax.
-pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> {
+pub fn solid_with_argument<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> {
     let inertias = d.bodies.iter().filter_map(|body| body.inertia.as_ref());
-    inertias.flat_map(Expr::subexpressions).find_map(|call| {
+    inertias.flat_map(Expr::all_subexpressions).find_map(|call| {
         let ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) = &call.kind else {
             return None;
         };
         let holds =
-            arguments.iter().any(|a| a.subexpressions().into_iter().any(|part| std::ptr::eq(part, e)));
+            arguments.iter().any(|a| a.all_subexpressions().into_iter().any(|part| std::ptr::eq(part, e)));
         holds.then(|| (call, solid.usage_syntax()))
     })
 }
 
-type OwnedExpressions<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
+type ExpressionsWithOwners<'a> = Vec<(&'static str, &'a str, &'a Expr)>;
 
 /// Returns every expression of a description with the argument and the field in which it is written.
-fn owned_expressions(d: &Description) -> OwnedExpressions<'_> {
-    let mut all: OwnedExpressions<'_> = Vec::new();
+fn expressions_with_owners(d: &Description) -> ExpressionsWithOwners<'_> {
+    let mut all: ExpressionsWithOwners<'_> = Vec::new();
     all.extend(d.gravity.iter().map(|e| ("gravity", d.name.text.as_str(), e)));
     for (k, unit) in &d.units {
         all.extend(d.parameters.get(*k).map(|p| ("unit", p.text.as_str(), unit)));

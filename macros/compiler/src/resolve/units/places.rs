@@ -1,12 +1,12 @@
 //! Expressions of a description, each with the expected dimension of its argument or field.
 
-use super::infer::{EquationOrigin, Inference, Meaning, Reason};
-use super::value::UnitValue;
+use super::infer::{DimensionEqualityReason, EquationOrigin, Inference, UnitMeaningOfName};
+use super::value::InferredUnit;
 use crate::language::dimension::{
     ACCELERATION, Dimension, ENERGY, INERTIA, LENGTH, MASS, PLAIN, POWER, TIME,
 };
 use crate::language::ratio::Ratio;
-use crate::language::{Argument, ArgumentKind, ArgumentQuantity, Callable, Key, Locals, Method};
+use crate::language::{Argument, ArgumentKind, ArgumentQuantity, Callable, ForceLawVariables, Key, Method};
 use crate::resolve::contact::TERRAIN_COORDINATES;
 use crate::syntax::contact::collision_link;
 use crate::syntax::{
@@ -15,7 +15,7 @@ use crate::syntax::{
 };
 
 /// Expression whose dimension is known from its context.
-pub struct Task<'a> {
+pub struct DimensionedTask<'a> {
     /// Expression whose subexpressions are to be inferred.
     pub e: &'a Expr,
     /// Dimension that the context requires.
@@ -29,9 +29,9 @@ pub struct Task<'a> {
 /// All expressions of a description, with their expected dimensions.
 pub struct DimensionedExpressions<'a> {
     /// Definitions, each after the definitions that it uses.
-    pub definitions: Vec<Task<'a>>,
+    pub definitions: Vec<DimensionedTask<'a>>,
     /// All other expressions with expected dimensions.
-    pub tasks: Vec<Task<'a>>,
+    pub tasks: Vec<DimensionedTask<'a>>,
     /// Ends of force elements, which may be given by vectors.
     pub points: Vec<&'a Expr>,
     /// Dimension of both sides of each declared constraint, by index; unused for pairs of surfaces.
@@ -65,7 +65,7 @@ impl Work {
 
 /// Collects the expressions of a description, with its sorted `definitions`. Elements of a file are skipped,
 /// because all their values are numbers.
-pub fn collect_expressions<'a>(
+pub fn collect_dimensioned_expressions<'a>(
     d: &'a Description,
     definitions: &[&'a Definition],
     inference: &mut Inference<'a>,
@@ -78,25 +78,29 @@ pub fn collect_expressions<'a>(
     };
     // Definitions have unknowns of their own, assigned to their names.
     for definition in definitions {
-        if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
+        if let Some(UnitMeaningOfName::Named(v, _)) = inference.names.get(&definition.name.text) {
             places.add(&definition.value, &Dimension::unknown_dimension(*v), "");
         }
     }
     places.definitions = std::mem::take(&mut places.tasks);
-    places.add_all(&d.gravity, &ACCELERATION, "m/s²");
-    places.add_all(&d.friction_speed, &Dimension::unknown_dimension(inference.system.add_variable()), "");
+    places.add_all_with_dimension(&d.gravity, &ACCELERATION, "m/s²");
+    places.add_all_with_dimension(
+        &d.friction_speed,
+        &Dimension::unknown_dimension(inference.system.add_unknown_dimension()),
+        "",
+    );
     d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.add_body(b));
     for particle in &d.particles {
         places.add(&particle.mass, &MASS, "kg");
-        particle.at.iter().for_each(|at| places.add_position(at));
+        particle.at.iter().for_each(|at| places.add_expressions_of_position(at));
     }
     d.joints.iter().filter(|j| j.name.place.file.is_none()).for_each(|j| places.add_joint(j));
     for frame in &d.frames {
-        places.add_rotations(&frame.rotations);
+        places.add_expressions_of_rotations(&frame.rotations);
     }
     for point in &d.points {
         places.points.extend(&point.on);
-        places.add_all(&point.at, &LENGTH, "m");
+        places.add_all_with_dimension(&point.at, &LENGTH, "m");
     }
     for action in &d.actions {
         places.add_action(action, inference);
@@ -106,13 +110,13 @@ pub fn collect_expressions<'a>(
         places.add_value_at_rest(place, value, inference);
     }
     for constraint in &d.constraints {
-        places.add_constraint(constraint, inference);
+        places.add_constraint_sides(constraint, inference);
     }
     for contact in &d.contacts {
-        places.add_surface(&contact.first);
-        places.add_surface(&contact.second);
+        places.add_expressions_of_surface(&contact.first);
+        places.add_expressions_of_surface(&contact.second);
         if let Some(work) = Work::new(LENGTH) {
-            places.add_written(&contact.arguments, &work, Locals::None);
+            places.add_written_arguments(&contact.arguments, &work, ForceLawVariables::None);
         }
     }
     for (_, e) in &d.energies {
@@ -126,15 +130,20 @@ pub fn collect_expressions<'a>(
 
 impl<'a> DimensionedExpressions<'a> {
     fn add(&mut self, e: &'a Expr, dimension: &Dimension, unit: &'static str) {
-        self.tasks.push(Task { e, dimension: dimension.clone(), unit, locals: Vec::new() });
+        self.tasks.push(DimensionedTask { e, dimension: dimension.clone(), unit, locals: Vec::new() });
     }
 
-    fn add_all(&mut self, e: impl IntoIterator<Item = &'a Expr>, dimension: &Dimension, unit: &'static str) {
+    fn add_all_with_dimension(
+        &mut self,
+        e: impl IntoIterator<Item = &'a Expr>,
+        dimension: &Dimension,
+        unit: &'static str,
+    ) {
         e.into_iter().for_each(|e| self.add(e, dimension, unit));
     }
 
     /// Adds the arguments of a solid, a surface or a rotation.
-    fn add_arguments(&mut self, written: &'a [Expr], arguments: &[Argument]) {
+    fn add_expected_argument_dimensions(&mut self, written: &'a [Expr], arguments: &[Argument]) {
         for (e, argument) in written.iter().zip(arguments) {
             if let Some((dimension, unit)) = argument.kind.dimension_and_unit() {
                 self.add(e, &dimension, unit);
@@ -143,48 +152,48 @@ impl<'a> DimensionedExpressions<'a> {
     }
 
     fn add_body(&mut self, body: &'a Body) {
-        self.add_all(&body.mass, &MASS, "kg");
-        self.add_all(body.com.iter().chain(&body.about), &LENGTH, "m");
-        body.inertia.iter().for_each(|e| self.add_inertia(e));
-        body.at.iter().for_each(|e| self.add_position(e));
+        self.add_all_with_dimension(&body.mass, &MASS, "kg");
+        self.add_all_with_dimension(body.com.iter().chain(&body.about), &LENGTH, "m");
+        body.inertia.iter().for_each(|e| self.add_inertia_expressions(e));
+        body.at.iter().for_each(|e| self.add_expressions_of_position(e));
     }
 
     /// Adds the expressions of an inertia, such as `rod(m, l, y).rotated(…) + [[…], …]`.
-    fn add_inertia(&mut self, e: &'a Expr) {
+    fn add_inertia_expressions(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Array(rows) => {
                 for row in rows {
                     if let ExprKind::Array(entries) = &row.kind {
-                        self.add_all(entries, &INERTIA, "kg·m²");
+                        self.add_all_with_dimension(entries, &INERTIA, "kg·m²");
                     }
                 }
             }
             ExprKind::Binary(_, a, b, _) => {
-                self.add_inertia(a);
-                self.add_inertia(b);
+                self.add_inertia_expressions(a);
+                self.add_inertia_expressions(b);
             }
             ExprKind::Method(inner, _, steps) => {
-                self.add_inertia(inner);
-                self.add_rotations(steps);
+                self.add_inertia_expressions(inner);
+                self.add_expressions_of_rotations(steps);
             }
             ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
-                self.add_arguments(arguments, solid.row().arguments);
+                self.add_expected_argument_dimensions(arguments, solid.row().arguments);
             }
             _ => {}
         }
     }
 
     /// Adds the arguments of rotations `z(angle)`, `eigenaxis(n, angle)`, or a matrix, with their dimensions.
-    fn add_rotations(&mut self, steps: &'a [Expr]) {
+    fn add_expressions_of_rotations(&mut self, steps: &'a [Expr]) {
         for step in steps {
             match &step.kind {
                 ExprKind::Call(Callee { id: Some(Callable::Rotation(rotation)), .. }, arguments) => {
-                    self.add_arguments(arguments, rotation.row().arguments);
+                    self.add_expected_argument_dimensions(arguments, rotation.row().arguments);
                 }
                 ExprKind::Array(rows) => {
                     for row in rows {
                         if let ExprKind::Array(entries) = &row.kind {
-                            self.add_all(entries, &PLAIN, "1");
+                            self.add_all_with_dimension(entries, &PLAIN, "1");
                         }
                     }
                 }
@@ -195,7 +204,7 @@ impl<'a> DimensionedExpressions<'a> {
 
     /// Adds the expressions of a position: the name of an element, `place.at(vector)`, or a vector from the
     /// ground's origin.
-    fn add_position(&mut self, e: &'a Expr) {
+    fn add_expressions_of_position(&mut self, e: &'a Expr) {
         match &e.kind {
             ExprKind::Method(..) => self.points.push(e),
             // The name of an element has no dimension.
@@ -203,17 +212,17 @@ impl<'a> DimensionedExpressions<'a> {
         }
     }
 
-    fn add_endpoint(&mut self, end: &'a Endpoint) {
-        self.add_all(&end.at, &LENGTH, "m");
-        self.add_rotations(&end.rotated);
+    fn add_endpoint_expressions(&mut self, end: &'a Endpoint) {
+        self.add_all_with_dimension(&end.at, &LENGTH, "m");
+        self.add_expressions_of_rotations(&end.rotated);
     }
 
     fn add_joint(&mut self, joint: &'a Joint) {
-        self.add_endpoint(&joint.parent);
-        self.add_endpoint(&joint.child);
-        self.add_all(joint.about.iter().chain(&joint.along), &PLAIN, "1");
-        self.add_all(&joint.pitch, &LENGTH, "m/rad");
-        self.add_all(&joint.lead, &LENGTH, "m");
+        self.add_endpoint_expressions(&joint.parent);
+        self.add_endpoint_expressions(&joint.child);
+        self.add_all_with_dimension(joint.about.iter().chain(&joint.along), &PLAIN, "1");
+        self.add_all_with_dimension(&joint.pitch, &LENGTH, "m/rad");
+        self.add_all_with_dimension(&joint.lead, &LENGTH, "m");
     }
 
     fn add_action(&mut self, action: &'a Action, inference: &mut Inference<'a>) {
@@ -227,7 +236,7 @@ impl<'a> DimensionedExpressions<'a> {
                 match &e.kind {
                     _ if coordinate.is_some() => coordinate,
                     ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
-                        let unknown = Dimension::unknown_dimension(inference.system.add_variable());
+                        let unknown = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
                         self.add(e, &unknown, "");
                         Some(unknown)
                     }
@@ -245,7 +254,7 @@ impl<'a> DimensionedExpressions<'a> {
         if on_point && row.torque {
             work = Work { force: ENERGY, units: ANGULAR_UNITS, ..work };
         }
-        self.add_written(&action.arguments, &work, row.locals);
+        self.add_written_arguments(&action.arguments, &work, row.locals);
         if action.is_input() {
             let is_direction = |key: &Key| matches!(key.row().quantity, ArgumentQuantity::Direction);
             let direction = action.arguments.iter().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
@@ -255,12 +264,12 @@ impl<'a> DimensionedExpressions<'a> {
 
     fn add_limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
         let q = coordinate_dimension(&limit.on, inference).unwrap_or_else(|| {
-            let unknown = Dimension::unknown_dimension(inference.system.add_variable());
+            let unknown = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
             self.add(&limit.on, &unknown, "");
             unknown
         });
         if let Some(work) = Work::new(q) {
-            self.add_written(&limit.arguments, &work, Locals::None);
+            self.add_written_arguments(&limit.arguments, &work, ForceLawVariables::None);
         }
     }
 
@@ -269,14 +278,19 @@ impl<'a> DimensionedExpressions<'a> {
         if let Some(known) = coordinate_dimension(place, inference) {
             self.add(value, &known, if known.is_plain() { "rad" } else { "" });
         } else if place.as_name().is_some() {
-            let unknown = Dimension::unknown_dimension(inference.system.add_variable());
+            let unknown = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
             self.add(place, &unknown, "");
             self.add(value, &unknown, "");
         }
     }
 
     /// Adds the written arguments of an element with their dimensions.
-    fn add_written(&mut self, written: &'a WrittenArguments, work: &Work, locals: Locals) {
+    fn add_written_arguments(
+        &mut self,
+        written: &'a WrittenArguments,
+        work: &Work,
+        locals: ForceLawVariables,
+    ) {
         let [force, stiffness, damping, inertance, coordinate, speed] = work.units;
         let q = &work.coordinate;
         let force_unit_per_coordinate = |times: i64| {
@@ -304,37 +318,37 @@ impl<'a> DimensionedExpressions<'a> {
             let Some(dimension) = dimension else { continue };
             // Coefficients are not expressions of the stretch or the speed.
             let locals = match (locals, key) {
-                (Locals::Stretch, Key::Force | Key::Energy) => {
+                (ForceLawVariables::Stretch, Key::Force | Key::Energy) => {
                     vec![("stretch", q.clone()), ("length", q.clone())]
                 }
-                (Locals::Speed, Key::Force | Key::Energy) => {
+                (ForceLawVariables::Speed, Key::Force | Key::Energy) => {
                     q.dimension_of_quotient(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
                 }
                 _ => Vec::new(),
             };
             let e = if key == Key::Restitution { restitution_coefficient(e).0 } else { e };
-            self.tasks.push(Task { e, dimension, unit, locals });
+            self.tasks.push(DimensionedTask { e, dimension, unit, locals });
         }
     }
 
     /// Adds both sides of a constraint, which have the same dimension. Surfaces have arguments of their own.
-    fn add_constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
-        let side = Dimension::unknown_dimension(inference.system.add_variable());
+    fn add_constraint_sides(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
+        let side = Dimension::unknown_dimension(inference.system.add_unknown_dimension());
         self.sides.push(side.clone());
         if constraint.kind.surface_pair_function().is_none() {
             self.add(&constraint.value, &side, "");
-            self.add_all(&constraint.other, &side, "");
+            self.add_all_with_dimension(&constraint.other, &side, "");
             return;
         }
         if let Some(work) = Work::new(LENGTH) {
-            self.add_written(&constraint.arguments, &work, Locals::None);
+            self.add_written_arguments(&constraint.arguments, &work, ForceLawVariables::None);
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };
-        pair.iter().for_each(|surface| self.add_surface(surface));
+        pair.iter().for_each(|surface| self.add_expressions_of_surface(surface));
     }
 
     /// Adds the arguments of a surface of a body, or of a point, with their dimensions.
-    fn add_surface(&mut self, surface: &'a Expr) {
+    fn add_expressions_of_surface(&mut self, surface: &'a Expr) {
         if let Some(link) = collision_link(surface) {
             self.points.extend(link);
             return;
@@ -349,14 +363,14 @@ impl<'a> DimensionedExpressions<'a> {
             if let (ArgumentKind::Points, ExprKind::Array(points) | ExprKind::Tuple(points)) =
                 (argument.kind, &e.kind)
             {
-                self.add_all(points, &LENGTH, "m");
+                self.add_all_with_dimension(points, &LENGTH, "m");
             }
             let Some((dimension, unit)) = argument.kind.dimension_and_unit() else { continue };
             let locals = match argument.kind {
                 ArgumentKind::Height => TERRAIN_COORDINATES.map(|name| (name, LENGTH.clone())).into(),
                 _ => Vec::new(),
             };
-            self.tasks.push(Task { e, dimension, unit, locals });
+            self.tasks.push(DimensionedTask { e, dimension, unit, locals });
         }
     }
 }
@@ -369,10 +383,12 @@ fn set_input_unit<'a>(
     force: &Dimension,
     inference: &mut Inference<'a>,
 ) {
-    let Some(Meaning::Moving(input, _)) = inference.names.get(&action.name.text).cloned() else { return };
+    let Some(UnitMeaningOfName::Moving(input, _)) = inference.names.get(&action.name.text).cloned() else {
+        return;
+    };
     let (Target::On(on) | Target::Between(on, _)) = &action.on;
     let (at, product) = match direction.map(|e| (e, inference.value_of_expression(e))) {
-        Some((at, UnitValue::Quantity { dimension, .. })) => {
+        Some((at, InferredUnit::Quantity { dimension, .. })) => {
             inference.default_to_plain(dimension.clone());
             (at, input.dimension_of_product(&dimension))
         }
@@ -382,7 +398,7 @@ fn set_input_unit<'a>(
         inference.equate_dimensions(
             &product,
             force,
-            EquationOrigin { reason: Reason::Place, expression: at, compared_with: None },
+            EquationOrigin { reason: DimensionEqualityReason::Place, expression: at, compared_with: None },
         );
     }
 }
@@ -398,8 +414,8 @@ fn coordinate_dimension(e: &Expr, inference: &Inference<'_>) -> Option<Dimension
         _ => None,
     };
     match meaning {
-        Some(Meaning::Moving(dimension, _)) => Some(dimension.clone()),
-        Some(Meaning::Named(v, _)) => Some(Dimension::unknown_dimension(*v)),
+        Some(UnitMeaningOfName::Moving(dimension, _)) => Some(dimension.clone()),
+        Some(UnitMeaningOfName::Named(v, _)) => Some(Dimension::unknown_dimension(*v)),
         None => None,
     }
 }

@@ -1,7 +1,9 @@
 //! Errors for contradictory units: one error per cause, with the other uses in notes.
 
-use super::infer::{EquationOrigin, Inference, Meaning, Mismatch, Reason};
-use super::owner::{location_of, solid_of};
+use super::infer::{
+    DimensionEqualityReason, DimensionMismatch, EquationOrigin, Inference, UnitMeaningOfName,
+};
+use super::owner::{location_text_of_expression, solid_with_argument};
 use super::si::describe_dimension;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::language::Builtin;
@@ -13,17 +15,17 @@ const MAX_PLACES: usize = 2;
 
 /// Reports the contradictions. Each parameter, and each solid with its arguments, is reported once, because
 /// further contradictions most likely have the same cause.
-pub fn report_contradictions(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
+pub fn report_unit_contradictions(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     let mut solids: Vec<&Expr> = Vec::new();
     for mismatch in std::mem::take(&mut inference.mismatches) {
         let mut names = Vec::new();
-        names_of(&mismatch.origin, inference, &mut names);
+        collect_names_of_equation(&mismatch.origin, inference, &mut names);
         if names.iter().any(|(v, _)| shown.contains(v)) {
             continue;
         }
         shown.extend(names.iter().map(|(v, _)| *v));
-        let solid = solid_of(d, mismatch.origin.expression);
+        let solid = solid_with_argument(d, mismatch.origin.expression);
         if let Some((call, _)) = &solid {
             if solids.iter().any(|known| std::ptr::eq(*known, *call)) {
                 continue;
@@ -31,17 +33,17 @@ pub fn report_contradictions(d: &Description, inference: &mut Inference<'_>, cx:
             solids.push(call);
         }
         let error = match names.as_slice() {
-            [(v, e)] => parameter_error(d, &mismatch, *v, e, inference),
+            [(v, e)] => parameter_dimension_conflict(d, &mismatch, *v, e, inference),
             _ => None,
         };
         let error = error.or_else(|| mismatch_error(d, &mismatch, &names, inference));
         if let Some(mut error) = error {
             if let Some((_, written)) = solid {
                 error.add_help(format!("write `{written}`"));
-            } else if error.is_bare() {
-                error.add_help(missing_factor_help(d, &names));
+            } else if error.has_no_help() {
+                error.add_help(help_for_unclear_units(d, &names));
             }
-            if !names.is_empty() && has_number_as_factor(mismatch.origin.expression) {
+            if !names.is_empty() && contains_product_with_number(mismatch.origin.expression) {
                 error.add_help(NUMBER_WITH_UNIT);
             }
             cx.add(error);
@@ -54,17 +56,19 @@ const NUMBER_WITH_UNIT: &str = "a number next to a parameter is dimensionless; a
                                 parameter or a definition: `#[define(9.81)] g: Scalar`";
 
 /// Whether an expression contains a product or quotient with a number.
-fn has_number_as_factor(e: &Expr) -> bool {
-    e.subexpressions().into_iter().any(|part| match &part.kind {
-        ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, a, b, _) => is_number(a) || is_number(b),
+fn contains_product_with_number(e: &Expr) -> bool {
+    e.all_subexpressions().into_iter().any(|part| match &part.kind {
+        ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, a, b, _) => {
+            has_no_names_but_pi(a) || has_no_names_but_pi(b)
+        }
         _ => false,
     })
 }
 
 /// Whether an expression contains no name except pi.
-fn is_number(e: &Expr) -> bool {
-    e.subexpressions().into_iter().all(|part| match &part.kind {
-        ExprKind::Name(name) => Builtin::of_name(name) == Some(Builtin::Pi),
+fn has_no_names_but_pi(e: &Expr) -> bool {
+    e.all_subexpressions().into_iter().all(|part| match &part.kind {
+        ExprKind::Name(name) => Builtin::find_by_name(name) == Some(Builtin::Pi),
         ExprKind::Number(_) | ExprKind::Neg(_) | ExprKind::Binary(..) | ExprKind::Call(..) => true,
         ExprKind::Field(..)
         | ExprKind::Method(..)
@@ -75,12 +79,13 @@ fn is_number(e: &Expr) -> bool {
 }
 
 /// Returns the help if it is unclear which quantity is wrong; mentions the definitions among them.
-fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
-    let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
+fn help_for_unclear_units(d: &Description, names: &[(Variable, &Expr)]) -> String {
+    let is_definition_name =
+        |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
     let defined: Vec<String> = names
         .iter()
         .map(|(_, e)| text_of_name(e))
-        .filter(is_defined)
+        .filter(is_definition_name)
         .map(|name| format!("`{name}`"))
         .collect();
     let other_places = match defined.split_last() {
@@ -95,30 +100,36 @@ fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
 }
 
 /// Collects the names in the expressions of an equation; the compared expressions are first.
-fn names_of<'a>(
+fn collect_names_of_equation<'a>(
     origin: &EquationOrigin<'a>,
     inference: &Inference<'_>,
     found: &mut Vec<(Variable, &'a Expr)>,
 ) {
-    origin.compared_with.iter().for_each(|e| names_in(e, inference, found));
-    if let (ExprKind::Binary(_, left, right, _), Reason::Sum(_)) = (&origin.expression.kind, origin.reason) {
+    origin.compared_with.iter().for_each(|e| collect_parameters_and_definitions(e, inference, found));
+    if let (ExprKind::Binary(_, left, right, _), DimensionEqualityReason::Sum(_)) =
+        (&origin.expression.kind, origin.reason)
+    {
         let before = match &left.kind {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, _, before, _) => before,
             _ => left,
         };
-        names_in(before, inference, found);
-        names_in(right, inference, found);
+        collect_parameters_and_definitions(before, inference, found);
+        collect_parameters_and_definitions(right, inference, found);
     }
-    names_in(origin.expression, inference, found);
+    collect_parameters_and_definitions(origin.expression, inference, found);
 }
 
 /// Collects the parameters and definitions in an expression, each at its first occurrence.
-fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
-    let mut inner = |e: &'a Expr| names_in(e, inference, found);
+fn collect_parameters_and_definitions<'a>(
+    e: &'a Expr,
+    inference: &Inference<'_>,
+    found: &mut Vec<(Variable, &'a Expr)>,
+) {
+    let mut inner = |e: &'a Expr| collect_parameters_and_definitions(e, inference, found);
     match &e.kind {
         ExprKind::Number(_) | ExprKind::Text(_) => {}
         ExprKind::Name(name) => {
-            if let Some(Meaning::Named(v, _)) = inference.names.get(name)
+            if let Some(UnitMeaningOfName::Named(v, _)) = inference.names.get(name)
                 && found.iter().all(|(known, _)| known != v)
             {
                 found.push((*v, e));
@@ -140,9 +151,9 @@ fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variabl
 }
 
 /// Returns the error for a parameter that would need two dimensions.
-fn parameter_error(
+fn parameter_dimension_conflict(
     d: &Description,
-    mismatch: &Mismatch<'_>,
+    mismatch: &DimensionMismatch<'_>,
     v: Variable,
     here: &Expr,
     inference: &mut Inference<'_>,
@@ -155,22 +166,22 @@ fn parameter_error(
     let power = mismatch
         .found
         .exponent_of_variable(v)
-        .checked_sum(mismatch.expected.exponent_of_variable(v).negated())?;
+        .checked_sum(mismatch.expected.exponent_of_variable(v).negative_ratio())?;
     let needed = is.times_power(&expected.dimension_of_quotient(&found)?, power.inverse()?)?;
     let first = inference.origins.get(&v).copied()?;
     if !is.is_known() || !needed.is_known() {
         return None;
     }
     let (is, needed) = (describe_dimension(&is), describe_dimension(&needed));
-    if first.reason == Reason::Unit {
+    if first.reason == DimensionEqualityReason::Unit {
         let message = format!("`{name}` is declared as {is}, but used as {needed}");
         let mut error = Diagnostic::new(first.expression.place.clone(), message);
-        error.add_note(format!("it is {needed}{}", location_of(d, here)));
+        error.add_note(format!("it is {needed}{}", location_text_of_expression(d, here)));
         return Some(error);
     }
     let mut error =
         Diagnostic::new(here.place.clone(), format!("`{name}` is {needed} here, but {is} elsewhere"));
-    note_origin(d, here, v, &is, first, inference, &mut error);
+    add_unit_origin_note(d, here, v, &is, first, inference, &mut error);
     Some(error)
 }
 
@@ -178,7 +189,7 @@ fn parameter_error(
 /// unit.
 fn mismatch_error(
     d: &Description,
-    mismatch: &Mismatch<'_>,
+    mismatch: &DimensionMismatch<'_>,
     names: &[(Variable, &Expr)],
     inference: &mut Inference<'_>,
 ) -> Option<Diagnostic> {
@@ -186,7 +197,7 @@ fn mismatch_error(
         (inference.system.resolve(&mismatch.found), inference.system.resolve(&mismatch.expected));
     let (found, expected) = (found?, expected?);
     let place = match (&mismatch.origin.expression.kind, mismatch.origin.reason) {
-        (ExprKind::Binary(.., operator), Reason::Sum(_)) => operator,
+        (ExprKind::Binary(.., operator), DimensionEqualityReason::Sum(_)) => operator,
         _ => &mismatch.origin.expression.place,
     };
     let mut diagnostic = Diagnostic::new(place.clone(), mismatch_message(mismatch, &found, &expected));
@@ -199,14 +210,14 @@ fn mismatch_error(
     for (v, e) in names.iter().take(MAX_PLACES) {
         let is = inference.system.resolve(&Dimension::unknown_dimension(*v)).filter(Dimension::is_known);
         if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
-            note_origin(d, e, *v, &describe_dimension(&is), origin, inference, &mut diagnostic);
+            add_unit_origin_note(d, e, *v, &describe_dimension(&is), origin, inference, &mut diagnostic);
         }
     }
     Some(diagnostic)
 }
 
 /// Adds a note on the use that determined the dimension of a parameter or a definition.
-fn note_origin(
+fn add_unit_origin_note(
     d: &Description,
     here: &Expr,
     v: Variable,
@@ -216,11 +227,12 @@ fn note_origin(
     diagnostic: &mut Diagnostic,
 ) {
     let mut names = Vec::new();
-    names_of(&origin, inference, &mut names);
+    collect_names_of_equation(&origin, inference, &mut names);
     let name = text_of_name(here);
     match names.iter().find(|(known, _)| *known == v) {
-        Some((_, e)) => diagnostic.add_note(format!("`{name}` is {is}{}", location_of(d, e))),
-        None => diagnostic.add_note(format!("`{name}` becomes {is}{}", location_of(d, origin.expression))),
+        Some((_, e)) => diagnostic.add_note(format!("`{name}` is {is}{}", location_text_of_expression(d, e))),
+        None => diagnostic
+            .add_note(format!("`{name}` becomes {is}{}", location_text_of_expression(d, origin.expression))),
     };
 }
 
@@ -229,7 +241,7 @@ fn text_of_name(e: &Expr) -> &str {
     if let ExprKind::Name(name) = &e.kind { name } else { "" }
 }
 
-fn mismatch_message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> String {
+fn mismatch_message(mismatch: &DimensionMismatch<'_>, found: &Dimension, expected: &Dimension) -> String {
     let reason = mismatch.origin.reason;
     if !found.is_known() || !expected.is_known() {
         let factor = found
@@ -237,18 +249,26 @@ fn mismatch_message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimen
             .filter(Dimension::is_known)
             .map_or(String::new(), |d| format!(": they differ by {}", super::si::unit_of_dimension(&d)));
         return match reason {
-            Reason::Sum(_) => format!("these terms cannot have one unit{factor}"),
+            DimensionEqualityReason::Sum(_) => format!("these terms cannot have one unit{factor}"),
             _ => format!("this cannot have the unit that is needed here{factor}"),
         };
     }
     let (found, expected) = (describe_dimension(found), describe_dimension(expected));
     match reason {
-        Reason::Sum(BinaryOp::Sub) => format!("{found} cannot be subtracted from {expected}"),
-        Reason::Sum(_) => format!("{found} cannot be added to {expected}"),
-        Reason::Components => format!("this component is {found}, but another is {expected}"),
-        Reason::Pieces => format!("this piece is {found}, but the other is {expected}"),
-        Reason::Compared(function) => format!("`{function}` cannot compare {expected} with {found}"),
-        Reason::Argument => format!("expected a plain number or an angle, found {found}"),
-        Reason::Unit | Reason::Place => format!("expected {expected}, found {found}"),
+        DimensionEqualityReason::Sum(BinaryOp::Sub) => {
+            format!("{found} cannot be subtracted from {expected}")
+        }
+        DimensionEqualityReason::Sum(_) => format!("{found} cannot be added to {expected}"),
+        DimensionEqualityReason::Components => {
+            format!("this component is {found}, but another is {expected}")
+        }
+        DimensionEqualityReason::Pieces => format!("this piece is {found}, but the other is {expected}"),
+        DimensionEqualityReason::Compared(function) => {
+            format!("`{function}` cannot compare {expected} with {found}")
+        }
+        DimensionEqualityReason::Argument => format!("expected a plain number or an angle, found {found}"),
+        DimensionEqualityReason::Unit | DimensionEqualityReason::Place => {
+            format!("expected {expected}, found {found}")
+        }
     }
 }

@@ -97,11 +97,11 @@ pub fn unit_of_dimension(dimension: &Dimension) -> String {
         return (*unit).to_string();
     }
     let [length, mass, time] = dimension.base;
-    format_powers(&[("kg", mass), ("m", length), ("s", time)])
+    format_unit_powers(&[("kg", mass), ("m", length), ("s", time)])
 }
 
 /// Formats powers of units as a fraction: `kg·m²/s`, `m³/(kg·s²)`.
-fn format_powers(powers: &[(&str, Ratio)]) -> String {
+fn format_unit_powers(powers: &[(&str, Ratio)]) -> String {
     let (mut above, mut below) = (Vec::new(), Vec::new());
     for (name, e) in powers.iter().filter(|(_, e)| !e.is_zero()) {
         let side = if e.numerator_and_denominator().0 > 0 { &mut above } else { &mut below };
@@ -136,7 +136,7 @@ fn format_exponent(e: Ratio) -> String {
 pub fn parse_unit(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
     match &e.kind {
         ExprKind::Number(1.0) => Some((PLAIN, "1".to_string())),
-        ExprKind::Name(name) => read_name(name, e, cx),
+        ExprKind::Name(name) => parse_unit_name(name, e, cx),
         ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) => {
             let ((a, mut text), (b, factor)) = (parse_unit(left, cx)?, parse_unit(right, cx)?);
             let divide = *op == BinaryOp::Div;
@@ -159,7 +159,7 @@ pub fn parse_unit(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)>
     }
 }
 
-fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
+fn parse_unit_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
     let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let power = match name.get(letters.len()..) {
         None | Some("") => Some(1),

@@ -6,7 +6,7 @@ use crate::language::ratio::Ratio;
 
 /// Result of the addition of an equation to the system.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum EquationOutcome {
     /// The equation is consistent; the unknowns that it determined.
     Holds(Vec<Variable>),
     /// The equation contradicts earlier equations.
@@ -22,7 +22,7 @@ const MAX_WORK: usize = 1_000_000;
 /// System of equations between dimensions, in reduced row echelon form: every solved unknown in terms of
 /// unsolved ones.
 #[derive(Debug, Default)]
-pub struct System {
+pub struct DimensionSystem {
     solution: Vec<Option<Dimension>>,
     /// For each unsolved unknown, the solved unknowns whose solutions contain it; the list may include
     /// solutions that no longer contain it.
@@ -30,9 +30,9 @@ pub struct System {
     work: usize,
 }
 
-impl System {
+impl DimensionSystem {
     /// Adds an unknown dimension to the system.
-    pub fn add_variable(&mut self) -> Variable {
+    pub fn add_unknown_dimension(&mut self) -> Variable {
         self.solution.push(None);
         self.uses.push(Vec::new());
         self.solution.len() - 1
@@ -55,15 +55,15 @@ impl System {
     }
 
     /// Adds the equation that two dimensions are equal.
-    pub fn equate_dimensions(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
+    pub fn equate_dimensions(&mut self, a: &Dimension, b: &Dimension) -> EquationOutcome {
         let quotient = a.dimension_of_quotient(b).and_then(|quotient| self.resolve(&quotient));
-        let Some(quotient) = quotient else { return Outcome::LimitExceeded };
+        let Some(quotient) = quotient else { return EquationOutcome::LimitExceeded };
         match quotient.unknown.last() {
-            None if quotient.is_plain() => Outcome::Holds(Vec::new()),
-            None => Outcome::Contradicts,
+            None if quotient.is_plain() => EquationOutcome::Holds(Vec::new()),
+            None => EquationOutcome::Contradicts,
             Some((pivot, exponent)) => self
                 .solve_for_variable(*pivot, *exponent, &quotient)
-                .map_or(Outcome::LimitExceeded, Outcome::Holds),
+                .map_or(EquationOutcome::LimitExceeded, EquationOutcome::Holds),
         }
     }
 
@@ -74,8 +74,8 @@ impl System {
         exponent: Ratio,
         quotient: &Dimension,
     ) -> Option<Vec<Variable>> {
-        let rest = quotient.times_power(&Dimension::unknown_dimension(pivot), exponent.negated())?;
-        let value = rest.dimension_of_power(exponent.negated().inverse()?)?;
+        let rest = quotient.times_power(&Dimension::unknown_dimension(pivot), exponent.negative_ratio())?;
+        let value = rest.dimension_of_power(exponent.negative_ratio().inverse()?)?;
         let mut known = Vec::new();
         for v in std::mem::take(self.uses.get_mut(pivot)?) {
             let Some(old) = self.solution.get(v)?.clone() else { continue };
@@ -87,15 +87,16 @@ impl System {
             if self.work > MAX_WORK {
                 return None;
             }
-            let new =
-                old.times_power(&Dimension::unknown_dimension(pivot), e.negated())?.times_power(&value, e)?;
-            self.set_variable(v, new, &mut known);
+            let new = old
+                .times_power(&Dimension::unknown_dimension(pivot), e.negative_ratio())?
+                .times_power(&value, e)?;
+            self.set_solved_dimension(v, new, &mut known);
         }
-        self.set_variable(pivot, value, &mut known);
+        self.set_solved_dimension(pivot, value, &mut known);
         Some(known)
     }
 
-    fn set_variable(&mut self, v: Variable, value: Dimension, known: &mut Vec<Variable>) {
+    fn set_solved_dimension(&mut self, v: Variable, value: Dimension, known: &mut Vec<Variable>) {
         if value.is_known() {
             known.push(v);
         }
@@ -120,39 +121,42 @@ mod tests {
 
     #[test]
     fn equations_are_solved_in_any_order() {
-        let mut s = System::default();
-        let [a, b, c] =
-            [s.add_variable(), s.add_variable(), s.add_variable()].map(Dimension::unknown_dimension);
-        assert_eq!(s.equate_dimensions(&a.dimension_of_product(&b).unwrap(), &c), Outcome::Holds(Vec::new()));
-        assert_eq!(s.equate_dimensions(&a, &b), Outcome::Holds(Vec::new()));
+        let mut s = DimensionSystem::default();
+        let [a, b, c] = [s.add_unknown_dimension(), s.add_unknown_dimension(), s.add_unknown_dimension()]
+            .map(Dimension::unknown_dimension);
+        assert_eq!(
+            s.equate_dimensions(&a.dimension_of_product(&b).unwrap(), &c),
+            EquationOutcome::Holds(Vec::new())
+        );
+        assert_eq!(s.equate_dimensions(&a, &b), EquationOutcome::Holds(Vec::new()));
         // The root of an area is a length.
         let area = LENGTH.dimension_of_product(&LENGTH).unwrap();
-        let Outcome::Holds(mut known) = s.equate_dimensions(&c, &area) else { panic!("it is known") };
+        let EquationOutcome::Holds(mut known) = s.equate_dimensions(&c, &area) else { panic!("it is known") };
         known.sort_unstable();
         assert_eq!(known, [0, 1, 2]);
         assert_eq!(s.resolve(&a), Some(LENGTH));
-        assert_eq!(s.equate_dimensions(&a, &c), Outcome::Contradicts);
-        assert_eq!(s.equate_dimensions(&a, &LENGTH), Outcome::Holds(Vec::new()));
+        assert_eq!(s.equate_dimensions(&a, &c), EquationOutcome::Contradicts);
+        assert_eq!(s.equate_dimensions(&a, &LENGTH), EquationOutcome::Holds(Vec::new()));
     }
 
     #[test]
     fn exponents_may_be_fractions() {
-        let mut s = System::default();
-        let a = Dimension::unknown_dimension(s.add_variable());
+        let mut s = DimensionSystem::default();
+        let a = Dimension::unknown_dimension(s.add_unknown_dimension());
         s.equate_dimensions(&a.dimension_of_power(Ratio::from_integer(2)).unwrap(), &LENGTH);
         assert_eq!(s.resolve(&a).unwrap().base[0].numerator_and_denominator(), (1, 2));
     }
 
     #[test]
-    fn work_is_bounded() {
-        let mut s = System::default();
-        let all: Vec<Variable> = (0..3000).map(|_| s.add_variable()).collect();
+    fn unit_unification_work_is_bounded() {
+        let mut s = DimensionSystem::default();
+        let all: Vec<Variable> = (0..3000).map(|_| s.add_unknown_dimension()).collect();
         let product =
             Dimension { unknown: all.iter().map(|v| (*v, Ratio::ONE)).collect(), ..Dimension::new(0, 0, 0) };
         let limit_exceeded = (0..3000).any(|k| {
             let power =
                 product.times_power(&Dimension::unknown_dimension(k), Ratio::from_integer(k as i64)).unwrap();
-            s.equate_dimensions(&power, &LENGTH) == Outcome::LimitExceeded
+            s.equate_dimensions(&power, &LENGTH) == EquationOutcome::LimitExceeded
         });
         assert!(limit_exceeded);
     }

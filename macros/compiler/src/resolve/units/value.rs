@@ -19,7 +19,7 @@ pub enum Anchor {
 
 /// Information about the unit of an expression.
 #[derive(Clone, Debug)]
-pub enum UnitValue {
+pub enum InferredUnit {
     /// Number, with any unit.
     Number(f64),
     /// Direction, with any unit by itself and none as a factor.
@@ -35,51 +35,51 @@ pub enum UnitValue {
     Unknown,
 }
 
-impl UnitValue {
+impl InferredUnit {
     /// Returns a quantity whose unit follows from the motion.
-    pub fn quantity_of_dimension(dimension: Dimension) -> UnitValue {
-        UnitValue::Quantity { dimension, anchor: Anchor::Motion }
+    pub fn motion_quantity_of_dimension(dimension: Dimension) -> InferredUnit {
+        InferredUnit::Quantity { dimension, anchor: Anchor::Motion }
     }
 
     /// Returns the value of the negated expression.
-    pub fn negated_value(self) -> UnitValue {
+    pub fn negated_value(self) -> InferredUnit {
         match self {
-            UnitValue::Number(value) => UnitValue::Number(-value),
+            InferredUnit::Number(value) => InferredUnit::Number(-value),
             other => other,
         }
     }
 
     /// Returns a power of the value; unknown if the exponent is unknown.
-    pub fn power_of_value(self, exponent: Option<Ratio>) -> UnitValue {
+    pub fn power_of_value(self, exponent: Option<Ratio>) -> InferredUnit {
         match self {
-            UnitValue::Quantity { dimension, .. } if dimension.is_plain() => {
-                UnitValue::quantity_of_dimension(dimension)
+            InferredUnit::Quantity { dimension, .. } if dimension.is_plain() => {
+                InferredUnit::motion_quantity_of_dimension(dimension)
             }
-            UnitValue::Quantity { dimension, anchor } => {
+            InferredUnit::Quantity { dimension, anchor } => {
                 match exponent.and_then(|e| dimension.dimension_of_power(e)) {
-                    Some(dimension) => UnitValue::Quantity { dimension, anchor },
-                    None => UnitValue::Unknown,
+                    Some(dimension) => InferredUnit::Quantity { dimension, anchor },
+                    None => InferredUnit::Unknown,
                 }
             }
-            _ => UnitValue::Unknown,
+            _ => InferredUnit::Unknown,
         }
     }
 
     /// Returns the source of the unit; `Motion` for a value that is not a quantity.
-    pub fn source_of_unit(&self) -> Anchor {
+    pub fn anchor_of_unit(&self) -> Anchor {
         match self {
-            UnitValue::Quantity { anchor, .. } => *anchor,
+            InferredUnit::Quantity { anchor, .. } => *anchor,
             _ => Anchor::Motion,
         }
     }
 
     /// Returns the more specific of two values with equal dimensions.
-    pub fn more_specific(self, other: UnitValue) -> UnitValue {
+    pub fn more_specific_value(self, other: InferredUnit) -> InferredUnit {
         match (&self, &other) {
-            (UnitValue::Quantity { .. }, _) => self,
-            (_, UnitValue::Quantity { .. }) => other,
-            (UnitValue::Unknown, _) | (_, UnitValue::Unknown) => UnitValue::Unknown,
-            (UnitValue::Number(_), _) => self,
+            (InferredUnit::Quantity { .. }, _) => self,
+            (_, InferredUnit::Quantity { .. }) => other,
+            (InferredUnit::Unknown, _) | (_, InferredUnit::Unknown) => InferredUnit::Unknown,
+            (InferredUnit::Number(_), _) => self,
             _ => other,
         }
     }
@@ -87,31 +87,31 @@ impl UnitValue {
 
 /// Returns the product of factors, and whether a number among them may have a unit. Marked factors are
 /// divisors.
-pub fn product_of_values(factors: &[(bool, UnitValue)]) -> (UnitValue, bool) {
-    let has_factor_of_kind = |what: fn(&UnitValue) -> bool| factors.iter().any(|(_, f)| what(f));
+pub fn product_of_values(factors: &[(bool, InferredUnit)]) -> (InferredUnit, bool) {
+    let has_factor_of_kind = |what: fn(&InferredUnit) -> bool| factors.iter().any(|(_, f)| what(f));
     // Zero has any unit.
-    if factors.iter().any(|(below, f)| !below && matches!(f, UnitValue::Number(0.0))) {
-        return (UnitValue::Number(0.0), false);
+    if factors.iter().any(|(below, f)| !below && matches!(f, InferredUnit::Number(0.0))) {
+        return (InferredUnit::Number(0.0), false);
     }
-    if has_factor_of_kind(|f| matches!(f, UnitValue::Unknown)) {
-        return (UnitValue::Unknown, false);
+    if has_factor_of_kind(|f| matches!(f, InferredUnit::Unknown)) {
+        return (InferredUnit::Unknown, false);
     }
     let (is_number, is_direction) = (
-        has_factor_of_kind(|f| matches!(f, UnitValue::Number(_))),
-        has_factor_of_kind(|f| matches!(f, UnitValue::Direction)),
+        has_factor_of_kind(|f| matches!(f, InferredUnit::Number(_))),
+        has_factor_of_kind(|f| matches!(f, InferredUnit::Direction)),
     );
     let quantities: Vec<_> = factors
         .iter()
         .filter_map(|(below, f)| match f {
-            UnitValue::Quantity { dimension, anchor } => Some((*below, dimension, *anchor)),
+            InferredUnit::Quantity { dimension, anchor } => Some((*below, dimension, *anchor)),
             _ => None,
         })
         .collect();
     let Some(anchor) = quantities.iter().map(|(.., anchor)| *anchor).max() else {
         return match (is_number, is_direction) {
-            (true, false) => (UnitValue::Number(product_of_numbers(factors)), false),
-            (true, true) => (UnitValue::Number(f64::NAN), false),
-            _ => (UnitValue::Direction, false),
+            (true, false) => (InferredUnit::Number(product_of_numbers(factors)), false),
+            (true, true) => (InferredUnit::Number(f64::NAN), false),
+            _ => (InferredUnit::Direction, false),
         };
     };
     let product = quantities.iter().try_fold(PLAIN, |product, (below, dimension, _)| {
@@ -119,16 +119,17 @@ pub fn product_of_values(factors: &[(bool, UnitValue)]) -> (UnitValue, bool) {
     });
     match product {
         Some(dimension) => {
-            (UnitValue::Quantity { dimension, anchor }, is_number && anchor != Anchor::Parameter)
+            (InferredUnit::Quantity { dimension, anchor }, is_number && anchor != Anchor::Parameter)
         }
-        None => (UnitValue::Unknown, false),
+        None => (InferredUnit::Unknown, false),
     }
 }
 
 /// Returns the product of numbers; NaN if another factor is present.
-fn product_of_numbers(factors: &[(bool, UnitValue)]) -> f64 {
-    let number_of_factor = |f: &UnitValue| if let UnitValue::Number(value) = f { *value } else { f64::NAN };
-    factors
-        .iter()
-        .fold(1.0, |p, (below, f)| if *below { p / number_of_factor(f) } else { p * number_of_factor(f) })
+fn product_of_numbers(factors: &[(bool, InferredUnit)]) -> f64 {
+    let numeric_value_of_factor =
+        |f: &InferredUnit| if let InferredUnit::Number(value) = f { *value } else { f64::NAN };
+    factors.iter().fold(1.0, |p, (below, f)| {
+        if *below { p / numeric_value_of_factor(f) } else { p * numeric_value_of_factor(f) }
+    })
 }

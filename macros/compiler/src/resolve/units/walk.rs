@@ -1,8 +1,8 @@
 //! Traversal of expressions for the inference of units: values of subexpressions, and equations between their
 //! dimensions.
 
-use super::infer::{EquationOrigin, Inference, Meaning, Reason};
-use super::value::{Anchor, UnitValue, product_of_values};
+use super::infer::{DimensionEqualityReason, EquationOrigin, Inference, UnitMeaningOfName};
+use super::value::{Anchor, InferredUnit, product_of_values};
 use crate::expr::Function;
 use crate::language::dimension::{Dimension, INERTIA, LENGTH, PLAIN, RATE, TIME, Variable};
 use crate::language::ratio::Ratio;
@@ -11,69 +11,80 @@ use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
     /// Returns the value of an expression for the inference of units.
-    pub fn value_of_expression(&mut self, e: &'a Expr) -> UnitValue {
+    pub fn value_of_expression(&mut self, e: &'a Expr) -> InferredUnit {
         match &e.kind {
-            ExprKind::Number(n) => UnitValue::Number(*n),
+            ExprKind::Number(n) => InferredUnit::Number(*n),
             ExprKind::Name(name) => self.value_of_name(name),
             ExprKind::Field(inner, member) => self.value_of_member(inner, member),
             ExprKind::Neg(inner) => self.value_of_expression(inner).negated_value(),
             ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.value_of_product(e),
             ExprKind::Binary(..) => self.value_of_sum(e, None),
             ExprKind::Call(function, arguments) => self.value_of_call(function, arguments),
-            ExprKind::Array(items) => self.common_value(items, Reason::Components),
-            ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => UnitValue::Unknown,
+            ExprKind::Array(items) => self.equate_to_common_unit(items, DimensionEqualityReason::Components),
+            ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => InferredUnit::Unknown,
         }
     }
 
-    fn value_of_name(&self, name: &str) -> UnitValue {
+    fn value_of_name(&self, name: &str) -> InferredUnit {
         if let Some((_, dimension)) = self.locals.iter().find(|(local, _)| *local == name) {
-            return UnitValue::quantity_of_dimension(dimension.clone());
+            return InferredUnit::motion_quantity_of_dimension(dimension.clone());
         }
-        match (Builtin::of_name(name), self.names.get(name)) {
-            (_, Some(Meaning::Named(v, anchor))) => {
-                UnitValue::Quantity { dimension: Dimension::unknown_dimension(*v), anchor: *anchor }
+        match (Builtin::find_by_name(name), self.names.get(name)) {
+            (_, Some(UnitMeaningOfName::Named(v, anchor))) => {
+                InferredUnit::Quantity { dimension: Dimension::unknown_dimension(*v), anchor: *anchor }
             }
-            (Some(Builtin::Axis(_)), _) => UnitValue::Direction,
-            (Some(Builtin::Pi), _) => UnitValue::Number(std::f64::consts::PI),
-            (Some(Builtin::Time), _) => UnitValue::quantity_of_dimension(TIME),
-            (_, Some(Meaning::Moving(dimension, anchor))) => {
-                UnitValue::Quantity { dimension: dimension.clone(), anchor: *anchor }
+            (Some(Builtin::Axis(_)), _) => InferredUnit::Direction,
+            (Some(Builtin::Pi), _) => InferredUnit::Number(std::f64::consts::PI),
+            (Some(Builtin::Time), _) => InferredUnit::motion_quantity_of_dimension(TIME),
+            (_, Some(UnitMeaningOfName::Moving(dimension, anchor))) => {
+                InferredUnit::Quantity { dimension: dimension.clone(), anchor: *anchor }
             }
-            _ => UnitValue::Unknown,
+            _ => InferredUnit::Unknown,
         }
     }
 
     /// Returns the value of a coordinate of a joint, or of an axis of a frame.
-    fn value_of_member(&self, inner: &Expr, member: &Name) -> UnitValue {
-        let ExprKind::Name(joint) = &inner.kind else { return UnitValue::Unknown };
+    fn value_of_member(&self, inner: &Expr, member: &Name) -> InferredUnit {
+        let ExprKind::Name(joint) = &inner.kind else { return InferredUnit::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
-            Some(Meaning::Moving(dimension, _)) => UnitValue::quantity_of_dimension(dimension.clone()),
-            _ => UnitValue::Direction,
+            Some(UnitMeaningOfName::Moving(dimension, _)) => {
+                InferredUnit::motion_quantity_of_dimension(dimension.clone())
+            }
+            _ => InferredUnit::Direction,
         }
     }
 
     /// Equates the dimensions of two values; returns the common value.
-    fn equate_values(&mut self, a: UnitValue, b: UnitValue, origin: EquationOrigin<'a>) -> UnitValue {
+    fn equate_values(
+        &mut self,
+        a: InferredUnit,
+        b: InferredUnit,
+        origin: EquationOrigin<'a>,
+    ) -> InferredUnit {
         let (
-            UnitValue::Quantity { dimension, anchor },
-            UnitValue::Quantity { dimension: other, anchor: second },
+            InferredUnit::Quantity { dimension, anchor },
+            InferredUnit::Quantity { dimension: other, anchor: second },
         ) = (&a, &b)
         else {
-            return a.more_specific(b);
+            return a.more_specific_value(b);
         };
         match self.equate_dimensions(other, dimension, origin) {
-            true => UnitValue::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
-            false => UnitValue::Unknown,
+            true => InferredUnit::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
+            false => InferredUnit::Unknown,
         }
     }
 
     /// Equates the units of several expressions and returns the common unit.
-    fn common_value(&mut self, items: &'a [Expr], reason: Reason<'a>) -> UnitValue {
+    fn equate_to_common_unit(
+        &mut self,
+        items: &'a [Expr],
+        reason: DimensionEqualityReason<'a>,
+    ) -> InferredUnit {
         let mut first: Option<&Expr> = None;
-        let mut common = UnitValue::Number(0.0);
+        let mut common = InferredUnit::Number(0.0);
         for item in items {
             let value = self.value_of_expression(item);
-            let is_quantity = matches!(value, UnitValue::Quantity { .. });
+            let is_quantity = matches!(value, InferredUnit::Quantity { .. });
             common = self.equate_values(
                 common,
                 value,
@@ -82,18 +93,18 @@ impl<'a> Inference<'a> {
             first = first.or(is_quantity.then_some(item));
         }
         match common {
-            UnitValue::Number(_) => UnitValue::Number(f64::NAN),
+            InferredUnit::Number(_) => InferredUnit::Number(f64::NAN),
             other => other,
         }
     }
 
     /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
     /// unknown dimension get the expected dimension, so that an error is reported at the other term.
-    pub fn value_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> UnitValue {
+    pub fn value_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> InferredUnit {
         let mut written = Vec::new();
         let mut current = e;
         while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &current.kind {
-            written.push((Some((Reason::Sum(*op), current)), &**right));
+            written.push((Some((DimensionEqualityReason::Sum(*op), current)), &**right));
             current = left;
         }
         written.push((None, current));
@@ -102,23 +113,27 @@ impl<'a> Inference<'a> {
             .rev()
             .map(|(sum, term)| (sum, term, self.value_of_expression(term)))
             .collect();
-        let is_anchored = terms.iter().any(|(.., value)| value.source_of_unit() > Anchor::Motion);
+        let is_anchored = terms.iter().any(|(.., value)| value.anchor_of_unit() > Anchor::Motion);
         for (_, term, value) in &terms {
-            if let (UnitValue::Quantity { dimension, .. }, Some(expected), true) =
+            if let (InferredUnit::Quantity { dimension, .. }, Some(expected), true) =
                 (value, expected, is_anchored)
                 && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
             {
                 self.equate_dimensions(
                     dimension,
                     expected,
-                    EquationOrigin { reason: Reason::Place, expression: term, compared_with: None },
+                    EquationOrigin {
+                        reason: DimensionEqualityReason::Place,
+                        expression: term,
+                        compared_with: None,
+                    },
                 );
             }
         }
         let mut terms = terms.into_iter();
-        let first = terms.next().map_or(UnitValue::Unknown, |(.., value)| value);
+        let first = terms.next().map_or(InferredUnit::Unknown, |(.., value)| value);
         let total = terms.fold(first, |total, (sum, term, value)| {
-            let (reason, current) = sum.unwrap_or((Reason::Place, term));
+            let (reason, current) = sum.unwrap_or((DimensionEqualityReason::Place, term));
             self.equate_values(
                 total,
                 value,
@@ -126,14 +141,14 @@ impl<'a> Inference<'a> {
             )
         });
         match total {
-            UnitValue::Number(_) => UnitValue::Number(f64::NAN),
+            InferredUnit::Number(_) => InferredUnit::Number(f64::NAN),
             other => other,
         }
     }
 
     /// Returns the value of a product or quotient of any number of factors. Nested products in parentheses
     /// are flattened: `a / (2 * b)` is `a / 2 / b`.
-    fn value_of_product(&mut self, e: &'a Expr) -> UnitValue {
+    fn value_of_product(&mut self, e: &'a Expr) -> InferredUnit {
         let mut factors = Vec::new();
         let mut waiting = vec![(false, e)];
         while let Some((below, factor)) = waiting.pop() {
@@ -147,106 +162,109 @@ impl<'a> Inference<'a> {
         }
         let value = self.multiply(&factors);
         // `sin(angle) * x` is a metre along `x` where a length is expected, as `x` is.
-        let has_direction = factors.iter().any(|(_, factor)| matches!(factor, UnitValue::Direction));
+        let has_direction = factors.iter().any(|(_, factor)| matches!(factor, InferredUnit::Direction));
         match &value {
-            UnitValue::Quantity { dimension, anchor: Anchor::Motion }
+            InferredUnit::Quantity { dimension, anchor: Anchor::Motion }
                 if has_direction && self.system.resolve(dimension).is_some_and(|d| d.is_plain()) =>
             {
-                UnitValue::Direction
+                InferredUnit::Direction
             }
             _ => value,
         }
     }
 
     /// Returns the product of factors; the flag marks divisors.
-    fn multiply(&mut self, factors: &[(bool, UnitValue)]) -> UnitValue {
+    fn multiply(&mut self, factors: &[(bool, InferredUnit)]) -> InferredUnit {
         let (value, free) = product_of_values(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
-            UnitValue::Number(g) => self.gravity.contains(&g.abs()),
+            InferredUnit::Number(g) => self.gravity.contains(&g.abs()),
             _ => false,
         });
-        let (UnitValue::Quantity { dimension, anchor }, true) = (&value, free || is_gravity) else {
+        let (InferredUnit::Quantity { dimension, anchor }, true) = (&value, free || is_gravity) else {
             return value;
         };
-        let number = Dimension::unknown_dimension(self.system.add_variable());
+        let number = Dimension::unknown_dimension(self.system.add_unknown_dimension());
         self.default_to_plain(number.clone());
         match dimension.dimension_of_product(&number) {
-            Some(dimension) => UnitValue::Quantity { dimension, anchor: *anchor },
-            None => UnitValue::Unknown,
+            Some(dimension) => InferredUnit::Quantity { dimension, anchor: *anchor },
+            None => InferredUnit::Unknown,
         }
     }
 
     /// Returns the value of a call: of a table, otherwise of a function of the language.
-    fn value_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> UnitValue {
+    fn value_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> InferredUnit {
         if let Some(unknown) = self.tables.get(&callee.text).cloned() {
             return self.value_of_table(&unknown, arguments);
         }
         match (callee.id, arguments) {
             (Some(Callable::Elementary(f)), [a]) => self.value_of_elementary(f, a),
             (Some(Callable::Function(function)), _) => {
-                self.value_of_function(&function.row().unit, &callee.text, arguments)
+                self.unit_value_of_call(&function.row().unit, &callee.text, arguments)
             }
             (Some(Callable::If), [_, _, _, _]) => {
                 let (compared, pieces) = arguments.split_at(2);
-                self.common_value(compared, Reason::Compared(&callee.text));
-                self.common_value(pieces, Reason::Pieces)
+                self.equate_to_common_unit(compared, DimensionEqualityReason::Compared(&callee.text));
+                self.equate_to_common_unit(pieces, DimensionEqualityReason::Pieces)
             }
-            _ => UnitValue::Unknown,
+            _ => InferredUnit::Unknown,
         }
     }
 
     /// Returns the value of a function of the language.
-    fn value_of_function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> UnitValue {
+    fn unit_value_of_call(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> InferredUnit {
         let [first, others @ ..] = arguments else {
             return match rule {
-                UnitRule::Of(dimension) => UnitValue::quantity_of_dimension(dimension.clone()),
-                _ => UnitValue::Unknown,
+                UnitRule::Of(dimension) => InferredUnit::motion_quantity_of_dimension(dimension.clone()),
+                _ => InferredUnit::Unknown,
             };
         };
         match rule {
-            UnitRule::Unknown => UnitValue::Unknown,
+            UnitRule::Unknown => InferredUnit::Unknown,
             UnitRule::Of(dimension) => {
-                self.infer_unused_expressions(arguments);
-                UnitValue::quantity_of_dimension(dimension.clone())
+                self.infer_dimensions_of_unused_values(arguments);
+                InferredUnit::motion_quantity_of_dimension(dimension.clone())
             }
             UnitRule::Direction => {
-                self.infer_unused_expressions(arguments);
-                UnitValue::Direction
+                self.infer_dimensions_of_unused_values(arguments);
+                InferredUnit::Direction
             }
-            UnitRule::Alike => self.common_value(arguments, Reason::Compared(name)),
-            UnitRule::Quotient => match self.common_value(arguments, Reason::Compared(name)) {
-                UnitValue::Quantity { .. } => UnitValue::quantity_of_dimension(PLAIN),
-                _ => UnitValue::Number(f64::NAN),
-            },
+            UnitRule::Alike => self.equate_to_common_unit(arguments, DimensionEqualityReason::Compared(name)),
+            UnitRule::Quotient => {
+                match self.equate_to_common_unit(arguments, DimensionEqualityReason::Compared(name)) {
+                    InferredUnit::Quantity { .. } => InferredUnit::motion_quantity_of_dimension(PLAIN),
+                    _ => InferredUnit::Number(f64::NAN),
+                }
+            }
             UnitRule::LikeFirst => {
-                self.infer_unused_expressions(others);
+                self.infer_dimensions_of_unused_values(others);
                 self.value_of_expression(first)
             }
             UnitRule::LikeLast => {
-                let values: Vec<UnitValue> = arguments.iter().map(|a| self.value_of_expression(a)).collect();
-                values.into_iter().last().unwrap_or(UnitValue::Unknown)
+                let values: Vec<InferredUnit> =
+                    arguments.iter().map(|a| self.value_of_expression(a)).collect();
+                values.into_iter().last().unwrap_or(InferredUnit::Unknown)
             }
             UnitRule::Product { scalar } => {
                 let factors: Vec<_> =
                     arguments.iter().map(|a| (false, self.value_of_expression(a))).collect();
                 match self.multiply(&factors) {
-                    UnitValue::Direction if *scalar => UnitValue::quantity_of_dimension(PLAIN),
+                    InferredUnit::Direction if *scalar => InferredUnit::motion_quantity_of_dimension(PLAIN),
                     product => product,
                 }
             }
             UnitRule::Magnitude => match self.value_of_expression(first) {
-                UnitValue::Direction => UnitValue::quantity_of_dimension(PLAIN),
+                InferredUnit::Direction => InferredUnit::motion_quantity_of_dimension(PLAIN),
                 other => other,
             },
             UnitRule::Power => match others {
                 [exponent] => self.value_of_power(first, exponent),
-                _ => UnitValue::Unknown,
+                _ => InferredUnit::Unknown,
             },
             UnitRule::TimeDerivative => match &first.kind {
                 // The rate of a vector in a frame; the frame's name has no dimension.
                 ExprKind::Binary(BinaryOp::Div, vector, frame, _) if self.is_frame(frame) => {
                     match self.value_of_expression(vector) {
-                        UnitValue::Direction => UnitValue::quantity_of_dimension(RATE),
+                        InferredUnit::Direction => InferredUnit::motion_quantity_of_dimension(RATE),
                         other => quotient_by_dimension(other, &TIME),
                     }
                 }
@@ -257,48 +275,54 @@ impl<'a> Inference<'a> {
             }
             UnitRule::Gradient => match &first.kind {
                 ExprKind::Binary(_, field, ..) => match self.value_of_expression(field) {
-                    value @ UnitValue::Quantity { .. } => quotient_by_dimension(value, &LENGTH),
-                    _ => UnitValue::Unknown,
+                    value @ InferredUnit::Quantity { .. } => quotient_by_dimension(value, &LENGTH),
+                    _ => InferredUnit::Unknown,
                 },
-                _ => UnitValue::Unknown,
+                _ => InferredUnit::Unknown,
             },
             UnitRule::Places(dimension) => {
-                self.infer_unused_expressions(others);
-                self.infer_operand_points(first);
-                UnitValue::quantity_of_dimension(dimension.clone())
+                self.infer_dimensions_of_unused_values(others);
+                self.infer_from_slash_operands(first);
+                InferredUnit::motion_quantity_of_dimension(dimension.clone())
             }
             UnitRule::Moment => {
-                self.infer_operand_points(first);
-                let directions: Vec<UnitValue> = others.iter().map(|a| self.value_of_expression(a)).collect();
-                match directions.iter().all(|direction| matches!(direction, UnitValue::Direction)) {
-                    true => UnitValue::quantity_of_dimension(INERTIA),
+                self.infer_from_slash_operands(first);
+                let directions: Vec<InferredUnit> =
+                    others.iter().map(|a| self.value_of_expression(a)).collect();
+                match directions.iter().all(|direction| matches!(direction, InferredUnit::Direction)) {
+                    true => InferredUnit::motion_quantity_of_dimension(INERTIA),
                     // Vectors with a unit would contribute it.
-                    false => UnitValue::Unknown,
+                    false => InferredUnit::Unknown,
                 }
             }
             UnitRule::Cable => {
-                self.infer_operand_points(first);
+                self.infer_from_slash_operands(first);
                 let Some(ExprKind::Method(base, _, arguments)) = others.first().map(|e| &e.kind) else {
-                    return UnitValue::Unknown;
+                    return InferredUnit::Unknown;
                 };
                 self.infer_point(base);
-                let radius = arguments
-                    .first()
-                    .map(|radius| self.expect_dimension(radius, &LENGTH, "m", Reason::Argument));
-                UnitValue::Quantity {
+                let radius = arguments.first().map(|radius| {
+                    self.equate_with_expected_dimension(
+                        radius,
+                        &LENGTH,
+                        "m",
+                        DimensionEqualityReason::Argument,
+                    )
+                });
+                InferredUnit::Quantity {
                     dimension: LENGTH,
-                    anchor: radius.map_or(Anchor::Motion, |r| r.source_of_unit()),
+                    anchor: radius.map_or(Anchor::Motion, |r| r.anchor_of_unit()),
                 }
             }
             UnitRule::OfHeight(dimension) => {
-                self.expect_dimension(first, &LENGTH, "m", Reason::Argument);
-                dimension.clone().map_or(UnitValue::Unknown, UnitValue::quantity_of_dimension)
+                self.equate_with_expected_dimension(first, &LENGTH, "m", DimensionEqualityReason::Argument);
+                dimension.clone().map_or(InferredUnit::Unknown, InferredUnit::motion_quantity_of_dimension)
             }
         }
     }
 
     /// Infers dimensions from expressions whose values are not used.
-    fn infer_unused_expressions(&mut self, e: &'a [Expr]) {
+    fn infer_dimensions_of_unused_values(&mut self, e: &'a [Expr]) {
         e.iter().for_each(|e| drop(self.value_of_expression(e)));
     }
 
@@ -306,66 +330,73 @@ impl<'a> Inference<'a> {
     fn is_frame(&self, e: &Expr) -> bool {
         let is_value = |name: &str| {
             self.names.contains_key(name)
-                || Builtin::of_name(name).is_some()
+                || Builtin::find_by_name(name).is_some()
                 || self.locals.iter().any(|(local, _)| *local == name)
         };
         e.as_name().is_some_and(|name| !is_value(name))
     }
 
     /// Returns the value of a table. Its variables have the same units in all calls.
-    fn value_of_table(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> UnitValue {
-        let Some((value, variables)) = unknown.split_last() else { return UnitValue::Unknown };
+    fn value_of_table(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> InferredUnit {
+        let Some((value, variables)) = unknown.split_last() else { return InferredUnit::Unknown };
         for (argument, variable) in arguments.iter().zip(variables) {
-            self.expect_dimension(argument, &Dimension::unknown_dimension(*variable), "", Reason::Argument);
+            self.equate_with_expected_dimension(
+                argument,
+                &Dimension::unknown_dimension(*variable),
+                "",
+                DimensionEqualityReason::Argument,
+            );
         }
-        UnitValue::Quantity { dimension: Dimension::unknown_dimension(*value), anchor: Anchor::Parameter }
+        InferredUnit::Quantity { dimension: Dimension::unknown_dimension(*value), anchor: Anchor::Parameter }
     }
 
     /// Returns the value of an elementary function: magnitudes and roots of any quantity, all others of plain
     /// numbers.
-    fn value_of_elementary(&mut self, f: Function, a: &'a Expr) -> UnitValue {
+    fn value_of_elementary(&mut self, f: Function, a: &'a Expr) -> InferredUnit {
         match f {
             Function::Abs => return self.value_of_expression(a),
             Function::Signum => {
                 self.value_of_expression(a);
-                return UnitValue::quantity_of_dimension(PLAIN);
+                return InferredUnit::motion_quantity_of_dimension(PLAIN);
             }
             Function::Sqrt => {
                 return match self.value_of_expression(a) {
-                    UnitValue::Number(value) => UnitValue::Number(value.sqrt()),
+                    InferredUnit::Number(value) => InferredUnit::Number(value.sqrt()),
                     other => other.power_of_value(Ratio::new(1, 2)),
                 };
             }
             _ => {}
         }
         let unit = if matches!(f, Function::Sin | Function::Cos | Function::Tan) { "rad" } else { "1" };
-        match self.expect_dimension(a, &PLAIN, unit, Reason::Argument) {
-            UnitValue::Number(value) => UnitValue::Number(f.evaluate_at(value)),
-            UnitValue::Direction => UnitValue::Unknown,
-            _ => UnitValue::quantity_of_dimension(PLAIN),
+        match self.equate_with_expected_dimension(a, &PLAIN, unit, DimensionEqualityReason::Argument) {
+            InferredUnit::Number(value) => InferredUnit::Number(f.evaluate_at(value)),
+            InferredUnit::Direction => InferredUnit::Unknown,
+            _ => InferredUnit::motion_quantity_of_dimension(PLAIN),
         }
     }
 
     /// Returns the value of a power. If the exponent is not a number, the dimension is unknown unless the
     /// base is plain.
-    fn value_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> UnitValue {
+    fn value_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> InferredUnit {
         let base = self.value_of_expression(a);
-        let exponent = self.expect_dimension(n, &PLAIN, "1", Reason::Argument);
+        let exponent = self.equate_with_expected_dimension(n, &PLAIN, "1", DimensionEqualityReason::Argument);
         match (base, exponent) {
-            (UnitValue::Number(value), UnitValue::Number(n)) => UnitValue::Number(libm::pow(value, n)),
-            (UnitValue::Number(_), _) => UnitValue::quantity_of_dimension(PLAIN),
-            (base, UnitValue::Number(n)) => base.power_of_value(Ratio::from_value(n)),
-            (UnitValue::Quantity { dimension, anchor }, _) => {
-                let power = Dimension::unknown_dimension(self.system.add_variable());
-                self.plain_defaults.push((dimension, Some(power.clone())));
-                UnitValue::Quantity { dimension: power, anchor }
+            (InferredUnit::Number(value), InferredUnit::Number(n)) => {
+                InferredUnit::Number(libm::pow(value, n))
             }
-            _ => UnitValue::Unknown,
+            (InferredUnit::Number(_), _) => InferredUnit::motion_quantity_of_dimension(PLAIN),
+            (base, InferredUnit::Number(n)) => base.power_of_value(Ratio::from_value(n)),
+            (InferredUnit::Quantity { dimension, anchor }, _) => {
+                let power = Dimension::unknown_dimension(self.system.add_unknown_dimension());
+                self.plain_defaults.push((dimension, Some(power.clone())));
+                InferredUnit::Quantity { dimension: power, anchor }
+            }
+            _ => InferredUnit::Unknown,
         }
     }
 
     /// Infers from the operands between slashes, `y / x`, which may be given by vectors.
-    fn infer_operand_points(&mut self, e: &'a Expr) {
+    fn infer_from_slash_operands(&mut self, e: &'a Expr) {
         let mut current = e;
         while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &current.kind {
             self.infer_point(right);
@@ -379,18 +410,18 @@ impl<'a> Inference<'a> {
         if let ExprKind::Method(base, _, arguments) = &e.kind {
             self.infer_point(base);
             for argument in arguments {
-                self.expect_dimension(argument, &LENGTH, "m", Reason::Place);
+                self.equate_with_expected_dimension(argument, &LENGTH, "m", DimensionEqualityReason::Place);
             }
         }
     }
 }
 
 /// Returns a quantity divided by another dimension; other values are unchanged.
-fn quotient_by_dimension(value: UnitValue, divisor: &Dimension) -> UnitValue {
+fn quotient_by_dimension(value: InferredUnit, divisor: &Dimension) -> InferredUnit {
     match value {
-        UnitValue::Quantity { dimension, anchor } => match dimension.dimension_of_quotient(divisor) {
-            Some(dimension) => UnitValue::Quantity { dimension, anchor },
-            None => UnitValue::Unknown,
+        InferredUnit::Quantity { dimension, anchor } => match dimension.dimension_of_quotient(divisor) {
+            Some(dimension) => InferredUnit::Quantity { dimension, anchor },
+            None => InferredUnit::Unknown,
         },
         other => other,
     }

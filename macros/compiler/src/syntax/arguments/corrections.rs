@@ -1,7 +1,7 @@
 //! Detection of common errors in the grammar of arguments, with corrections.
 
 use super::{ArgumentValue, Arguments};
-use crate::diag::{Diagnostics, one_of, syn_error};
+use crate::diag::{Diagnostics, join_with_or, syn_error_with_help};
 use crate::syntax::expression::{parse_expr, quote_text, unexpected_token_error};
 use crate::syntax::{Expr, ExprKind, words};
 use proc_macro2::{TokenStream, TokenTree};
@@ -25,7 +25,7 @@ pub fn report_unnamed_argument(e: &Expr, known: &[&str], example: &str, cx: &mut
         (_, [one]) => error.add_help(format!("write `{one} = {}`", e.to_source())),
         (_, [.., _]) if known.len() <= 8 => {
             let list: Vec<String> = known.iter().map(|word| format!("`{word}`")).collect();
-            error.add_help(format!("expected {}", one_of(&list)))
+            error.add_help(format!("expected {}", join_with_or(&list)))
         }
         _ => error.add_help(format!("write `{example}`")),
     };
@@ -34,17 +34,17 @@ pub fn report_unnamed_argument(e: &Expr, known: &[&str], example: &str, cx: &mut
 /// Error for input after an argument; most likely a comma is missing.
 pub fn missing_comma_error(input: ParseStream<'_>) -> syn::Error {
     if input.peek(Token![;]) {
-        return syn_error(input.span(), "expected `,`", "arguments are separated by `,`");
+        return syn_error_with_help(input.span(), "expected `,`", "arguments are separated by `,`");
     }
     let ahead = input.fork();
     match ahead.call(Ident::parse_any) {
         Ok(word) if ahead.peek(Token![=]) => {
             let help = format!("arguments are separated by `,`: write `…, {word} = …`");
-            syn_error(input.span(), "expected `,`", &help)
+            syn_error_with_help(input.span(), "expected `,`", &help)
         }
-        Ok(word) if ahead.is_empty() && words::is_request_option(&word.to_string()) => {
+        Ok(word) if ahead.is_empty() && words::is_valueless_option(&word.to_string()) => {
             let help = format!("arguments are separated by `,`: write `…, {word}`");
-            syn_error(input.span(), "expected `,`", &help)
+            syn_error_with_help(input.span(), "expected `,`", &help)
         }
         _ => unexpected_token_error(input),
     }
@@ -56,9 +56,9 @@ pub fn stray_string_error(text: &LitStr) -> syn::Error {
     let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
     if is_file {
         let help = format!("write `urdf = {}`", quote_text(&value));
-        return syn_error(text.span(), "expected `name = value`, found a string", &help);
+        return syn_error_with_help(text.span(), "expected `name = value`, found a string", &help);
     }
-    syn_error(text.span(), "expected an expression, found a string", "write it without quotes")
+    syn_error_with_help(text.span(), "expected an expression, found a string", "write it without quotes")
 }
 
 /// Error for a missing `->` of a joint, or a missing `=` after an argument name, at the token found instead.
@@ -71,7 +71,10 @@ pub fn missing_arrow_error(
         |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
     let is_arrow = input.peek(Token![->]);
     let ends = input.is_empty() || input.peek(Token![,]) || input.peek(token::Bracket);
-    if !is_place_expression(first) || ends || input.peek(Token![::]) || (is_arrow && !is_double_arrow(input))
+    if !is_place_expression(first)
+        || ends
+        || input.peek(Token![::])
+        || (is_arrow && !is_misspelt_double_arrow(input))
     {
         return None;
     }
@@ -94,17 +97,21 @@ pub fn missing_arrow_error(
             return None;
         }
         let child = second.map_or("child".to_string(), |e| e.to_source());
-        return Some(syn_error(span, "expected `->`", &format!("write `{} -> {child}`", first.to_source())));
+        return Some(syn_error_with_help(
+            span,
+            "expected `->`",
+            &format!("write `{} -> {child}`", first.to_source()),
+        ));
     }
     if matches!(signs.as_str(), ":" | ":=" | "+=" | "-=" | "*=" | "/=" | "=>" | "<-" | "~") {
         let help = format!("write `{} = …`", first.to_source());
-        return first.as_name().map(|_| syn_error(span, "expected `=`", &help));
+        return first.as_name().map(|_| syn_error_with_help(span, "expected `=`", &help));
     }
     None
 }
 
 /// Returns whether the next tokens are the misspelt arrow `->>`.
-fn is_double_arrow(input: ParseStream<'_>) -> bool {
+fn is_misspelt_double_arrow(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }
@@ -126,7 +133,11 @@ pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
             && is_whole_number(&part.to_string())
         {
             let help = format!("numbers have a decimal point: write `{whole}.{part}`");
-            return Some(syn_error(whole.span(), &format!("`{whole},{part}` is two numbers"), &help));
+            return Some(syn_error_with_help(
+                whole.span(),
+                &format!("`{whole},{part}` is two numbers"),
+                &help,
+            ));
         }
         is_value = is_punctuation(token, '=') || (is_value && !is_punctuation(token, ','));
     }

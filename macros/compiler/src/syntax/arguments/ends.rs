@@ -26,7 +26,7 @@ impl Arguments {
     /// Returns the relation `parent -> child`, or reports an error.
     pub fn take_relation(&mut self, known: &[&str], cx: &mut Diagnostics) -> Option<(Expr, Expr)> {
         if self.relation.is_none() {
-            let (place, ends) = self.likely_ends(known);
+            let (place, ends) = self.guess_joint_ends(known);
             self.plain.clear();
             let diagnostic = cx.report_error(place, "a joint needs the two bodies that it connects");
             match ends {
@@ -40,18 +40,18 @@ impl Arguments {
 
     /// Returns the likely ends of a joint without an arrow, and the span of the error. Ends with keys are
     /// removed.
-    fn likely_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
-        let pair_of_sources = |a: &Expr, b: &Expr| Some([a.to_source(), b.to_source()]);
-        if let Some((place, a, b)) = self.take_ends() {
-            return (place, pair_of_sources(&a, &b));
+    fn guess_joint_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
+        let source_texts_of_ends = |a: &Expr, b: &Expr| Some([a.to_source(), b.to_source()]);
+        if let Some((place, a, b)) = self.take_ends_with_own_keys() {
+            return (place, source_texts_of_ends(&a, &b));
         }
         let place = self.plain.first().map_or(&self.place, |e| &e.place).clone();
         match self.plain.as_slice() {
             [Expr { kind: ExprKind::Binary(BinaryOp::Sub, a, b, _), .. }] => {
-                return (place, pair_of_sources(a, b));
+                return (place, source_texts_of_ends(a, b));
             }
             [a] => return (place, Some(["parent".to_string(), a.to_source()])),
-            [a, b, ..] => return (place, pair_of_sources(a, b)),
+            [a, b, ..] => return (place, source_texts_of_ends(a, b)),
             [] => {}
         }
         let is_unknown_argument = |(name, value): &(Name, ArgumentValue)| {
@@ -62,7 +62,7 @@ impl Arguments {
         let ArgumentValue::Expr(value) = value else { return (name.place, None) };
         let ends = match (&value.kind, name.text.as_str()) {
             (ExprKind::Tuple(two) | ExprKind::Array(two), _) if two.len() == 2 => {
-                pair_of_sources(&two[0], &two[1])
+                source_texts_of_ends(&two[0], &two[1])
             }
             (ExprKind::Name(_), "parent" | "from" | "base") => Some([value.to_source(), "child".to_string()]),
             (ExprKind::Name(_), "on" | "body" | "child" | "to" | "link") => {
@@ -75,7 +75,7 @@ impl Arguments {
     }
 
     /// Removes and returns two ends with keys of their own, such as `from = a, to = b`.
-    pub fn take_ends(&mut self) -> Option<(Place, Expr, Expr)> {
+    pub fn take_ends_with_own_keys(&mut self) -> Option<(Place, Expr, Expr)> {
         let has_expression_for_key = |key: &str| {
             self.named.iter().any(|(name, value)| name.text == key && matches!(value, ArgumentValue::Expr(_)))
         };

@@ -2,7 +2,7 @@
 
 use super::corrections::{missing_arrow_error, missing_comma_error, stray_string_error};
 use super::{ArgumentValue, Arguments, Grammar};
-use crate::diag::syn_error;
+use crate::diag::syn_error_with_help;
 use crate::syntax::expression::{parse_expr, parse_name};
 use crate::syntax::file_parameters;
 use proc_macro2::Span;
@@ -44,11 +44,11 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
         input.parse::<Token![=]>()?;
         if input.is_empty() || input.peek(Token![,]) {
             let message = format!("`{}` has no value", key.text);
-            return Err(syn_error(key.place.span, &message, &format!("write `{} = …`", key.text)));
+            return Err(syn_error_with_help(key.place.span, &message, &format!("write `{} = …`", key.text)));
         }
         let value = match key.text.as_str() {
             "parameters" => ArgumentValue::FileParameters(file_parameters::parse(input)?),
-            _ => parse_value(input)?,
+            _ => parse_argument_value(input)?,
         };
         if let ("between" | "on", ArgumentValue::Expr(first)) = (key.text.as_str(), &value)
             && input.peek(Token![->])
@@ -56,7 +56,7 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
             let arrow: Token![->] = input.parse()?;
             let second = parse_expr(input).map_or_else(|_| "…".to_string(), |second| second.to_source());
             let help = format!("write `between = ({}, {second})`", first.to_source());
-            return Err(syn_error(arrow.spans[0], "expected `,`", &help));
+            return Err(syn_error_with_help(arrow.spans[0], "expected `,`", &help));
         }
         arguments.named.push((key, value));
         return Ok(());
@@ -72,23 +72,23 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
         let arrow: Token![->] = input.parse()?;
         if input.is_empty() || input.peek(Token![,]) {
             let help = format!("write `{} -> child`", first.to_source());
-            return Err(syn_error(arrow.spans[1], "missing body after this arrow", &help));
+            return Err(syn_error_with_help(arrow.spans[1], "missing body after this arrow", &help));
         }
         let second = parse_expr(input)?;
         if arguments.relation.is_some() {
             let help = "a joint has two ends; write a joint for each `parent -> child`";
-            return Err(syn_error(arrow.spans[0], "a second `parent -> child`", help));
+            return Err(syn_error_with_help(arrow.spans[0], "a second `parent -> child`", help));
         }
         arguments.relation = Some((first, second));
     } else if (input.peek(Token![=]) && !input.peek(Token![=>])) || input.peek(Token![==]) {
         let sign = input.span();
         let _ = input.parse::<Token![==]>().map(drop).or_else(|_| input.parse::<Token![=]>().map(drop));
         if input.is_empty() || input.peek(Token![,]) {
-            return Err(syn_error(sign, "missing expression after this sign", "write `a = b`"));
+            return Err(syn_error_with_help(sign, "missing expression after this sign", "write `a = b`"));
         }
         let second = parse_expr(input)?;
         if !arguments.equations.is_empty() && arguments.grammar != Grammar::Equilibrium {
-            return Err(syn_error(sign, "a second equation", "declare a constraint for each"));
+            return Err(syn_error_with_help(sign, "a second equation", "declare a constraint for each"));
         }
         arguments.equations.push((first, second));
     } else {
@@ -98,12 +98,12 @@ fn parse_argument(input: ParseStream<'_>, arguments: &mut Arguments) -> syn::Res
 }
 
 /// Parses quoted names that are separated by commas.
-fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
+fn parse_quoted_names(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
     let mut texts = Vec::new();
     while !input.is_empty() {
         if !input.peek(LitStr) {
             let help = "names in a list are quoted, all of them: `[\"first\", \"second\"]`";
-            return Err(syn_error(input.span(), "expected a name in quotes", help));
+            return Err(syn_error_with_help(input.span(), "expected a name in quotes", help));
         }
         texts.push(input.parse()?);
         if !input.is_empty() {
@@ -116,7 +116,7 @@ fn parse_texts(input: ParseStream<'_>) -> syn::Result<Vec<LitStr>> {
     Ok(texts)
 }
 
-fn parse_value(input: ParseStream<'_>) -> syn::Result<ArgumentValue> {
+fn parse_argument_value(input: ParseStream<'_>) -> syn::Result<ArgumentValue> {
     if input.peek(LitStr) {
         return input.parse().map(ArgumentValue::Text);
     }
@@ -127,7 +127,7 @@ fn parse_value(input: ParseStream<'_>) -> syn::Result<ArgumentValue> {
         if content.peek(LitStr) {
             let content;
             bracketed!(content in input);
-            return parse_texts(&content).map(ArgumentValue::Texts);
+            return parse_quoted_names(&content).map(ArgumentValue::Texts);
         }
     }
     parse_expr(input).map(ArgumentValue::Expr)

@@ -29,7 +29,7 @@ pub type Callee = Term<Callable>;
 impl Callee {
     /// Looks up a function name in the tables of the language.
     pub fn new(name: Name) -> Callee {
-        let id = Callable::of_name(&name.text);
+        let id = Callable::find_by_name(&name.text);
         Term { text: name.text, place: name.place, id }
     }
 }
@@ -40,7 +40,7 @@ pub type Member = Term<Method>;
 impl Member {
     /// Looks up a method name with this number of arguments in the tables of the language.
     pub fn new(name: Name, count: usize) -> Member {
-        let id = Method::of_call(&name.text, count);
+        let id = Method::find_by_name_and_argument_count(&name.text, count);
         Term { text: name.text, place: name.place, id }
     }
 }
@@ -94,7 +94,7 @@ pub enum BinaryOp {
 
 impl Expr {
     /// Returns this expression and all its subexpressions, outer ones before inner ones.
-    pub fn subexpressions(&self) -> Vec<&Expr> {
+    pub fn all_subexpressions(&self) -> Vec<&Expr> {
         let mut parts = vec![self];
         let mut next = 0;
         while let Some(part) = parts.get(next) {
@@ -135,7 +135,7 @@ impl Expr {
     }
 
     /// Returns a function call at a source position.
-    pub fn function_call_at(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
+    pub fn function_call_expression(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
         let name = Name { text: function.to_string(), place: place.clone() };
         Expr { kind: ExprKind::Call(Callee::new(name), arguments), place: place.clone() }
     }

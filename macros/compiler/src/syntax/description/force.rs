@@ -39,7 +39,7 @@ pub struct Drive {
     /// Name of the element; for an input, its entry in `INPUTS`.
     pub name: Name,
     /// Coordinates, length or point on which the element of a file acts.
-    pub on: DriveOn,
+    pub on: DriveTarget,
     /// Force law of the element.
     pub law: DriveLaw,
 }
@@ -47,7 +47,7 @@ pub struct Drive {
 /// Target on which a force element of a robot file acts.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there are few of them, and they are not moved")]
-pub enum DriveOn {
+pub enum DriveTarget {
     /// Weighted sum of coordinates: joints with one coordinate each, and their weights.
     Sum(Vec<(Name, f64)>),
     /// Length that depends on the coordinates, such as that of a cable.
@@ -69,20 +69,20 @@ pub struct Wrench {
     pub against: Option<Expr>,
 }
 
-impl DriveOn {
+impl DriveTarget {
     /// Returns the target with all weights multiplied by a factor.
-    pub fn scaled_target(&self, factor: f64) -> DriveOn {
+    pub fn with_scaled_weights(&self, factor: f64) -> DriveTarget {
         match self {
-            DriveOn::Sum(terms) => {
-                DriveOn::Sum(terms.iter().map(|(joint, weight)| (joint.clone(), weight * factor)).collect())
-            }
-            DriveOn::Length(e) if factor == 1.0 => DriveOn::Length(e.clone()),
-            DriveOn::Length(e) => DriveOn::Length(Expr::binary_operation(
+            DriveTarget::Sum(terms) => DriveTarget::Sum(
+                terms.iter().map(|(joint, weight)| (joint.clone(), weight * factor)).collect(),
+            ),
+            DriveTarget::Length(e) if factor == 1.0 => DriveTarget::Length(e.clone()),
+            DriveTarget::Length(e) => DriveTarget::Length(Expr::binary_operation(
                 BinaryOp::Mul,
                 Expr::number_at(factor, &e.place),
                 e.clone(),
             )),
-            DriveOn::Wrench(wrench) => DriveOn::Wrench(Wrench {
+            DriveTarget::Wrench(wrench) => DriveTarget::Wrench(Wrench {
                 force: wrench.force.map(|x| x * factor),
                 torque: wrench.torque.map(|x| x * factor),
                 ..wrench.clone()
@@ -93,8 +93,8 @@ impl DriveOn {
     /// Returns the joints of a sum with their weights; empty for other targets.
     pub fn weighted_joints(&self) -> &[(Name, f64)] {
         match self {
-            DriveOn::Sum(terms) => terms,
-            DriveOn::Length(_) | DriveOn::Wrench(_) => &[],
+            DriveTarget::Sum(terms) => terms,
+            DriveTarget::Length(_) | DriveTarget::Wrench(_) => &[],
         }
     }
 }
@@ -113,7 +113,7 @@ pub enum DriveQuantity {
 impl DriveQuantity {
     /// Returns the name of the quantity in expressions. It begins with a control character, which no name in
     /// a file contains.
-    pub fn name_for(self, drive: &str) -> String {
+    pub fn drive_quantity_name(self, drive: &str) -> String {
         let word = match self {
             DriveQuantity::Length => "length",
             DriveQuantity::Rate => "rate",

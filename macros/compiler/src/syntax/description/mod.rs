@@ -13,9 +13,9 @@ mod structure;
 pub use constraint::{Constraint, ConstraintKind, Contact, Limit, restitution_coefficient};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
-pub use force::{Action, Drive, DriveLaw, DriveOn, DriveQuantity, Target, Wrench, WrittenArguments};
+pub use force::{Action, Drive, DriveLaw, DriveQuantity, DriveTarget, Target, Wrench, WrittenArguments};
 pub use geometry::{Collision, Mesh, MeshVertices, Shape, Visual};
-pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particle, Point};
+pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, MimicRelation, Particle, Point};
 
 /// Scalar type of the generated functions.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,7 +108,7 @@ pub struct Description {
     /// Descriptions of contents of the robot file that the mechanism omits.
     pub left_out: Vec<String>,
     /// Option for the treatment of mass properties: check, trust or none.
-    pub inertias: Inertias,
+    pub inertias: InertiaOption,
     /// Whether the file's root is the ground, which then has a frame as other links have.
     pub ground_frame: bool,
     /// Whether elements with errors were removed; it is then unknown which bodies these would hold.
@@ -152,7 +152,7 @@ impl Description {
             formulation: Formulation::default(),
             snapped: Vec::new(),
             left_out: Vec::new(),
-            inertias: Inertias::Check,
+            inertias: InertiaOption::Check,
             ground_frame: false,
             partial: false,
         }
@@ -161,7 +161,7 @@ impl Description {
 
 /// Option for the treatment of mass properties.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Inertias {
+pub enum InertiaOption {
     /// Mass properties are checked for physical consistency.
     #[default]
     Check,

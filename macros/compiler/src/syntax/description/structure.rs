@@ -89,7 +89,7 @@ pub struct Joint {
     /// Assembly mode of a loop that is solved in closed form, for its closing joint.
     pub branch: Option<Expr>,
     /// Joint whose coordinate this joint follows.
-    pub mimic: Option<Mimic>,
+    pub mimic: Option<MimicRelation>,
     /// Viscous damping on the coordinate (URDF).
     pub damping: Option<Expr>,
     /// Coulomb friction on the coordinate (URDF).
@@ -112,7 +112,7 @@ pub struct Endpoint {
 
 /// Mimic relation of a joint: `coordinate = multiplier × other + offset`.
 #[derive(Clone, Debug)]
-pub struct Mimic {
+pub struct MimicRelation {
     /// Joint whose coordinate the mimic joint follows.
     pub joint: Name,
     /// Factor of the followed coordinate.

@@ -8,7 +8,7 @@ use linkwork_compiler::catalogue::{self, Id};
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::{Model, Supplied};
+use linkwork_compiler::mechanism::{Model, SuppliedQuantity};
 use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 
@@ -47,16 +47,18 @@ pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> 
         assert_eq!(lacks, None, "{name}");
         let values = Values::random_values(model, seed);
         let mut case = Case { model, output, values, name: name.clone(), compared: 0 };
-        case.check_variants();
+        case.check_lane_and_prepared_variants();
         case.check_dynamics();
-        case.check_outputs();
+        case.check_derivatives_of_outputs();
         case.check_constraints();
-        case.check_contacts();
+        case.check_contact_functions();
         case.check_derivatives();
-        case.check_parameters();
-        case.check_requested();
+        case.check_parameter_derivatives();
+        case.check_requested_functions();
         compared = case.compared;
-        compile_and_call(&format!("{arguments}{SKIPPED}"), item, &mut |_, plain| case.check_passes(plain));
+        compile_and_call(&format!("{arguments}{SKIPPED}"), item, &mut |_, plain| {
+            case.check_against_unoptimised(plain)
+        });
     });
     compared
 }
@@ -98,7 +100,7 @@ impl Case<'_, '_> {
         self.find_function(name).map_or_else(Vec::new, |f| values.run_function(self.output, f))
     }
 
-    pub(super) fn run_at_own_values(&self, name: &str) -> Vec<f64> {
+    pub(super) fn run_function_at_case_values(&self, name: &str) -> Vec<f64> {
         self.run_function(name, &self.values)
     }
 
@@ -133,7 +135,7 @@ impl Case<'_, '_> {
     }
 
     /// Compares columns of a result with the derivatives of a function by finite differences.
-    pub(super) fn compare_columns(
+    pub(super) fn compare_columns_with_differences(
         &mut self,
         what: &str,
         found: &[f64],
@@ -144,7 +146,7 @@ impl Case<'_, '_> {
         let rows = of(&self.values).len();
         assert_eq!(found.len(), n * rows, "{what} by {by:?} of {}", self.name);
         for k in 0..n {
-            let (values, changed) = (self.values.clone(), self.entry_changer());
+            let (values, changed) = (self.values.clone(), self.state_entry_changer());
             let column = &found[k * rows..(k + 1) * rows];
             self.compare_with_derivative(&format!("{what} by {by:?}, column {k}"), column, &|h| {
                 of(&changed(&values, by, k, h))
@@ -153,8 +155,8 @@ impl Case<'_, '_> {
     }
 
     /// Compares a function whose results are consecutive derivatives of another function.
-    pub(super) fn check_columns(&mut self, what: &str, base: &str, by: &[DerivativeVariable]) {
-        let found = self.run_at_own_values(what);
+    pub(super) fn check_derivative_columns(&mut self, what: &str, base: &str, by: &[DerivativeVariable]) {
+        let found = self.run_function_at_case_values(what);
         if found.is_empty() || self.find_function(base).is_none() {
             return;
         }
@@ -165,7 +167,7 @@ impl Case<'_, '_> {
         let mut rest = &found[..];
         for by in by {
             let (columns, after) = rest.split_at(self.values.entry_count(*by) * rows);
-            self.compare_columns(what, columns, *by, &function_outputs);
+            self.compare_columns_with_differences(what, columns, *by, &function_outputs);
             rest = after;
         }
         assert!(rest.is_empty(), "{what} has more than derivatives, {}", self.name);
@@ -173,9 +175,9 @@ impl Case<'_, '_> {
 
     /// Returns a function that changes one entry of the state. With declared generalized speeds,
     /// configuration displacements are measured in the generalized speeds at the initial configuration.
-    fn entry_changer(&self) -> impl Fn(&Values, DerivativeVariable, usize, f64) -> Values + use<> {
+    fn state_entry_changer(&self) -> impl Fn(&Values, DerivativeVariable, usize, f64) -> Values + use<> {
         let charts = self.model.charts.clone();
-        let (columns, nv) = (self.run_at_own_values("__rate_matrix"), self.values.v.len());
+        let (columns, nv) = (self.run_function_at_case_values("__rate_matrix"), self.values.v.len());
         move |values, by, k, h| match by {
             DerivativeVariable::Q => {
                 let displacement_of_entry = |j: usize| match columns.get(k * nv + j) {
@@ -203,7 +205,7 @@ impl Case<'_, '_> {
     }
 
     /// Compares every function with its variants with lanes and with prepared values.
-    fn check_variants(&mut self) {
+    fn check_lane_and_prepared_variants(&mut self) {
         let output = self.output;
         for function in &output.functions {
             let found = self.values.run_function(output, function);
@@ -215,9 +217,9 @@ impl Case<'_, '_> {
         let Some(prepared) = &output.prepared else { return };
         for function in &prepared.functions {
             let plain = output.functions.iter().find(|f| f.name == function.name);
-            if let Some(plain) = plain.filter(|plain| has_equal_results(plain, function)) {
+            if let Some(plain) = plain.filter(|plain| has_comparable_results(plain, function)) {
                 let expected = self.values.run_function(output, plain);
-                let found = self.values.run_prepared(prepared, function);
+                let found = self.values.run_prepared_function(prepared, function);
                 let bound = SAME * (1.0 + largest_magnitude(&expected));
                 self.assert_close_entries(&format!("{} prepared", function.name), &found, &expected, bound);
             }
@@ -225,10 +227,10 @@ impl Case<'_, '_> {
     }
 
     /// Compares every generated function with its variant compiled without passes.
-    fn check_passes(&mut self, plain: &Output) {
+    fn check_against_unoptimised(&mut self, plain: &Output) {
         for function in &plain.functions {
             if let Some(own) =
-                self.find_function(&function.name).filter(|own| has_equal_results(own, function))
+                self.find_function(&function.name).filter(|own| has_comparable_results(own, function))
             {
                 let found = self.values.run_function(self.output, own);
                 let expected = self.values.run_function(plain, function);
@@ -254,38 +256,41 @@ impl Case<'_, '_> {
         ) else {
             return;
         };
-        let forces = self.run_at_own_values("inverse_dynamics");
+        let forces = self.run_function_at_case_values("inverse_dynamics");
         let depends_on_accelerations = !self.model.acceleration_forces.is_empty();
-        let (mass, momenta) =
-            (self.run_at_own_values("mass_matrix"), self.run_at_own_values("generalized_momentum"));
+        let (mass, momenta) = (
+            self.run_function_at_case_values("mass_matrix"),
+            self.run_function_at_case_values("generalized_momentum"),
+        );
         if !depends_on_accelerations {
-            self.compare_columns("mass matrix", &mass, DerivativeVariable::A, &|x| {
+            self.compare_columns_with_differences("mass matrix", &mass, DerivativeVariable::A, &|x| {
                 x.run_function(output, &inverse)
             });
-            let rate = self.run_at_own_values("momentum_rate");
+            let rate = self.run_function_at_case_values("momentum_rate");
             let along = self.function_along_motion(|x| x.run_function(output, &momentum));
             self.compare_with_derivative("momenta", &sum_of_vectors(&rate, &forces), &along);
         }
-        self.compare_columns("momenta", &momenta, DerivativeVariable::V, &|x| {
+        self.compare_columns_with_differences("momenta", &momenta, DerivativeVariable::V, &|x| {
             x.run_function(output, &kinetic)
         });
         if !self.model.time && !depends_on_accelerations {
-            let power = dot(&forces, &self.values.v) + self.run_at_own_values("disturbance_power")[0]
-                - self.run_at_own_values("dissipated_power")[0];
+            let power = dot(&forces, &self.values.v)
+                + self.run_function_at_case_values("disturbance_power")[0]
+                - self.run_function_at_case_values("dissipated_power")[0];
             let along = self.function_along_motion(|x| {
                 sum_of_vectors(&x.run_function(output, &kinetic), &x.run_function(output, &potential))
             });
             self.compare_with_derivative("energy", &[power], &along);
-            let effort = dot(&self.run_at_own_values("generalized_forces"), &self.values.v);
+            let effort = dot(&self.run_function_at_case_values("generalized_forces"), &self.values.v);
             let bound = SAME * (1.0 + effort.abs());
             self.assert_close_entries(
                 "power of inputs",
-                &self.run_at_own_values("control_power"),
+                &self.run_function_at_case_values("control_power"),
                 &[effort],
                 bound,
             );
         }
-        let found = self.run_at_own_values("forward_dynamics");
+        let found = self.run_function_at_case_values("forward_dynamics");
         if !found.is_empty() && found.iter().all(|a| a.is_finite()) {
             let there = Values { a: found.clone(), ..self.values.clone() };
             let forces = there.run_function(output, &inverse);
@@ -298,20 +303,20 @@ impl Case<'_, '_> {
         }
     }
 
-    fn check_outputs(&mut self) {
+    fn check_derivatives_of_outputs(&mut self) {
         let outputs: Vec<Function> =
             self.output.functions.iter().filter(|f| f.id == Id::Output).cloned().collect();
         for function in outputs {
             let depends_on_velocities = function.arguments.contains(&catalogue::Argument::V);
             let by = if depends_on_velocities { DerivativeVariable::V } else { DerivativeVariable::Q };
             let full_name = |suffix: &str| format!("{}{suffix}", function.name);
-            self.check_columns(&full_name(catalogue::JACOBIAN), &function.name, &[by]);
-            self.check_columns(
+            self.check_derivative_columns(&full_name(catalogue::JACOBIAN), &function.name, &[by]);
+            self.check_derivative_columns(
                 &full_name(catalogue::DERIVATIVES),
                 &function.name,
                 &[DerivativeVariable::Q, DerivativeVariable::V, DerivativeVariable::A, DerivativeVariable::U],
             );
-            self.check_columns(
+            self.check_derivative_columns(
                 &full_name(catalogue::BY_PARAMETERS),
                 &function.name,
                 &[DerivativeVariable::Parameters],
@@ -321,22 +326,22 @@ impl Case<'_, '_> {
 
     fn check_derivatives(&mut self) {
         let output = self.output;
-        self.check_columns(
+        self.check_derivative_columns(
             "inverse_dynamics_derivatives",
             "inverse_dynamics",
             &[DerivativeVariable::Q, DerivativeVariable::V],
         );
-        self.check_columns(
+        self.check_derivative_columns(
             "generalized_momentum_derivatives",
             "generalized_momentum",
             &[DerivativeVariable::Q],
         );
-        self.check_columns(
+        self.check_derivative_columns(
             "momentum_rate_derivatives",
             "momentum_rate",
             &[DerivativeVariable::Q, DerivativeVariable::V],
         );
-        let inputs = self.run_at_own_values("__input_derivatives");
+        let inputs = self.run_function_at_case_values("__input_derivatives");
         if let Some(forces) = self.find_function("generalized_forces").cloned().filter(|_| !inputs.is_empty())
         {
             let nv = self.values.v.len();
@@ -351,11 +356,11 @@ impl Case<'_, '_> {
             let mut rest = &inputs[nv..];
             for by in [DerivativeVariable::Q, DerivativeVariable::V, DerivativeVariable::U] {
                 let (columns, after) = rest.split_at(self.values.entry_count(by) * nv);
-                self.compare_columns("forces of inputs", columns, by, &joint_forces_at);
+                self.compare_columns_with_differences("forces of inputs", columns, by, &joint_forces_at);
                 rest = after;
             }
         }
-        self.check_motion_derivatives();
+        self.check_motion_equation_derivatives();
         self.check_forward_derivatives();
         self.check_second_derivatives();
         self.check_constraint_curvature();
@@ -381,7 +386,7 @@ impl Case<'_, '_> {
             return;
         }
         let there = Values { a: accelerations, ..self.values.clone() };
-        let changed = self.entry_changer();
+        let changed = self.state_entry_changer();
         for (block, by) in [DerivativeVariable::Q, DerivativeVariable::V].into_iter().enumerate() {
             for k in 0..nv {
                 let column = &found[block * nv * nv + k * nv..][..nv];
@@ -412,23 +417,25 @@ impl Case<'_, '_> {
 
     /// Checks second derivatives of a function, contracted with the factors.
     fn check_hessian(&mut self, what: &str, base: &str, blocks: &[(DerivativeVariable, DerivativeVariable)]) {
-        let found = self.run_at_own_values(what);
+        let found = self.run_function_at_case_values(what);
         let Some(function) = self.find_function(base).cloned().filter(|_| !found.is_empty()) else { return };
         let (output, nv) = (self.output, self.values.v.len());
-        let factors = self.values.supplied_values(Supplied::Factor)[..nv].to_vec();
-        self.compare_blocks(what, &found, blocks, &|x| dot(&x.run_function(output, &function), &factors));
+        let factors = self.values.supplied_values(SuppliedQuantity::Factor)[..nv].to_vec();
+        self.compare_second_derivative_blocks(what, &found, blocks, &|x| {
+            dot(&x.run_function(output, &function), &factors)
+        });
     }
 
     /// Compares blocks of second derivatives of a scalar with second differences. For two derivatives with
     /// respect to configuration, the reference is the mean of both orders.
-    pub(super) fn compare_blocks(
+    pub(super) fn compare_second_derivative_blocks(
         &mut self,
         what: &str,
         found: &[f64],
         blocks: &[(DerivativeVariable, DerivativeVariable)],
         of: &dyn Fn(&Values) -> f64,
     ) {
-        let (changed, of) = (self.entry_changer(), |x: &Values| vec![of(x)]);
+        let (changed, of) = (self.state_entry_changer(), |x: &Values| vec![of(x)]);
         let mut first = 0;
         for (rows, columns) in blocks {
             let (m, n) = (self.values.entry_count(*rows), self.values.entry_count(*columns));
@@ -459,72 +466,78 @@ impl Case<'_, '_> {
         assert_eq!(first, found.len(), "{what} of {}", self.name);
     }
 
-    fn check_parameters(&mut self) {
+    fn check_parameter_derivatives(&mut self) {
         for base in ["inverse_dynamics", "forward_dynamics", "generalized_forces"] {
-            self.check_columns(&format!("{base}_by_parameters"), base, &[DerivativeVariable::Parameters]);
+            self.check_derivative_columns(
+                &format!("{base}_by_parameters"),
+                base,
+                &[DerivativeVariable::Parameters],
+            );
         }
     }
 
     /// Checks the regressor matrices with arbitrary inertial parameters and with the inertial parameters of
     /// the mechanism.
     fn check_regressors(&mut self) {
-        let (regressor, base) =
-            (self.run_at_own_values("joint_torque_regressor"), self.run_at_own_values("base_regressor"));
+        let (regressor, base) = (
+            self.run_function_at_case_values("joint_torque_regressor"),
+            self.run_function_at_case_values("base_regressor"),
+        );
         if regressor.is_empty() {
             return;
         }
         let nv = self.values.v.len();
-        let any = self.values.supplied_values(Supplied::Inertia)[..regressor.len() / nv].to_vec();
+        let any = self.values.supplied_values(SuppliedQuantity::Inertia)[..regressor.len() / nv].to_vec();
         let forces = matrix_vector_product(&regressor, &any);
         let bound = SAME * (1.0 + largest_magnitude(&regressor) * largest_magnitude(&any));
         self.assert_close_entries(
             "base regressor",
-            &matrix_vector_product(&base, &self.run_at_own_values("base_parameters")),
+            &matrix_vector_product(&base, &self.run_function_at_case_values("base_parameters")),
             &forces,
             bound,
         );
         // Springs and other elements contribute to the forces in addition to the bodies.
         if ["#[acts", "#[energy", "#[dissipation"].iter().all(|element| !self.name.contains(element)) {
-            let own = self.run_at_own_values("standard_parameters");
+            let own = self.run_function_at_case_values("standard_parameters");
             let bound = SAME * (1.0 + largest_magnitude(&regressor) * largest_magnitude(&own));
             self.assert_close_entries(
                 "regressor",
                 &matrix_vector_product(&regressor, &own),
-                &self.run_at_own_values("inverse_dynamics"),
+                &self.run_function_at_case_values("inverse_dynamics"),
                 bound,
             );
         }
     }
 
-    fn check_requested(&mut self) {
+    fn check_requested_functions(&mut self) {
         self.check_regressors();
         let output = self.output;
         let Values { v, a, .. } = self.values.clone();
         if let Some(momentum) = self.find_function("momentum").cloned() {
-            let matrix = self.run_at_own_values("centroidal_momentum_matrix");
+            let matrix = self.run_function_at_case_values("centroidal_momentum_matrix");
             if !matrix.is_empty() {
-                self.compare_columns("momentum", &matrix, DerivativeVariable::V, &|x| {
+                self.compare_columns_with_differences("momentum", &matrix, DerivativeVariable::V, &|x| {
                     x.run_function(output, &momentum)
                 });
                 let change = sum_of_vectors(
                     &matrix_vector_product(&matrix, &a),
-                    &self.run_at_own_values("centroidal_momentum_bias"),
+                    &self.run_function_at_case_values("centroidal_momentum_bias"),
                 );
                 let along = self.function_along_motion(|x| x.run_function(output, &momentum));
                 self.compare_with_derivative("momentum", &change, &along);
             }
         }
         if self.find_function("hamiltonian").is_some() {
-            let momenta = self.run_at_own_values("generalized_momentum");
+            let momenta = self.run_function_at_case_values("generalized_momentum");
             let canonical = Values { given: momenta.clone(), ..self.values.clone() };
-            let scale =
-                1.0 + largest_magnitude(&self.run_at_own_values("mass_matrix")) * largest_magnitude(&v);
+            let scale = 1.0
+                + largest_magnitude(&self.run_function_at_case_values("mass_matrix")) * largest_magnitude(&v);
             let found = self.run_function("canonical_velocity", &canonical);
             let again = Values { v: found.clone(), ..self.values.clone() };
             let found = self.run_function("generalized_momentum", &again);
             self.assert_close_entries("canonical velocity", &found, &momenta, SAME * scale);
-            let energy = dot(&momenta, &v) - self.run_at_own_values("kinetic_energy")[0]
-                + self.run_at_own_values("potential_energy")[0];
+            let energy = dot(&momenta, &v) - self.run_function_at_case_values("kinetic_energy")[0]
+                + self.run_function_at_case_values("potential_energy")[0];
             let found = self.run_function("hamiltonian", &canonical);
             self.assert_close_entries(
                 "hamiltonian",
@@ -532,19 +545,19 @@ impl Case<'_, '_> {
                 &[energy],
                 SAME * (scale * (1.0 + largest_magnitude(&v)) + energy.abs()),
             );
-            let rate = sum_of_vectors(&self.run_at_own_values("momentum_rate"), &self.values.tau);
+            let rate = sum_of_vectors(&self.run_function_at_case_values("momentum_rate"), &self.values.tau);
             let found = self.run_function("canonical_momentum_rate", &canonical);
             let bound = SAME * (scale * (1.0 + largest_magnitude(&v)) + largest_magnitude(&rate));
             self.assert_close_entries("canonical momentum rate", &found, &rate, bound);
         }
-        let forward = self.run_at_own_values("forward_dynamics");
+        let forward = self.run_function_at_case_values("forward_dynamics");
         if let Some(conserved) = self.find_function("conserved").cloned().filter(|_| !forward.is_empty()) {
             self.values.u.iter_mut().for_each(|u| *u = 0.0);
-            let tau = self.run_at_own_values("generalized_forces");
+            let tau = self.run_function_at_case_values("generalized_forces");
             self.values.tau = tau;
-            let a = self.run_at_own_values("forward_dynamics");
+            let a = self.run_function_at_case_values("forward_dynamics");
             let before = std::mem::replace(&mut self.values.a, a);
-            let kept = self.run_at_own_values("conserved");
+            let kept = self.run_function_at_case_values("conserved");
             let along = self.function_along_motion(|x| x.run_function(output, &conserved));
             self.compare_with_derivative("what is conserved", &vec![0.0; kept.len()], &along);
             self.values.a = before;
@@ -553,7 +566,7 @@ impl Case<'_, '_> {
 }
 
 /// Returns true for functions whose results have the same meaning entry by entry.
-fn has_equal_results(a: &Function, b: &Function) -> bool {
+fn has_comparable_results(a: &Function, b: &Function) -> bool {
     use catalogue::Shape;
     let divided =
         matches!(a.shape, Shape::Inverse(_) | Shape::Forward(_) | Shape::Linear(..) | Shape::Accelerated(_));

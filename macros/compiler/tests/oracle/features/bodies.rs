@@ -9,7 +9,7 @@ use linkwork_compiler::catalogue::{Argument, Shape};
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::{Chart, Model, Supplied};
+use linkwork_compiler::mechanism::{Chart, Model, SuppliedQuantity};
 use linkwork_compiler::{compile, expand, read_source};
 use proc_macro2::TokenStream;
 use std::collections::{BTreeMap, BTreeSet};
@@ -117,10 +117,10 @@ fn argument_value(a: Argument, values: &Values) -> Option<Value> {
         Argument::A => vector_value(&values.a),
         Argument::Tau => vector_value(&values.tau),
         Argument::U => vector_value(&values.u),
-        Argument::Standard(n) => vector_value(&values.supplied_values(Supplied::Inertia)[..n]),
-        Argument::Factors(n) => vector_value(&values.supplied_values(Supplied::Factor)[..n]),
+        Argument::Standard(n) => vector_value(&values.supplied_values(SuppliedQuantity::Inertia)[..n]),
+        Argument::Factors(n) => vector_value(&values.supplied_values(SuppliedQuantity::Factor)[..n]),
         Argument::Momenta(n) => vector_value(&values.given[..n]),
-        Argument::Given(_, Supplied::ContactForces, count) => {
+        Argument::Given(_, SuppliedQuantity::ContactForces, count) => {
             Value::list_of_numbers(values.contact_forces.get(..count)?)
         }
         Argument::Given(_, block, count) => {
@@ -133,7 +133,7 @@ fn argument_value(a: Argument, values: &Values) -> Option<Value> {
 
 /// Interprets and compares all generated function bodies that call no other functions. Returns their names
 /// with the number of the body.
-pub fn check_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
+pub fn compare_interpreted_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
     let parse_tokens = |text: &str| -> TokenStream { text.parse().expect("the source is Rust") };
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
@@ -142,7 +142,13 @@ pub fn check_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet
     };
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
     let written = parse_written_functions(&emitted.text);
-    check_places(&model, &output, &written, seed, &format!("seed {seed}\n#[mechanism({arguments})]\n{item}"));
+    check_index_constants(
+        &model,
+        &output,
+        &written,
+        seed,
+        &format!("seed {seed}\n#[mechanism({arguments})]\n{item}"),
+    );
     let mut run = BTreeSet::new();
     for f in &output.functions {
         for (suffix, states) in [("", 1), ("_lanes", 2)] {
@@ -151,7 +157,7 @@ pub fn check_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet
             {
                 let name = format!("{}{suffix}, body {k}", f.name);
                 let about = format!("{name}, seed {seed}\n#[mechanism({arguments})]\n{item}");
-                if check_body(&model, &output, f, &body, (states, seed), &about) {
+                if check_emitted_body(&model, &output, f, &body, (states, seed), &about) {
                     run.insert(name);
                 }
             }
@@ -162,11 +168,12 @@ pub fn check_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet
 
 /// Compares two constants with the functions: the entries of the generalized forces that equal inputs, and
 /// the velocities of ball and free joints.
-fn check_places(model: &Model<'_>, output: &Output, written: &EmittedCode, seed: u64, about: &str) {
-    let places_of_constant = |name: &str| written.constants.get(name).map(option_numbers);
+fn check_index_constants(model: &Model<'_>, output: &Output, written: &EmittedCode, seed: u64, about: &str) {
+    let optional_constant_entries =
+        |name: &str| written.constants.get(name).map(numbers_in_option_expression);
     let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
     let (Some(direct), Some(turned), Some(forces)) =
-        (places_of_constant("__DIRECT_INPUTS"), places_of_constant("__TURNED"), forces)
+        (optional_constant_entries("__DIRECT_INPUTS"), optional_constant_entries("__TURNED"), forces)
     else {
         return;
     };
@@ -184,7 +191,7 @@ fn check_places(model: &Model<'_>, output: &Output, written: &EmittedCode, seed:
     let u = all[0].u.clone();
     let unit_vector =
         |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
-    let difference_by_input = |values: &Values, k: usize| -> Vec<f64> {
+    let force_of_unit_input = |values: &Values, k: usize| -> Vec<f64> {
         let changed = Values { u: sum_of_vectors(&values.u, &unit_vector(k, u.len())), ..values.clone() };
         let (after, before) = (changed.run_function(output, forces), values.run_function(output, forces));
         after.iter().zip(before).map(|(a, b)| a - b).collect()
@@ -193,7 +200,7 @@ fn check_places(model: &Model<'_>, output: &Output, written: &EmittedCode, seed:
     let velocity_driven_by_input = |k: usize| {
         (0..model.nv()).find(|v| {
             all.iter()
-                .all(|values| are_nearly_equal(&difference_by_input(values, k), &unit_vector(*v, model.nv())))
+                .all(|values| are_nearly_equal(&force_of_unit_input(values, k), &unit_vector(*v, model.nv())))
         })
     };
     let [here, there] = all.each_ref().map(|values| {
@@ -205,7 +212,7 @@ fn check_places(model: &Model<'_>, output: &Output, written: &EmittedCode, seed:
 }
 
 /// Returns the numbers in `Some([…])` or `Some((…))`; `None` for `None`.
-fn option_numbers(expr: &Expr) -> Option<Vec<usize>> {
+fn numbers_in_option_expression(expr: &Expr) -> Option<Vec<usize>> {
     let Expr::Call(call) = expr else { return None };
     let list = match &call.args[0] {
         Expr::Array(array) => &array.elems,
@@ -218,7 +225,7 @@ fn option_numbers(expr: &Expr) -> Option<Vec<usize>> {
 
 /// Runs the emitted body of a function and compares its results with those of the function's program. Returns
 /// false if the body calls other functions or an argument has no test value.
-fn check_body(
+fn check_emitted_body(
     model: &Model<'_>,
     output: &Output,
     f: &Function,
@@ -241,7 +248,7 @@ fn check_body(
         let value = if states > 1 { combine_to_lanes(&found) } else { found[0].clone() };
         machine.bind_pattern(pattern, value).unwrap_or_else(|stop| panic!("{stop:?}, {about}"));
     }
-    let mut result = match machine.run_body(body) {
+    let mut result = match machine.execute_function_body(body) {
         Ok(value) => vec![value],
         Err(Stop::Foreign) => return false,
         Err(Stop::Wrong(what)) => panic!("{what}, {about}"),

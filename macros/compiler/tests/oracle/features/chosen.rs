@@ -115,20 +115,20 @@ pub fn chain_source(joints: usize) -> String {
 }
 
 /// Returns a body with identical limbs, which are evaluated in lanes.
-pub fn limbs_source(count: usize, joints: usize) -> String {
+pub fn body_with_limbs_source(count: usize, joints: usize) -> String {
     let mut fields =
         "#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,\n"
             .to_string();
     for limb in 0..count {
         let sign_of_side = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let parent = format!("trunk.at([{}, {}, 0])", 0.2 * sign_of_side(limb), 0.1 * sign_of_side(limb / 2));
-        fields += &self::limb_source(limb, parent, joints);
+        fields += &self::limb_element_declarations(limb, parent, joints);
     }
     fields
 }
 
 /// Returns a limb of pins with springs at a point; limbs with different numbers are identical.
-pub fn limb_source(number: usize, mut parent: String, joints: usize) -> String {
+pub fn limb_element_declarations(number: usize, mut parent: String, joints: usize) -> String {
     let mut fields = String::new();
     for k in 0..joints {
         fields += &format!(
@@ -144,7 +144,7 @@ pub fn limb_source(number: usize, mut parent: String, joints: usize) -> String {
 }
 
 /// Returns a body with `count` springs to the ground.
-pub fn springs_source(count: usize) -> String {
+pub fn body_with_springs_source(count: usize) -> String {
     let mut fields = "#[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] block: Body,
         #[joint(ground -> block, about = z)] pose: Planar,"
         .to_string();

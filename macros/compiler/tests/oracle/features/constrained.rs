@@ -4,7 +4,7 @@ use super::agreement::{Case, TOLERANCE, dot, largest_magnitude, matrix_vector_pr
 use super::source;
 use super::values::{DerivativeVariable, Values};
 use linkwork_compiler::catalogue::{Record, Shape};
-use linkwork_compiler::mechanism::Supplied;
+use linkwork_compiler::mechanism::SuppliedQuantity;
 
 impl Case<'_, '_> {
     pub(super) fn check_constraints(&mut self) {
@@ -15,18 +15,18 @@ impl Case<'_, '_> {
             return;
         };
         let output = self.output;
-        self.check_columns("constraint_jacobian", "constraint_rates", &[DerivativeVariable::V]);
+        self.check_derivative_columns("constraint_jacobian", "constraint_rates", &[DerivativeVariable::V]);
         let along = self.function_along_motion(|x| x.run_function(output, &residuals));
-        let holonomic = self.run_at_own_values("constraint_residuals").len();
+        let holonomic = self.run_function_at_case_values("constraint_residuals").len();
         self.compare_with_derivative(
             "residuals",
-            &self.run_at_own_values("constraint_rates")[..holonomic],
+            &self.run_function_at_case_values("constraint_rates")[..holonomic],
             &along,
         );
-        let jacobian = self.run_at_own_values("constraint_jacobian");
+        let jacobian = self.run_function_at_case_values("constraint_jacobian");
         let change = sum_of_vectors(
             &matrix_vector_product(&jacobian, &self.values.a),
-            &self.run_at_own_values("constraint_bias"),
+            &self.run_function_at_case_values("constraint_bias"),
         );
         let along = self.function_along_motion(|x| x.run_function(output, &rates));
         self.compare_with_derivative("rates of constraints", &change, &along);
@@ -54,11 +54,13 @@ impl Case<'_, '_> {
             + largest_magnitude(jacobian) * largest_magnitude(multipliers)
             + largest_magnitude(&forces);
         self.assert_close_entries("constrained dynamics", &forces, &balance, 1e-4 * TOLERANCE * scale);
-        let change =
-            sum_of_vectors(&matrix_vector_product(jacobian, a), &self.run_at_own_values("constraint_bias"));
+        let change = sum_of_vectors(
+            &matrix_vector_product(jacobian, a),
+            &self.run_function_at_case_values("constraint_bias"),
+        );
         let scale = 1.0
             + largest_magnitude(jacobian) * largest_magnitude(a)
-            + largest_magnitude(&self.run_at_own_values("constraint_bias"));
+            + largest_magnitude(&self.run_function_at_case_values("constraint_bias"));
         self.assert_close_entries(
             "constrained accelerations",
             &change,
@@ -70,7 +72,7 @@ impl Case<'_, '_> {
     /// Checks the second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`, and the derivative of `−J w`
     /// with respect to configuration, whose rows belong to the multipliers.
     pub(super) fn check_constraint_curvature(&mut self) {
-        let found = self.run_at_own_values("__constraint_curvature");
+        let found = self.run_function_at_case_values("__constraint_curvature");
         let names = ["constraint_jacobian", "constraint_bias", "constraint_rates"];
         let [Some(jacobian), Some(bias), Some(rates)] = names.map(|name| self.find_function(name).cloned())
         else {
@@ -80,33 +82,38 @@ impl Case<'_, '_> {
             return;
         }
         let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
-        use Supplied::{AccelerationFactor, Direction, Multiplier, VelocityFactor};
+        use SuppliedQuantity::{AccelerationFactor, Direction, Multiplier, VelocityFactor};
         let [lambda, w, z, y] =
             [(Multiplier, nc), (Direction, nv), (AccelerationFactor, nc), (VelocityFactor, nc)]
                 .map(|(block, count)| self.values.supplied_values(block)[..count].to_vec());
-        let product_with_w = |x: &Values| matrix_vector_product(&x.run_function(output, &jacobian), &w);
-        let sum_of_all = |x: &Values| {
+        let jacobian_times_w = |x: &Values| matrix_vector_product(&x.run_function(output, &jacobian), &w);
+        let contracted_constraint_terms = |x: &Values| {
             let change = sum_of_vectors(
                 &matrix_vector_product(&x.run_function(output, &jacobian), &x.a),
                 &x.run_function(output, &bias),
             );
-            dot(&z, &change) + dot(&y, &x.run_function(output, &rates)) - dot(&lambda, &product_with_w(x))
+            dot(&z, &change) + dot(&y, &x.run_function(output, &rates)) - dot(&lambda, &jacobian_times_w(x))
         };
         use DerivativeVariable::{A, Q, V};
         let (state, by_multipliers) = found.split_at(4 * nv * nv);
         let what = "curvature of constraints";
-        self.compare_blocks(what, state, &[(Q, Q), (Q, V), (V, V), (Q, A)], &sum_of_all);
+        self.compare_second_derivative_blocks(
+            what,
+            state,
+            &[(Q, Q), (Q, V), (V, V), (Q, A)],
+            &contracted_constraint_terms,
+        );
         let columns: Vec<f64> =
             (0..nv).flat_map(|k| (0..nc).map(move |i| -by_multipliers[i * nv + k])).collect();
-        self.compare_columns(what, &columns, Q, &product_with_w);
+        self.compare_columns_with_differences(what, &columns, Q, &jacobian_times_w);
     }
 
-    pub(super) fn check_contacts(&mut self) {
+    pub(super) fn check_contact_functions(&mut self) {
         let Some(gaps) = self.find_function("contact_gaps").cloned() else { return };
         self.check_contact_derivatives();
         let output = self.output;
-        self.check_columns("contact_jacobian", "contact_rates", &[DerivativeVariable::V]);
-        let rates = self.run_at_own_values("contact_rates");
+        self.check_derivative_columns("contact_jacobian", "contact_rates", &[DerivativeVariable::V]);
+        let rates = self.run_function_at_case_values("contact_rates");
         let (mut first, mut approach, mut of) = (0, Vec::new(), Vec::new());
         for (k, contact) in self.model.contacts.iter().enumerate() {
             if contact.pressed_by.is_none() {
@@ -129,7 +136,7 @@ impl Case<'_, '_> {
 
     /// Checks the derivatives of `Gᵀ f`, `G a + b` and the contact velocities `G v + …`.
     fn check_contact_derivatives(&mut self) {
-        let found = self.run_at_own_values("__contact_derivatives");
+        let found = self.run_function_at_case_values("__contact_derivatives");
         let names = ["contact_jacobian", "contact_bias", "contact_rates"];
         let [Some(jacobian), Some(bias), Some(rates)] = names.map(|name| self.find_function(name).cloned())
         else {
@@ -152,17 +159,32 @@ impl Case<'_, '_> {
         let (first, rest) = found.split_at(nv * nv);
         let (second, rest) = rest.split_at(nr * nv);
         let (third, rest) = rest.split_at(nr * nv);
-        self.compare_columns("forces at contacts", first, DerivativeVariable::Q, &contact_joint_forces);
-        self.compare_columns("changes at contacts", second, DerivativeVariable::Q, &contact_acceleration);
-        self.compare_columns("changes at contacts", third, DerivativeVariable::V, &contact_acceleration);
-        self.compare_columns("rates at contacts", rest, DerivativeVariable::Q, &|x| {
+        self.compare_columns_with_differences(
+            "forces at contacts",
+            first,
+            DerivativeVariable::Q,
+            &contact_joint_forces,
+        );
+        self.compare_columns_with_differences(
+            "changes at contacts",
+            second,
+            DerivativeVariable::Q,
+            &contact_acceleration,
+        );
+        self.compare_columns_with_differences(
+            "changes at contacts",
+            third,
+            DerivativeVariable::V,
+            &contact_acceleration,
+        );
+        self.compare_columns_with_differences("rates at contacts", rest, DerivativeVariable::Q, &|x| {
             x.run_function(output, &rates)
         });
     }
 
     /// Checks the derivatives of `M a + h − Jᵀ λ`, `J a + b` and the constraint rates.
-    pub(super) fn check_motion_derivatives(&mut self) {
-        let found = self.run_at_own_values("__motion_derivatives");
+    pub(super) fn check_motion_equation_derivatives(&mut self) {
+        let found = self.run_function_at_case_values("__motion_derivatives");
         let find_function = |name: &str| self.find_function(name).cloned();
         let (Some(inverse), Some(jacobian), Some(bias), Some(rates)) = (
             find_function("inverse_dynamics"),
@@ -181,7 +203,10 @@ impl Case<'_, '_> {
             (0..nv)
                 .map(|j| {
                     forces[j]
-                        - dot(&columns[j * nc..(j + 1) * nc], &x.supplied_values(Supplied::Multiplier)[..nc])
+                        - dot(
+                            &columns[j * nc..(j + 1) * nc],
+                            &x.supplied_values(SuppliedQuantity::Multiplier)[..nc],
+                        )
                 })
                 .collect()
         };
@@ -197,31 +222,31 @@ impl Case<'_, '_> {
             rest = after;
             part
         };
-        self.compare_columns(
+        self.compare_columns_with_differences(
             "forces with multipliers",
             part(nv * nv),
             DerivativeVariable::Q,
             &residual_forces,
         );
-        self.compare_columns(
+        self.compare_columns_with_differences(
             "forces with multipliers",
             part(nv * nv),
             DerivativeVariable::V,
             &residual_forces,
         );
-        self.compare_columns(
+        self.compare_columns_with_differences(
             "changes of rates",
             part(nc * nv),
             DerivativeVariable::Q,
             &constraint_acceleration,
         );
-        self.compare_columns(
+        self.compare_columns_with_differences(
             "changes of rates",
             part(nc * nv),
             DerivativeVariable::V,
             &constraint_acceleration,
         );
-        self.compare_columns("rates", part(nc * nv), DerivativeVariable::Q, &|x| {
+        self.compare_columns_with_differences("rates", part(nc * nv), DerivativeVariable::Q, &|x| {
             x.run_function(output, &rates)
         });
     }

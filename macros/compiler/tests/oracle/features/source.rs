@@ -161,13 +161,13 @@ pub fn random_source(seed: u64) -> (String, String) {
         source.add_body(k);
     }
     for k in 0..source.random.index_below(7) {
-        source.add_element(k);
+        source.add_random_element(k);
     }
     let mut arguments = "gravity = -9.81 * y".to_string();
     for word in WORDS {
         let needs_parameters = ["sensitivities", "prepare"].contains(&word);
         let needs_constraints = word == "formulation = speeds";
-        if source.has_chance(if word == "derivatives" { 2 } else { 6 })
+        if source.happens_one_time_in(if word == "derivatives" { 2 } else { 6 })
             && (source.has_parameters || !needs_parameters)
             && (source.has_constraints || !needs_constraints)
             && !arguments.contains("equations")
@@ -179,7 +179,7 @@ pub fn random_source(seed: u64) -> (String, String) {
 }
 
 impl Source {
-    fn has_chance(&mut self, one_in: usize) -> bool {
+    fn happens_one_time_in(&mut self, one_in: usize) -> bool {
         self.random.index_below(one_in) == 0
     }
 
@@ -187,23 +187,23 @@ impl Source {
         list[self.random.index_below(list.len())]
     }
 
-    fn random_number(&mut self) -> String {
+    fn random_number_text(&mut self) -> String {
         format!("{:.3}", 1.1 + self.random.uniform_number(1.0))
     }
 
     fn add_body(&mut self, k: usize) {
-        let mut mass = self.random_number();
-        if self.has_chance(3) {
+        let mut mass = self.random_number_text();
+        if self.happens_one_time_in(3) {
             let _ = writeln!(self.fields, "mass{k}: f64,");
             mass = format!("mass{k}");
             self.has_parameters = true;
         }
         let parent = match self.bodies.len() {
             0 => "ground".to_string(),
-            _ if self.has_chance(3) => "ground".to_string(),
+            _ if self.happens_one_time_in(3) => "ground".to_string(),
             n => self.bodies[self.random.index_below(n)].clone(),
         };
-        let is_particle = self.has_chance(5);
+        let is_particle = self.happens_one_time_in(5);
         if is_particle {
             let _ = writeln!(self.fields, "#[particle(mass = {mass})] body{k}: Particle,");
         } else {
@@ -217,11 +217,11 @@ impl Source {
         let (kind, arguments, coordinates) =
             if is_particle { JOINTS[self.random_choice(&OF_PARTICLES)] } else { self.random_choice(&JOINTS) };
         let mut end = parent;
-        if self.has_chance(2) {
+        if self.happens_one_time_in(2) {
             let _ = write!(end, ".at({})", self.random_choice(&VECTORS));
         }
-        if self.has_chance(4) {
-            let (axis, angle) = (self.random_choice(&["x", "y", "z"]), self.random_number());
+        if self.happens_one_time_in(4) {
+            let (axis, angle) = (self.random_choice(&["x", "y", "z"]), self.random_number_text());
             let _ = write!(end, ".rotated({axis}({angle}))");
         }
         let mut arguments = arguments.to_string();
@@ -235,9 +235,9 @@ impl Source {
         list.push(format!("body{k}"));
     }
 
-    fn random_point(&mut self) -> String {
+    fn random_point_expression(&mut self) -> String {
         let particles = self.particles.len();
-        if !self.points.is_empty() && self.has_chance(5) {
+        if !self.points.is_empty() && self.happens_one_time_in(5) {
             let n = self.random.index_below(self.points.len());
             return self.points[n].clone();
         }
@@ -255,20 +255,22 @@ impl Source {
             let n = self.random.index_below(self.coordinates.len());
             self.coordinates[n].clone()
         });
-        if !self.states.is_empty() && self.has_chance(5) {
+        if !self.states.is_empty() && self.happens_one_time_in(5) {
             let n = self.random.index_below(self.states.len());
             return self.states[n].clone();
         }
         match (self.random.index_below(12), coordinate) {
             (0, _) => "t".to_string(),
-            (1, _) => self.random_number(),
-            (2, _) => format!("look({})", self.random_number()),
-            (3, _) => format!("norm(r({} / {}))", self.random_point(), self.random_point()),
+            (1, _) => self.random_number_text(),
+            (2, _) => format!("look({})", self.random_number_text()),
+            (3, _) => {
+                format!("norm(r({} / {}))", self.random_point_expression(), self.random_point_expression())
+            }
             (4, _) => "command".to_string(),
             (5, Some(coordinate)) => format!("rate({coordinate})"),
             (6, Some(coordinate)) => format!("look({coordinate})"),
             (_, Some(coordinate)) => coordinate,
-            (_, None) => format!("dot(r({} / ground), y)", self.random_point()),
+            (_, None) => format!("dot(r({} / ground), y)", self.random_point_expression()),
         }
     }
 
@@ -284,12 +286,12 @@ impl Source {
             match c {
                 'S' if is_letter => text += &self.random_scalar(),
                 'B' if is_letter => text += &same,
-                'P' if is_letter => text += &self.random_point(),
+                'P' if is_letter => text += &self.random_point_expression(),
                 'V' if is_letter => {
                     let form = self.random_choice(&VECTOR_VALUES);
                     text += &self.fill_placeholders(form);
                 }
-                'A' if is_letter => text += &self.random_axes(),
+                'A' if is_letter => text += &self.random_frame_name(),
                 'H' if is_letter => text += &self.random_body_or_ground(),
                 _ => text.push(c),
             }
@@ -303,7 +305,7 @@ impl Source {
     }
 
     /// Returns the name of a random body, of a frame or of the ground.
-    fn random_axes(&mut self) -> String {
+    fn random_frame_name(&mut self) -> String {
         let n = self.random.index_below(self.bodies.len() + self.frames.len() + 1);
         let named = self.bodies.iter().chain(&self.frames).nth(n);
         named.cloned().unwrap_or_else(|| "ground".to_string())
@@ -314,13 +316,13 @@ impl Source {
         self.fill_placeholders(form)
     }
 
-    fn add_element(&mut self, k: usize) {
-        let random_element = |source: &mut Source, list: fn(&Source) -> &Vec<String>| {
+    fn add_random_element(&mut self, k: usize) {
+        let random_list_entry = |source: &mut Source, list: fn(&Source) -> &Vec<String>| {
             let n = list(source).len();
             (n > 0).then(|| source.random.index_below(n)).map(|n| list(source)[n].clone())
         };
-        let coordinate = random_element(self, |source| &source.coordinates);
-        let body = random_element(self, |source| &source.bodies);
+        let coordinate = random_list_entry(self, |source| &source.coordinates);
+        let body = random_list_entry(self, |source| &source.bodies);
         let (kind, law) = (self.random.index_below(32), self.random_choice(&LAWS));
         let field = match (kind, coordinate, body) {
             (0, Some(on), _) => format!("#[acts(on = {on}, stiffness = 2)] element{k}: Spring"),
@@ -330,8 +332,8 @@ impl Source {
             (2, ..) => {
                 format!(
                     "#[acts(between = ({}, {}), {})] element{k}: {}",
-                    self.random_point(),
-                    self.random_point(),
+                    self.random_point_expression(),
+                    self.random_point_expression(),
                     law.0,
                     law.1
                 )
@@ -342,17 +344,23 @@ impl Source {
             (4, ..) => {
                 format!(
                     "#[acts(on = {}, along = {})] element{k}: Force",
-                    self.random_point(),
+                    self.random_point_expression(),
                     self.random_choice(&UNITS)
                 )
             }
             (5, ..) => format!(
                 "#[acts(on = {}, value = ({}) * ground.x)] element{k}: Force",
-                self.random_point(),
+                self.random_point_expression(),
                 self.random_value()
             ),
-            (6, ..) => format!("#[output(v({} / ground / ground))] output{k}: Vector", self.random_point()),
-            (7, ..) => format!("#[output(a({} / ground / ground))] output{k}: Vector", self.random_point()),
+            (6, ..) => format!(
+                "#[output(v({} / ground / ground))] output{k}: Vector",
+                self.random_point_expression()
+            ),
+            (7, ..) => format!(
+                "#[output(a({} / ground / ground))] output{k}: Vector",
+                self.random_point_expression()
+            ),
             (8, _, Some(body)) => format!("#[output({body}, resolved_in = ground)] output{k}: FreeBody"),
             (9, _, Some(body)) => {
                 let surfaces = self.random_choice(&SURFACES).replace('H', &body);
@@ -371,14 +379,14 @@ impl Source {
                 )
             }
             (12, ..) => format!("#[output({})] output{k}: Scalar", self.random_value()),
-            _ => self.rare_element(kind, k),
+            _ => self.declaration_of_rare_element(kind, k),
         };
         let _ = writeln!(self.fields, "{field},");
     }
 
     /// Returns the declaration of a rare element: an output, coordinate, frame or other field of the given
     /// kind.
-    fn rare_element(&mut self, kind: usize, k: usize) -> String {
+    fn declaration_of_rare_element(&mut self, kind: usize, k: usize) -> String {
         let coordinate = self.coordinates.last().cloned().unwrap_or_else(|| "t".to_string());
         let body = self.bodies.last().cloned().unwrap_or_else(|| "ground".to_string());
         match kind {
@@ -388,7 +396,7 @@ impl Source {
             }
             15 | 16 => {
                 let form = self.random_choice(&VECTOR_OUTPUTS);
-                let axes = self.random_axes();
+                let axes = self.random_frame_name();
                 format!("#[output({}, resolved_in = {axes})] output{k}: Vector", self.fill_placeholders(form))
             }
             17 => {
@@ -397,14 +405,14 @@ impl Source {
             }
             18 => {
                 self.coordinates.push(format!("own{k}"));
-                let (point, along) = (self.random_choice(&VECTORS), self.random_axes());
+                let (point, along) = (self.random_choice(&VECTORS), self.random_frame_name());
                 format!(
                     "own{k}: Coordinate,\n#[particle(mass = 0.7, at = {body}.at(own{k} * {along}.x + \
                      {point}))] bead{k}: Particle"
                 )
             }
             19 => {
-                let (on, angle) = (self.random_axes(), self.random_scalar());
+                let (on, angle) = (self.random_frame_name(), self.random_scalar());
                 self.frames.push(format!("frame{k}"));
                 format!("#[frame({on}, {}({angle}))] frame{k}: Frame", self.random_choice(&["x", "y", "z"]))
             }
@@ -417,7 +425,7 @@ impl Source {
             22 => format!("#[dissipation(0.2 * pow(rate({coordinate}), 2))] loss{k}: Rayleigh"),
             23 => {
                 self.has_constraints = true;
-                let (point, axes) = (self.random_point(), self.random_axes());
+                let (point, axes) = (self.random_point_expression(), self.random_frame_name());
                 format!(
                     "#[constraint(dot(v({point} / ground / ground), {axes}.x) = 0)] constraint{k}: \
                      Nonholonomic"
@@ -433,7 +441,11 @@ impl Source {
                 format!("#[state(rate = {rate})] state{k}: State")
             }
             26 => {
-                let (a, b, c) = (self.random_point(), self.random_point(), self.random_point());
+                let (a, b, c) = (
+                    self.random_point_expression(),
+                    self.random_point_expression(),
+                    self.random_point_expression(),
+                );
                 format!(
                     "#[acts(on = norm(r({a} / {b}) + 2 * ground.z) + norm(r({b} / {c}) - 3 * ground.x), \
                      stiffness = 2, free_length = 0.4)] element{k}: Spring"

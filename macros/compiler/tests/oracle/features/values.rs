@@ -4,7 +4,7 @@ use crate::random::Random;
 use linkwork_compiler::catalogue::Called;
 use linkwork_compiler::derive::{Function, Output, Prepared};
 use linkwork_compiler::lower::Program;
-use linkwork_compiler::mechanism::{Chart, Model, Quantity, Supplied};
+use linkwork_compiler::mechanism::{Chart, Model, Quantity, SuppliedQuantity};
 
 /// Step of sixth-order finite differences.
 const H: f64 = 4e-3;
@@ -86,7 +86,7 @@ impl Values {
     }
 
     /// Returns the results of a function of the prepared mechanism.
-    pub fn run_prepared(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
+    pub fn run_prepared_function(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
         let numbers =
             prepared.numbers.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &[]));
         let outputs_of_function = |name: &str| {
@@ -104,7 +104,7 @@ impl Values {
     }
 
     /// Returns the values that callers supply for one kind of argument, such as multipliers or momenta.
-    pub fn supplied_values(&self, block: Supplied) -> &[f64] {
+    pub fn supplied_values(&self, block: SuppliedQuantity) -> &[f64] {
         &self.given[3 * block as usize..]
     }
 
@@ -180,7 +180,7 @@ impl Values {
 }
 
 fn quaternion_of_chart(chart: Chart, q: &mut [f64]) -> Option<&mut [f64]> {
-    chart.first_quaternion_index().map(|first| &mut q[first.and_next(4)])
+    chart.first_quaternion_index().map(|first| &mut q[first.range_of_entries(4)])
 }
 
 fn normalise_quaternion(q: &mut [f64]) {
@@ -199,16 +199,16 @@ fn move_along_manifold(charts: &[Chart], q: &mut [f64], step: &[f64]) {
         match *chart {
             Chart::Plain(first, velocity) => q[first.0] += step[velocity.0],
             Chart::Ball(first, velocity) => {
-                rotate_quaternion(&mut q[first.and_next(4)], &step[velocity.and_next(3)])
+                rotate_quaternion(&mut q[first.range_of_entries(4)], &step[velocity.range_of_entries(3)])
             }
             Chart::Free(first, velocity) => {
-                let (position, quaternion) = q[first.and_next(7)].split_at_mut(3);
+                let (position, quaternion) = q[first.range_of_entries(7)].split_at_mut(3);
                 let (along, axis) =
                     ([0, 1, 2].map(|k| step[velocity.0 + k]), [0, 1, 2].map(|k| quaternion[k]));
                 let once = cross(axis, along);
                 let twice = cross(axis, once);
                 (0..3).for_each(|k| position[k] += along[k] + 2.0 * (quaternion[3] * once[k] + twice[k]));
-                rotate_quaternion(quaternion, &step[(velocity + 3).and_next(3)]);
+                rotate_quaternion(quaternion, &step[(velocity + 3).range_of_entries(3)]);
             }
         }
     }

@@ -79,7 +79,7 @@ impl Planner<'_> {
 
     /// Returns the angles that fill the groups, in order, with their numbers of lanes.
     fn padded_angles(&self, angles: &Angles) -> Vec<(Operand, usize)> {
-        let list = angles.widest_first(self.program, |angle| self.width_of_angle(angle));
+        let list = angles.angles_by_descending_width(self.program, |angle| self.width_of_angle(angle));
         let mut all: Vec<_> =
             list.iter().map(|angle| (angle.angle, self.width_of_angle(angle.angle))).collect();
         let count: usize = all.iter().map(|(_, width)| width).sum();
@@ -176,7 +176,7 @@ impl Planner<'_> {
     /// Releases the register and the memory of an angle.
     fn end_use_of_angle(&mut self, k: usize) {
         self.uses[k].clear();
-        if let Some((width, entry)) = self.forget(k) {
+        if let Some((width, entry)) = self.release_dead_value(k) {
             self.free.entry(width).or_default().push(entry);
         }
     }

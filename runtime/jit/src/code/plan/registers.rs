@@ -12,7 +12,7 @@ impl Planner<'_> {
         let op = self.program.instructions[k];
         let operands = self.operands(k);
         if is_call(&op) {
-            (0..self.values.len()).for_each(|register| self.release(register));
+            (0..self.values.len()).for_each(|register| self.free_register(register));
         } else {
             for j in &operands {
                 self.load_if_needed_soon(*j, k);
@@ -21,13 +21,13 @@ impl Planner<'_> {
         if let Op::Table(lookup, ..) = op {
             self.plan.tables = self.plan.tables.max(lookup.table_index() + 1);
         }
-        let places = self.places_of(op)?;
+        let places = self.places_of_operands(op)?;
         // Their memory is not overwritten before the operation.
         let mut ended = Vec::new();
         for j in operands {
             self.uses[j].pop();
             if self.uses[j].is_empty() {
-                ended.extend(self.forget(j));
+                ended.extend(self.release_dead_value(j));
             }
         }
         // The result replaces an operand that is not used again, preferably an addend.
@@ -60,7 +60,7 @@ impl Planner<'_> {
     }
 
     /// Returns the places of the operands; one that does not exist repeats the first.
-    fn places_of(&mut self, op: Op) -> Result<[Place; 3], String> {
+    fn places_of_operands(&mut self, op: Op) -> Result<[Place; 3], String> {
         let mut list = Vec::with_capacity(3);
         op.visit_operands(|operand| list.push(operand));
         let mut places = Vec::with_capacity(3);
@@ -135,12 +135,12 @@ impl Planner<'_> {
         let register = free.unwrap_or_else(|| {
             (0..self.values.len()).max_by_key(|register| next(self.values[*register])).unwrap_or(0)
         });
-        self.release(register);
+        self.free_register(register);
         register as u8
     }
 
     /// Takes the value out of a register.
-    fn release(&mut self, register: usize) {
+    fn free_register(&mut self, register: usize) {
         let Some(k) = self.values[register].take() else { return };
         let Some(residence) = &mut self.places[k] else { return };
         residence.register = None;
@@ -161,7 +161,7 @@ impl Planner<'_> {
 
     /// Releases the register of a value that is not used again. Returns its number of lanes and its first
     /// entry of the work space.
-    pub(super) fn forget(&mut self, k: usize) -> Option<(usize, usize)> {
+    pub(super) fn release_dead_value(&mut self, k: usize) -> Option<(usize, usize)> {
         let Residence { register, memory } = self.places[k].take()?;
         if let Some(register) = register {
             self.values[usize::from(register)] = None;

@@ -33,7 +33,7 @@ const fn scalar(opcode: u8) -> Encoding {
 }
 
 /// An instruction on the bits of a register.
-const fn packed(opcode: u8) -> Encoding {
+const fn packed_encoding(opcode: u8) -> Encoding {
     Encoding { opcode, map: 1, prefix: 1, wide: false, long: false }
 }
 
@@ -49,14 +49,14 @@ pub const MULTIPLY: Encoding = scalar(0x59);
 pub const SUBTRACT: Encoding = scalar(0x5C);
 pub const DIVIDE: Encoding = scalar(0x5E);
 pub const SQUARE_ROOT: Encoding = scalar(0x51);
-pub const MOVE: Encoding = packed(0x28);
-pub const AND: Encoding = packed(0x54);
-pub const XOR: Encoding = packed(0x57);
-pub const OR: Encoding = packed(0x56);
+pub const MOVE: Encoding = packed_encoding(0x28);
+pub const AND: Encoding = packed_encoding(0x54);
+pub const XOR: Encoding = packed_encoding(0x57);
+pub const OR: Encoding = packed_encoding(0x56);
 /// Comparison of lanes, followed by a byte for the kind of comparison.
-pub const COMPARE: Encoding = packed(0xC2);
+pub const COMPARE: Encoding = packed_encoding(0xC2);
 /// Shift of whole lanes by a constant, followed by a byte. The field of the register is part of the opcode.
-pub const SHIFT: Encoding = packed(0x73);
+pub const SHIFT: Encoding = packed_encoding(0x73);
 /// Sets the flag of zero if no bit of both operands is set.
 pub const TEST: Encoding = Encoding { opcode: 0x17, map: 2, prefix: 1, wide: false, long: false };
 /// Lanes of the second operand where the sign of a mask is set, otherwise of the first; followed by a byte
@@ -65,11 +65,11 @@ pub const BLEND: Encoding = Encoding { opcode: 0x4B, map: 3, prefix: 1, wide: fa
 /// Moves of lanes: copies of a number to two lanes, and to four.
 pub const COPY_TO_TWO: Encoding = Encoding { opcode: 0x12, map: 1, prefix: 3, wide: false, long: false };
 /// Second lanes of two registers, and first lanes.
-pub const SECOND_LANES: Encoding = packed(0x15);
-pub const FIRST_LANES: Encoding = packed(0x14);
+pub const SECOND_LANES: Encoding = packed_encoding(0x15);
+pub const FIRST_LANES: Encoding = packed_encoding(0x14);
 /// Replaces the second lane by a number in memory, and stores the second lane.
-pub const LOAD_SECOND: Encoding = packed(0x16);
-pub const STORE_SECOND: Encoding = packed(0x17);
+pub const LOAD_SECOND: Encoding = packed_encoding(0x16);
+pub const STORE_SECOND: Encoding = packed_encoding(0x17);
 /// Moves to and from the upper two of four lanes, followed by a byte.
 pub const INSERT_UPPER: Encoding = Encoding { opcode: 0x18, map: 3, prefix: 1, wide: false, long: true };
 pub const EXTRACT_UPPER: Encoding = Encoding { opcode: 0x19, map: 3, prefix: 1, wide: false, long: true };
@@ -95,7 +95,7 @@ pub struct Assembler {
 
 impl Assembler {
     /// Clears the upper halves of registers, which would slow other code down.
-    pub fn clear_upper_halves(&mut self) {
+    pub fn write_vzeroupper(&mut self) {
         if std::mem::take(&mut self.long) {
             self.bytes.extend([0xC5, 0xF8, 0x77]); // vzeroupper
         }
@@ -118,12 +118,12 @@ impl Assembler {
             Rm::Register(base) | Rm::Memory(base, _) => base,
         };
         let short = map == 1 && !wide && base < 8;
-        let high = |register: u8| if register < 8 { 0x80 } else { 0 };
+        let inverted_register_bit = |register: u8| if register < 8 { 0x80 } else { 0 };
         let last = (!first & 15) << 3 | u8::from(long) << 2 | prefix;
         match short {
-            true => self.bytes.extend([0xC5, high(register) | last]),
+            true => self.bytes.extend([0xC5, inverted_register_bit(register) | last]),
             false => {
-                let extensions = high(register) | 0x40 | high(base) >> 2;
+                let extensions = inverted_register_bit(register) | 0x40 | inverted_register_bit(base) >> 2;
                 self.bytes.extend([0xC4, extensions | map, u8::from(wide) << 7 | last]);
             }
         }
@@ -165,12 +165,12 @@ impl Assembler {
     }
 
     /// Writes an instruction on a general register and memory, 64 bits wide.
-    pub fn load_general(&mut self, to: u8, base: u8, offset: i32) {
+    pub fn write_general_register_load(&mut self, to: u8, base: u8, offset: i32) {
         self.wide(0x8B, to, base);
         self.operand(to, Rm::Memory(base, offset));
     }
 
-    pub fn address_of(&mut self, to: u8, base: u8, offset: i32) {
+    pub fn write_effective_address(&mut self, to: u8, base: u8, offset: i32) {
         self.wide(0x8D, to, base);
         self.operand(to, Rm::Memory(base, offset));
     }
@@ -184,7 +184,7 @@ impl Assembler {
         self.bytes.extend([0x48 | (register >> 3) << 2 | base >> 3, opcode]);
     }
 
-    pub fn immediate(&mut self, to: u8, value: u64) {
+    pub fn write_move_immediate(&mut self, to: u8, value: u64) {
         self.bytes.extend([0x48 | to >> 3, 0xB8 | to & 7]);
         self.bytes.extend(value.to_le_bytes());
     }

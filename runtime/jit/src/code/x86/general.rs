@@ -69,7 +69,7 @@ impl Writer<'_> {
                 true => count,
                 false => (0..count).min_by_key(|k| self.pointers[*k].last).unwrap_or(0),
             };
-            self.code.load_general(pointers[at], inputs, 8 * slot as i32);
+            self.code.write_general_register_load(pointers[at], inputs, 8 * slot as i32);
             at
         });
         self.uses += 1;

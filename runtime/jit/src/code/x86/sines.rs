@@ -88,7 +88,7 @@ impl Writer<'_> {
             group.sources.iter().map(|(place, width)| (self.operand(*place), *width)).collect();
         let rest = match sources[..] {
             [(a, 1), (b, 1), ref rest @ ..] => {
-                self.join_two(ANGLE, a, b);
+                self.write_join_of_numbers(ANGLE, a, b);
                 rest
             }
             [(a, width), ref rest @ ..] => {
@@ -99,7 +99,7 @@ impl Writer<'_> {
         };
         let upper = match *rest {
             [(c, _), (d, _)] => {
-                self.join_two(UPPER, c, d);
+                self.write_join_of_numbers(UPPER, c, d);
                 Rm::Register(UPPER)
             }
             [(c, _)] => c,
@@ -210,9 +210,9 @@ impl Writer<'_> {
         let saved = self.registers.scratch();
         saved.iter().for_each(|register| self.code.general(0x50, *register));
         if let Rm::Memory(base, at) = self.memory(Memory::Angle(0)) {
-            self.code.address_of(RDI, base, at);
+            self.code.write_effective_address(RDI, base, at);
         }
-        self.code.immediate(RSI, self.plan.angle_count() as u64);
+        self.code.write_move_immediate(RSI, self.plan.angle_count() as u64);
         self.call("sines")?;
         saved.iter().rev().for_each(|register| self.code.general(0x58, *register));
         for slot in pointers {

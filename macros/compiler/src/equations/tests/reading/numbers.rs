@@ -4,12 +4,12 @@
 use super::*;
 
 /// Returns the roots of a polynomial by the Durand-Kerner (Weierstrass) iteration.
-pub fn roots(c: &[f64]) -> Vec<Complex<f64>> {
+pub fn polynomial_roots(c: &[f64]) -> Vec<Complex<f64>> {
     let n = c.len() - 1;
     let monic: Vec<f64> = c.iter().map(|x| x / c[n]).collect();
     let size = 1.0 + monic[..n].iter().map(|x| x.abs()).fold(0.0, f64::max).powf(0.5);
-    let initial_root = |k: usize| Complex::from_polar(size, 0.4 + 2.0 * PI * k as f64 / n as f64);
-    let mut found: Vec<Complex<f64>> = (0..n).map(initial_root).collect();
+    let initial_root_guess = |k: usize| Complex::from_polar(size, 0.4 + 2.0 * PI * k as f64 / n as f64);
+    let mut found: Vec<Complex<f64>> = (0..n).map(initial_root_guess).collect();
     for _ in 0..500 {
         for k in 0..n {
             let x = found[k];
@@ -38,7 +38,7 @@ pub fn eigenvalues(a: &[Vec<f64>]) -> Vec<Complex<f64>> {
         let trace: f64 = (0..n).map(|i| (0..n).map(|l| a[i][l] * m[l][i]).sum::<f64>()).sum();
         c[n - k] = -trace / k as f64;
     }
-    roots(&c)
+    polynomial_roots(&c)
 }
 
 /// Checks that two lists contain the same roots within a tolerance.

@@ -3,34 +3,34 @@
 use super::*;
 
 /// Closure that returns the value of a name.
-pub type Values<'a> = &'a dyn Fn(&str) -> f64;
+pub type NameValues<'a> = &'a dyn Fn(&str) -> f64;
 
 /// Parser and evaluator of printed sums such as `1/2 m l² cos(theta)/(a + b)`.
-pub struct Reader<'a> {
+pub struct PrintedSumEvaluator<'a> {
     rest: &'a str,
-    values: Values<'a>,
+    values: NameValues<'a>,
 }
 
-pub fn evaluate_text(text: &str, values: Values<'_>) -> f64 {
-    let mut reader = Reader { rest: text, values };
+pub fn evaluate_text(text: &str, values: NameValues<'_>) -> f64 {
+    let mut reader = PrintedSumEvaluator { rest: text, values };
     let found = reader.parse_sum();
     assert_eq!(reader.rest, "", "{text}");
     found
 }
 
-impl Reader<'_> {
-    pub fn accept_text(&mut self, text: &str) -> bool {
+impl PrintedSumEvaluator<'_> {
+    pub fn consume_prefix(&mut self, text: &str) -> bool {
         let rest = self.rest.strip_prefix(text);
         self.rest = rest.unwrap_or(self.rest);
         rest.is_some()
     }
 
     pub fn parse_sum(&mut self) -> f64 {
-        let mut sum = if self.accept_text("-") { -self.parse_product() } else { self.parse_product() };
+        let mut sum = if self.consume_prefix("-") { -self.parse_product() } else { self.parse_product() };
         loop {
-            if self.accept_text(" + ") {
+            if self.consume_prefix(" + ") {
                 sum += self.parse_product();
-            } else if self.accept_text(" - ") {
+            } else if self.consume_prefix(" - ") {
                 sum -= self.parse_product();
             } else {
                 return sum;
@@ -42,9 +42,9 @@ impl Reader<'_> {
         let mut product = self.parse_factor();
         loop {
             let goes_on = !self.rest.starts_with(" + ") && !self.rest.starts_with(" - ");
-            if self.accept_text("/") {
+            if self.consume_prefix("/") {
                 product /= self.parse_factor();
-            } else if goes_on && self.accept_text(" ") {
+            } else if goes_on && self.consume_prefix(" ") {
                 product *= self.parse_factor();
             } else {
                 return product;
@@ -53,9 +53,9 @@ impl Reader<'_> {
     }
 
     pub fn parse_factor(&mut self) -> f64 {
-        if self.accept_text("(") {
+        if self.consume_prefix("(") {
             let sum = self.parse_sum();
-            assert!(self.accept_text(")"), "{}", self.rest);
+            assert!(self.consume_prefix(")"), "{}", self.rest);
             return sum.powi(self.parse_power());
         }
         let is_name_character = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '\'');
@@ -64,9 +64,9 @@ impl Reader<'_> {
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
         let power = self.parse_power();
-        if self.accept_text("(") {
+        if self.consume_prefix("(") {
             let argument = self.parse_sum();
-            assert!(self.accept_text(")"), "{}", self.rest);
+            assert!(self.consume_prefix(")"), "{}", self.rest);
             let found = match word {
                 "sqrt" => argument.sqrt(),
                 "acos" => argument.acos(),
@@ -82,13 +82,13 @@ impl Reader<'_> {
 
     pub fn parse_power(&mut self) -> i32 {
         let powers = [("²", 2), ("³", 3), ("⁴", 4), ("⁵", 5), ("⁶", 6), ("⁷", 7)];
-        powers.into_iter().find(|(sign, _)| self.accept_text(sign)).map_or(1, |(_, power)| power)
+        powers.into_iter().find(|(sign, _)| self.consume_prefix(sign)).map_or(1, |(_, power)| power)
     }
 }
 
 /// Parsed text of printed linear equations and their conditions.
 #[derive(Default)]
-pub struct Text {
+pub struct ParsedEquations {
     equations: Vec<(String, String)>,
     polynomial: String,
     pub frequency: String,
@@ -96,8 +96,8 @@ pub struct Text {
     conditions: Vec<String>,
 }
 
-impl Text {
-    pub fn parse(text: &str) -> Text {
+impl ParsedEquations {
+    pub fn parse(text: &str) -> ParsedEquations {
         // Continuation lines are indented.
         let mut lines: Vec<String> = Vec::new();
         for line in text.lines() {
@@ -116,7 +116,7 @@ impl Text {
                 _ => lines.push(line.to_string()),
             }
         }
-        let mut found = Text::default();
+        let mut found = ParsedEquations::default();
         let mut after = false;
         for line in &lines {
             after |= line.starts_with("Motions");
@@ -140,20 +140,20 @@ impl Text {
     }
 
     /// Returns the coefficients of a name in all equations, on the left or on the right sides.
-    pub fn coefficient_column(&self, name: &str, right: bool, parameters: Values<'_>) -> Vec<f64> {
-        let indicator_of_name = |word: &str| match word {
+    pub fn coefficient_column(&self, name: &str, right: bool, parameters: NameValues<'_>) -> Vec<f64> {
+        let value_for_unit_name = |word: &str| match word {
             _ if word == name => 1.0,
-            _ if self.is_moving(word) => 0.0,
+            _ if self.is_variable_name(word) => 0.0,
             _ => parameters(word),
         };
         self.equations
             .iter()
-            .map(|(a, b)| evaluate_text(if right { b } else { a }, &indicator_of_name))
+            .map(|(a, b)| evaluate_text(if right { b } else { a }, &value_for_unit_name))
             .collect()
     }
 
     /// Returns true for names of variables, and false for names of parameters.
-    pub fn is_moving(&self, word: &str) -> bool {
+    pub fn is_variable_name(&self, word: &str) -> bool {
         [
             "lambda", "motor", "push", "thrust", "rail", "hinge", "shoulder", "elbow", "pose", "one", "two",
             "three", "theta", "power",
@@ -163,13 +163,13 @@ impl Text {
     }
 
     /// Returns whether all printed stability conditions hold for these parameters.
-    pub fn satisfies_conditions(&self, parameters: Values<'_>) -> bool {
+    pub fn satisfies_conditions(&self, parameters: NameValues<'_>) -> bool {
         self.conditions.iter().all(|condition| evaluate_text(condition, parameters) > 0.0)
     }
 
     /// Returns the coefficients of the printed characteristic polynomial in ascending powers, determined from
     /// its values.
-    pub fn characteristic_coefficients(&self, parameters: Values<'_>) -> Vec<f64> {
+    pub fn characteristic_coefficients(&self, parameters: NameValues<'_>) -> Vec<f64> {
         let polynomial_value =
             |s: f64| evaluate_text(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
         let degree =
@@ -193,7 +193,7 @@ impl Text {
         sum
     }
 
-    pub fn characteristic_roots(&self, parameters: Values<'_>) -> Vec<Complex<f64>> {
-        roots(&self.characteristic_coefficients(parameters))
+    pub fn characteristic_roots(&self, parameters: NameValues<'_>) -> Vec<Complex<f64>> {
+        polynomial_roots(&self.characteristic_coefficients(parameters))
     }
 }
