@@ -132,6 +132,7 @@ mod arithmetic;
 mod atmosphere;
 pub mod batch;
 mod blocks;
+mod chains;
 pub mod constraint;
 pub mod contact;
 mod derivatives;
@@ -200,6 +201,7 @@ pub mod __private {
     pub use crate::absent;
     pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
     pub use crate::arithmetic::{Arithmetic, Compiled, Vector};
+    pub use crate::chains::{Block as LinkBlock, Row as LinkRow, chain_derivatives};
     pub use crate::constraint::{
         ConstraintCurvature, Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses,
         Structure, assemble, assembly_mode, careful_response, constrained_derivatives,

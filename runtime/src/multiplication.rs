@@ -91,7 +91,7 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usiz
 
 /// Sets entries of a matrix, listed by column and row, to zero.
 #[inline(always)]
-fn clear_entries<T: Real, const N: usize, const M: usize>(
+pub(crate) fn clear_entries<T: Real, const N: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, M>,
     zeros: &[(usize, usize)],
 ) {

@@ -16,6 +16,7 @@ use crate::passes::Passes;
 use crate::syntax::{EquationsOption, RequestedFunctions, SkippedPasses};
 use std::rc::Rc;
 
+mod block_loops;
 mod constraints;
 mod derivation;
 mod derivatives;
@@ -38,7 +39,8 @@ use regressor::IdentificationFunctions;
 use specialisation::ParameterSpecialisation;
 
 pub use output::{
-    AssociatedConstant, FrameSteps, Function, LinkRecursionPrograms, Output, PLACEMENT, Prepared, TWIST,
+    AssociatedConstant, BlockLoops, FrameSteps, Function, LinkRecursionPrograms, Output, PLACEMENT, Prepared,
+    TWIST,
 };
 
 /// Maximum number of products in the elimination of constraints.
@@ -419,6 +421,10 @@ fn run_final_lowering_passes(functions: &mut [Function], reproducible: bool) {
         if let Some(simd) = f.program.simd.take_if(|_| reproducible) {
             let program = simd.expand_lanes().run_passes(&[pipeline::SCHEDULE]);
             f.program = Program { simd: Some(simd), ..program };
+        }
+        f.loops = f.loops.take().filter(|_| !reproducible);
+        if let Some(loops) = &mut f.loops {
+            loops.program = std::mem::take(&mut loops.program).run_passes(pipeline::FINISH);
         }
     }
 }

@@ -97,3 +97,13 @@ pub const NEAR_STATEMENTS: usize = 60;
 /// Maximum number of zeros of a column, in the rows of its neighbours, for which it is multiplied together
 /// with them.
 pub const FILLED_ZEROS: usize = 2;
+
+/// Minimum number of velocities for which loops over blocks of links are a candidate for the derivatives of
+/// inverse dynamics.
+pub const BLOCKED_VELOCITIES: usize = 10;
+/// Cost of the loops of the derivatives of inverse dynamics for a block of links, in tenths of an
+/// instruction: 140 ns, where straight-line code of a chain of 16 links takes 10 ns for a cost of 920.
+pub const BLOCK_COST: usize = 12_000;
+/// Cost of these loops for a column of the derivatives and a block of rows, in tenths of an instruction:
+/// 3 ns.
+pub const BLOCK_COLUMN_COST: usize = 270;

@@ -3,7 +3,7 @@
 
 use super::derivatives::Derivatives;
 use super::dynamics::Dynamics;
-use super::output::Function;
+use super::output::{BlockLoops, Function};
 use super::regressor::IdentificationFunctions;
 use super::sensitivities::SensitivityDerivation;
 use super::specialisation::ParameterSpecialisation;
@@ -92,9 +92,24 @@ impl<'a, 'g> Derivation<'a, 'g> {
                 true => Default::default(),
                 false => self.program_of_function(&declared, &done),
             };
-            done.push(Function::new(declared, program, structure));
+            let loops = self.block_loops_of_function(&declared, &program);
+            done.push(Function { loops, ..Function::new(declared, program, structure) });
         }
         done
+    }
+
+    /// Returns the form of a function with loops over blocks of links, if it has one and it is faster.
+    fn block_loops_of_function(
+        &self,
+        declared: &DeclaredFunction,
+        program: &Program,
+    ) -> Option<Box<BlockLoops>> {
+        match declared.id {
+            Id::InverseDynamicsDerivatives | Id::InverseDynamicsDerivativesInto => {
+                self.derivatives?.block_loops(program).map(Box::new)
+            }
+            _ => None,
+        }
     }
 
     fn derived_dynamics(&self) -> &Dynamics<'g> {

@@ -1,14 +1,16 @@
 //! Derivation of the functions of the option `derivatives`.
 
-use super::limb_lanes;
-use super::output::Function;
+use super::output::{BlockLoops, Function};
 use super::second;
 use super::specialisation::ParameterSpecialisation;
+use super::{block_loops, limb_lanes};
 use crate::catalogue::{InverseForm, Structure};
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Operand, Program, lower};
-use crate::machine::{DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT};
+use crate::machine::{
+    BLOCKED_VELOCITIES, DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT,
+};
 use crate::mechanics::derivatives::{
     self, DerivationMethod, Factor, ForceDerivatives, Inverse, LinearizedEquations, Trunk, analytic,
     invariance, inverse_terms_for_runtime_loops, symbolic,
@@ -100,6 +102,16 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     pub(super) fn inverse_dynamics_derivatives(&self) -> Program {
         self.parts.inverse_dynamics()
+    }
+
+    /// Returns the form of the derivatives of inverse dynamics with loops over blocks of links, if it costs
+    /// less than their `program`.
+    pub(super) fn block_loops(&self, program: &Program) -> Option<BlockLoops> {
+        let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
+        let supported = *specialisation == ParameterSpecialisation::None
+            && model.nv() >= BLOCKED_VELOCITIES
+            && derivatives::has_constant_subspaces(model);
+        supported.then(|| block_loops::cheaper_block_loops(model, joints, program)).flatten()
     }
 
     pub(super) fn momentum_derivatives(&self) -> Program {

@@ -3,7 +3,7 @@
 use crate::catalogue::{Argument, Called, DeclaredFunction, Id, Shape, Structure};
 use crate::equations::PrintedEquations;
 use crate::lower::Program;
-use crate::mechanism::{Chart, Piece, Quantity};
+use crate::mechanism::{BLOCK_LENGTH, Chart, LINK_QUANTITIES, LinkBlock, MASS_PROPERTIES, Piece, Quantity};
 
 /// Derived function with its documentation, signature and program.
 #[derive(Clone)]
@@ -22,13 +22,48 @@ pub struct Function {
     pub program: Program,
     /// Structure of its matrices: zeros, packed entries, form of an inverse.
     pub structure: Structure,
+    /// Form with loops over blocks of links, if it is faster than the program for a single state.
+    pub loops: Option<Box<BlockLoops>>,
+}
+
+/// Form of the derivatives of inverse dynamics that calls loops of the runtime.
+#[derive(Clone)]
+pub struct BlockLoops {
+    /// Program of the quantities that the loops need (`mechanics::derivatives::blocks`), followed by the
+    /// derivatives of passive forces that are not zero.
+    pub program: Program,
+    /// Blocks of links, parents first.
+    pub blocks: Vec<LinkBlock>,
+    /// True if the first block is a free root link.
+    pub free: bool,
+    /// For each derivative of passive forces: whether it is with respect to `v`, row, column.
+    pub passive: Vec<(bool, usize, usize)>,
+    /// Column and row of the entries of each matrix that the loops write and that are always zero.
+    pub zeros: [Vec<(usize, usize)>; 2],
+}
+
+impl BlockLoops {
+    /// Returns the number of outputs with quantities of links, which are followed by their mass properties.
+    pub fn link_output_count(&self) -> usize {
+        self.blocks.len() * LINK_QUANTITIES * BLOCK_LENGTH
+    }
+
+    /// Returns the number of outputs with mass properties, which are followed by the acceleration opposite to
+    /// gravity and by the derivatives of passive forces.
+    pub fn inertia_output_count(&self) -> usize {
+        self.blocks.len() * MASS_PROPERTIES * BLOCK_LENGTH
+    }
+
+    fn output_count(&self) -> usize {
+        self.link_output_count() + self.inertia_output_count() + 3 + self.passive.len()
+    }
 }
 
 impl Function {
     /// Returns a declared function with its program and the structure of its matrices.
     pub fn new(declared: DeclaredFunction, program: Program, structure: Structure) -> Function {
         let DeclaredFunction { id, name, docs, arguments, shape } = declared;
-        Function { id, name, docs, arguments, shape, program, structure }
+        Function { id, name, docs, arguments, shape, program, structure, loops: None }
     }
 
     /// Returns an empty function for a mechanism with an error.
@@ -52,6 +87,7 @@ impl Function {
             shape,
             program,
             structure: Structure::default(),
+            loops: None,
         }
     }
 
@@ -66,12 +102,13 @@ impl Function {
         symbols.iter().any(|s| Argument::Called(called).index(Quantity::from_symbol(*s)).is_some())
     }
 
-    /// Returns true if the program, and its version in lanes, has the number of outputs that the result takes
-    /// and reads only arguments of the function.
+    /// Returns true if the program, its version in lanes and that with loops have the expected number of
+    /// outputs and read only arguments of the function.
     fn has_declared_inputs_and_outputs(&self) -> bool {
         let expected = self.shape.output_count(&self.structure);
-        let programs = [Some(&self.program), self.program.simd.as_deref()];
-        programs.into_iter().flatten().all(|program| {
+        let programs = [Some(&self.program), self.program.simd.as_deref()].map(|p| Some((p?, expected)));
+        let loops = self.loops.as_ref().map(|loops| (&loops.program, loops.output_count()));
+        programs.into_iter().chain([loops]).flatten().all(|(program, expected)| {
             let uses_only_available_arguments = || {
                 program
                     .used_symbols()

@@ -7,7 +7,7 @@ use super::instruction::{BodyWriter, BuildKind};
 use super::pieces::{Outputs, Piece, Statement, storage_constructor};
 use super::signature::{Signature, matrix_argument_names, variant_matrix_argument_count};
 use super::statements::{BLOCK, write_body_statement, write_statements};
-use super::{matrices, stores};
+use super::{block_loops, matrices, stores};
 use crate::catalogue::{Argument, Called, Shape};
 use crate::derive::Function;
 use crate::expr::Symbol;
@@ -27,9 +27,10 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         return;
     }
     // Functions of several states already fill the lanes.
-    let in_lanes =
-        f.program.simd.as_deref().filter(|_| build == BuildKind::Optimised && !s.scalar.uses_batch_lanes());
-    let program = in_lanes.unwrap_or(&f.program);
+    let single = build == BuildKind::Optimised && !s.scalar.uses_batch_lanes();
+    let in_lanes = f.program.simd.as_deref().filter(|_| single);
+    let loops = f.loops.as_deref().filter(|_| single);
+    let program = loops.map(|loops| &loops.program).or(in_lanes).unwrap_or(&f.program);
     let mut w = BodyWriter {
         build,
         program,
@@ -63,6 +64,14 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     w.statements[..head].iter().for_each(|statement| write_body_statement(out, statement));
     write_input_bindings(out, &late, s, &w);
     let rest = w.statements.split_off(head);
+    if let Some(loops) = loops {
+        let zero = s.scalar.constant_expression(0.0);
+        out.push_str(&block_loops::declaration_of_links(loops, &outputs, &zero));
+        let rest = block_loops::with_stored_links(loops, rest, &outputs);
+        write_statements(out, &rest, block_loops::outputs_of_call(loops, &outputs));
+        out.push_str(&block_loops::call_of_loops(f, loops, s, &outputs));
+        return;
+    }
     let is_zero_output = |k: usize| program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0));
     let results = Outputs { pieces: &outputs, is_zero: &is_zero_output };
     if !matrix_argument_names(f).is_empty() {

@@ -156,6 +156,9 @@ pub fn operation_count_table(functions: &[Function]) -> String {
         if let Some(program) = &f.program.simd {
             row("its variant in lanes", program);
         }
+        if let Some(loops) = &f.loops {
+            row("its variant with loops over links, which are not counted", &loops.program);
+        }
     }
     if lines.is_empty() {
         return lines;

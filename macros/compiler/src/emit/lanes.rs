@@ -33,7 +33,10 @@ pub fn write_methods(
         _ => !f.is_hidden() && !f.arguments.is_empty(),
     };
     for f in functions.iter().filter(is_batched) {
-        let exact = match f.program.simd {
+        let exact = match &f.program.simd {
+            _ if f.loops.is_some() => {
+                "up to rounding: the function of a single state uses loops over the links"
+            }
             Some(_) if !i.facts.requests.reproducible => {
                 "up to rounding: the function of a single state uses the lanes for limbs or joints"
             }

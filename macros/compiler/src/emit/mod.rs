@@ -3,6 +3,7 @@
 
 mod absent;
 mod angles;
+mod block_loops;
 mod body;
 mod constants;
 mod constraint_data;

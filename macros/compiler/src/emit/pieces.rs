@@ -87,7 +87,7 @@ impl Outputs<'_> {
 }
 
 /// Returns an array expression; if all items are equal, in the form with one item and a count.
-fn array_expression(texts: Vec<&str>) -> String {
+pub fn array_expression(texts: Vec<&str>) -> String {
     match texts.as_slice() {
         [first, rest @ ..] if rest.len() > 1 && rest.iter().all(|text| text == first) => {
             format!("[{first}; {}]", texts.len())

@@ -21,6 +21,7 @@ pub fn variant_matrix_argument_count(f: &Function) -> Option<usize> {
     match f.shape {
         _ if !matrix_argument_names(f).is_empty() => None,
         Shape::CalledForward(_) => Some(3),
+        Shape::Pair(_) if has_variant && f.loops.is_some() => Some(2),
         Shape::Pair(_) if has_variant && f.program.instructions.len() >= FILLING_INSTRUCTIONS => Some(2),
         _ => None,
     }

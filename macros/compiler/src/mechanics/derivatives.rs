@@ -27,6 +27,7 @@ macro_rules! impl_propagated {
 }
 
 pub mod analytic;
+pub mod blocks;
 mod columns;
 mod factor;
 pub mod invariance;

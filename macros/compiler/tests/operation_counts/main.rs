@@ -2,6 +2,7 @@
 //! parameters, of a robot, and of a robot whose limbs are SIMD lanes. All other counts are upper bounds with
 //! a margin of two per cent for changes of the cost model.
 
+use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::lower::{Op, Program};
@@ -15,6 +16,17 @@ fn compile_named_programs(arguments: &str, item: &str, functions: &[&str]) -> Ve
 
 /// Returns the programs of these functions, and the number of expressions in the graph.
 fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<Program>, usize) {
+    with_output(arguments, item, |output, graph| {
+        let program_of_function_name = |name: &&str| {
+            let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
+            f.program.clone()
+        };
+        (functions.iter().map(program_of_function_name).collect(), graph.len())
+    })
+}
+
+/// Compiles a mechanism and passes the result, with its graph of expressions, to a function.
+fn with_output<R>(arguments: &str, item: &str, f: impl FnOnce(&Output, &Graph) -> R) -> R {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
@@ -23,11 +35,7 @@ fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<P
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
-    let program_of_function_name = |name: &&str| {
-        let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
-        f.program.clone()
-    };
-    (functions.iter().map(program_of_function_name).collect(), graph.len())
+    f(&output, &graph)
 }
 
 fn chain_source(n: usize, symbolic: bool) -> String {
@@ -319,4 +327,19 @@ fn prepared_mass_parameters_add_few_operations() {
         let is_close = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
         assert!(is_close(all), "{name}: {all:?}, of the file's figures {plain:?}");
     }
+}
+
+#[test]
+fn loops_over_links_compute_the_derivatives_of_long_chains_only() {
+    let has_loops = |n: usize| {
+        with_output("derivatives", &chain_source(n, false), |output, _| {
+            output.functions.iter().any(|f| f.loops.is_some())
+        })
+    };
+    assert!(!has_loops(6));
+    assert!(has_loops(20));
+    let quadruped = r#"urdf = "../../models/urdf/solo12.urdf", base = free, derivatives"#;
+    assert!(with_output(quadruped, "struct Solo;", |output, _| {
+        output.functions.iter().all(|f| f.loops.is_none())
+    }));
 }
