@@ -130,17 +130,17 @@ fn hulls_slide_like_boxes() {
     assert!((speed - wanted).abs() < 1e-4, "{speed} {wanted}");
 }
 
-/// Blocks that fall flat, or on a corner, and tip. Until several contacts close in the same step, rounding
-/// errors do not grow.
+/// Blocks that fall flat, or on a corner, and tip. Where several contacts close in one step, their impulses
+/// are not unique; positions then differ by up to a micrometre.
 #[test]
 fn hulls_fall_like_boxes() {
-    for (place, angles) in [
-        ([0.02, 0.01, 0.15], [0.0, 0.0, 0.3]),
-        ([0.08, 0.02, 0.3], [0.5, 0.15, 0.0]),
-        ([0.02, 0.01, 0.2], [0.1, 0.03, 0.3]),
+    for (place, angles, tolerance) in [
+        ([0.02, 0.01, 0.15], [0.0, 0.0, 0.3], 1e-9),
+        ([0.08, 0.02, 0.3], [0.5, 0.15, 0.0], 1e-9),
+        ([0.02, 0.01, 0.2], [0.1, 0.03, 0.3], 2e-6),
     ] {
         let turn = UnitQuaternion::from_euler_angles(angles[0], angles[1], angles[2]);
         let difference = largest_difference(0.0, configuration(place, turn), 0.2);
-        assert!(difference.iter().all(|x| *x < 1e-9), "{place:?}: {difference:?}");
+        assert!(difference.iter().all(|x| *x < tolerance), "{place:?}: {difference:?}");
     }
 }
