@@ -42,7 +42,7 @@ fn bounds_do_not_change_features() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
     };
-    for k in 0..3000 {
+    for k in 0..600 {
         let mut vector = |size: f64| Vector3::new(next(), next(), next()) * size;
         let turn = Rotation3::from_scaled_axis(vector(3.0)).into_inner();
         let place = vector([0.1, 0.5, 3.0][k % 3]);
