@@ -124,7 +124,9 @@ impl<'a> ExportedMechanism<'a> {
         let (has_frames, has_derivatives) = (!self.output.frames.is_empty(), self.has_derivatives());
         match f.id {
             _ if f.reads_results_of(Called::ContactFeatures) => {
-                self.left_out.push(format!("{}: contacts of polytopes with each other", f.name));
+                if !f.is_hidden() {
+                    self.left_out.push(format!("{}: contacts of polytopes with each other", f.name));
+                }
             }
             Id::PolytopePoses => {}
             Id::RateMatrix if has_frames || has_derivatives => self.hidden.push(f),
