@@ -5,6 +5,7 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
 use linkwork::{Derivatives, Lanes, mechanism};
 use support::compare::assert_close_relative_to_largest;
+use support::differences::derivative_columns;
 use support::random::Random;
 
 /// Tolerance between derivatives and central differences of eighth order.
@@ -102,28 +103,6 @@ struct CoupledArmAndSlider {
 }
 
 const COUPLED: CoupledArmAndSlider = CoupledArmAndSlider { gain: 0.2, share: 0.5, reach: 1.3, added: 0.7 };
-
-/// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
-fn derivative_at_zero<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
-    let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-    let terms = weights.iter().zip(1..).map(|(w, k)| (f(k as f64 * h) - f(-(k as f64) * h)) * *w);
-    terms.fold(SVector::zeros(), |sum, term| sum + term) / h
-}
-
-/// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
-fn difference_derivatives_at_zero<const N: usize, const K: usize>(
-    sizes: [f64; K],
-    f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
-) -> Vec<f64> {
-    let derivative_column = |k: usize| {
-        derivative_at_zero(sizes[k], |s| {
-            let mut by = SVector::zeros();
-            by[k] = s;
-            f(by)
-        })
-    };
-    (0..K).flat_map(|k| derivative_column(k).as_slice().to_vec()).collect()
-}
 
 struct Case<const NQ: usize, const NV: usize, const NU: usize> {
     t: f64,
@@ -232,22 +211,19 @@ fn derivatives_agree_with_finite_differences() {
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
         let accelerations_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
         let displaced_configuration = |by| whole.integrate(&q, &by);
-        let found = difference_derivatives_at_zero(still, |by| {
-            accelerations_of_whole(&displaced_configuration(by), &v, &tau)
-        });
-        assert_close_relative_to_largest("∂v̇/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = difference_derivatives_at_zero(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
-        assert_close_relative_to_largest("∂v̇/∂v", by_v.as_slice(), &found, DIFFERENCE);
         let found =
-            difference_derivatives_at_zero([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
-        assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), &found, 1e-9);
+            derivative_columns(still, |by| accelerations_of_whole(&displaced_configuration(by), &v, &tau));
+        assert_close_relative_to_largest("∂v̇/∂q", by_q.as_slice(), found.as_slice(), DIFFERENCE);
+        let found = derivative_columns(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
+        assert_close_relative_to_largest("∂v̇/∂v", by_v.as_slice(), found.as_slice(), DIFFERENCE);
+        let found = derivative_columns([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
+        assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), found.as_slice(), 1e-9);
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
-        let found = difference_derivatives_at_zero(still, |by| {
-            whole.inverse_dynamics(t, &displaced_configuration(by), &v, &a)
-        });
-        assert_close_relative_to_largest("∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = difference_derivatives_at_zero(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
-        assert_close_relative_to_largest("∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
+        let found =
+            derivative_columns(still, |by| whole.inverse_dynamics(t, &displaced_configuration(by), &v, &a));
+        assert_close_relative_to_largest("∂τ/∂q", by_q.as_slice(), found.as_slice(), DIFFERENCE);
+        let found = derivative_columns(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
+        assert_close_relative_to_largest("∂τ/∂v", by_v.as_slice(), found.as_slice(), DIFFERENCE);
     }
 }
 
@@ -265,12 +241,12 @@ fn linearisation_agrees_with_finite_differences() {
             coupled_accelerations(&q, &v, &u).as_slice(),
             1e-13,
         );
-        let found = difference_derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&(q + by), &v, &u));
-        assert_close_relative_to_largest("∂v̇/∂q", motion.by_q.as_slice(), &found, DIFFERENCE);
-        let found = difference_derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&q, &(v + by), &u));
-        assert_close_relative_to_largest("∂v̇/∂v", motion.by_v.as_slice(), &found, DIFFERENCE);
-        let found = difference_derivatives_at_zero([1e-2; 1], |by| coupled_accelerations(&q, &v, &(u + by)));
-        assert_close_relative_to_largest("∂v̇/∂u", motion.by_u.as_slice(), &found, DIFFERENCE);
+        let found = derivative_columns([1e-2; 3], |by| coupled_accelerations(&(q + by), &v, &u));
+        assert_close_relative_to_largest("∂v̇/∂q", motion.by_q.as_slice(), found.as_slice(), DIFFERENCE);
+        let found = derivative_columns([1e-2; 3], |by| coupled_accelerations(&q, &(v + by), &u));
+        assert_close_relative_to_largest("∂v̇/∂v", motion.by_v.as_slice(), found.as_slice(), DIFFERENCE);
+        let found = derivative_columns([1e-2; 1], |by| coupled_accelerations(&q, &v, &(u + by)));
+        assert_close_relative_to_largest("∂v̇/∂u", motion.by_u.as_slice(), found.as_slice(), DIFFERENCE);
     }
 }
 
@@ -287,16 +263,13 @@ fn parameter_derivatives_agree_with_finite_differences() {
             }
         };
         let by = COUPLED.inverse_dynamics_by_parameters(t, &q, &v, &a);
-        let found = difference_derivatives_at_zero([1e-2; 4], |s| {
-            perturbed_mechanism(s).inverse_dynamics(t, &q, &v, &a)
-        });
-        assert_close_relative_to_largest("∂τ/∂p", by.as_slice(), &found, DIFFERENCE);
+        let found = derivative_columns([1e-2; 4], |s| perturbed_mechanism(s).inverse_dynamics(t, &q, &v, &a));
+        assert_close_relative_to_largest("∂τ/∂p", by.as_slice(), found.as_slice(), DIFFERENCE);
         let tau = a;
         let by = COUPLED.forward_dynamics_by_parameters(t, &q, &v, &tau);
-        let found = difference_derivatives_at_zero([1e-2; 4], |s| {
-            perturbed_mechanism(s).forward_dynamics(t, &q, &v, &tau)
-        });
-        assert_close_relative_to_largest("∂v̇/∂p", by.as_slice(), &found, DIFFERENCE);
+        let found =
+            derivative_columns([1e-2; 4], |s| perturbed_mechanism(s).forward_dynamics(t, &q, &v, &tau));
+        assert_close_relative_to_largest("∂v̇/∂p", by.as_slice(), found.as_slice(), DIFFERENCE);
     }
 }
 
@@ -351,11 +324,17 @@ struct Hull {
     pitching: Scalar,
     #[define(along * surge * hull.x + across * (sway * hull.y + heave * hull.z))]
     impulse: Vector,
-    #[acts(on = hull, value = -along * rate(surge) * hull.x - across * (rate(sway) * hull.y + rate(heave) * hull.z)
-        - cross(omega(hull / ground), impulse))]
+    #[acts(
+        on = hull,
+        value = -along * rate(surge) * hull.x - across * (rate(sway) * hull.y + rate(heave) * hull.z)
+            - cross(omega(hull / ground), impulse)
+    )]
     water: Force,
-    #[acts(on = hull, value = -turning * (rate(pitching) * hull.y + cross(omega(hull / ground), pitching * hull.y))
-        - cross(velocity, impulse))]
+    #[acts(
+        on = hull,
+        value = -turning * (rate(pitching) * hull.y + cross(omega(hull / ground), pitching * hull.y))
+            - cross(velocity, impulse)
+    )]
     munk: Torque,
 }
 

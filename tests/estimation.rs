@@ -6,33 +6,30 @@ use linkwork::nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork::{Derivatives, OutputDerivatives, Outputs, discrete};
 use support::random::Random;
+use support::with_common_fields;
 
-/// Load that swings and rotates on a ball joint, with a gyroscope and an accelerometer.
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct Load {
-    #[body(mass = 1.5, com = -0.8 * z, inertia = diagonal(0.02, 0.03, 0.01))]
-    load: Body,
-    #[joint(ground -> load)]
-    hook: Ball,
-    #[output(omega(load / ground), resolved_in = load)]
-    gyroscope: Vector,
-    #[output(a(load.at(0.1 * x - 0.8 * z) / ground / ground) + 9.81 * z, resolved_in = load)]
-    accelerometer: Vector,
-}
+with_common_fields! {
+    {
+        #[body(mass = 1.5, com = -0.8 * z, inertia = diagonal(0.02, 0.03, 0.01))]
+        load: Body,
+        #[joint(ground -> load)]
+        hook: Ball,
+        #[output(omega(load / ground), resolved_in = load)]
+        gyroscope: Vector,
+        #[output(a(load.at(0.1 * x - 0.8 * z) / ground / ground) + 9.81 * z, resolved_in = load)]
+        accelerometer: Vector,
+    }
 
-/// Load on a ball joint with a gyroscope, an accelerometer and a compass.
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct InstrumentedLoad {
-    #[body(mass = 1.5, com = -0.8 * z, inertia = diagonal(0.02, 0.03, 0.01))]
-    load: Body,
-    #[joint(ground -> load)]
-    hook: Ball,
-    #[output(omega(load / ground), resolved_in = load)]
-    gyroscope: Vector,
-    #[output(a(load.at(0.1 * x - 0.8 * z) / ground / ground) + 9.81 * z, resolved_in = load)]
-    accelerometer: Vector,
-    #[output(ground.x, resolved_in = load)]
-    compass: Vector,
+    /// Load that swings and rotates on a ball joint, with a gyroscope and an accelerometer.
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct Load {}
+
+    /// Load on a ball joint with a gyroscope, an accelerometer and a compass.
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct InstrumentedLoad {
+        #[output(ground.x, resolved_in = load)]
+        compass: Vector,
+    }
 }
 
 const PERIOD: f64 = 0.01;

@@ -5,7 +5,9 @@ use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use linkwork::{Derivatives, Mechanism, OutputDerivatives, Outputs, mechanism};
 use support::compare::assert_close_relative_to_largest;
+use support::differences::derivative_columns;
 use support::random::Random;
+use support::slider_crank;
 
 /// Tolerance between derivatives and central differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
@@ -91,28 +93,6 @@ fn random_fighter_cases() -> Vec<Case> {
     (0..6).map(random_case).collect()
 }
 
-/// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
-fn derivative_at_zero<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
-    let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-    let terms = weights.iter().zip(1..).map(|(w, k)| (f(k as f64 * h) - f(-(k as f64) * h)) * *w);
-    terms.fold(SVector::zeros(), |sum, term| sum + term) / h
-}
-
-/// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
-fn difference_derivatives_at_zero<const N: usize, const K: usize>(
-    sizes: [f64; K],
-    f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
-) -> Vec<f64> {
-    let derivative_column = |k: usize| {
-        derivative_at_zero(sizes[k], |s| {
-            let mut by = SVector::zeros();
-            by[k] = s;
-            f(by)
-        })
-    };
-    (0..K).flat_map(|k| derivative_column(k).as_slice().to_vec()).collect()
-}
-
 const STEP: [f64; 8] = [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0, 1e-2];
 
 #[test]
@@ -183,50 +163,45 @@ fn first_order_derivatives_agree_with_differences() {
         assert_close_relative_to_largest(
             "∂v̇/∂q",
             by_q.as_slice(),
-            &difference_derivatives_at_zero(still, |by| {
-                extended_forward_dynamics(&displaced_configuration(by), &v, &tau)
-            }),
+            derivative_columns(still, |by| extended_forward_dynamics(&displaced_configuration(by), &v, &tau))
+                .as_slice(),
             DIFFERENCE,
         );
         assert_close_relative_to_largest(
             "∂v̇/∂v",
             by_v.as_slice(),
-            &difference_derivatives_at_zero(STEP, |by| extended_forward_dynamics(&q, &(v + by), &tau)),
+            derivative_columns(STEP, |by| extended_forward_dynamics(&q, &(v + by), &tau)).as_slice(),
             DIFFERENCE,
         );
-        let by_tau =
-            difference_derivatives_at_zero([1.0; 8], |by| extended_forward_dynamics(&q, &v, &(tau + by)));
-        assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), &by_tau, 1e-9);
+        let by_tau = derivative_columns([1.0; 8], |by| extended_forward_dynamics(&q, &v, &(tau + by)));
+        assert_close_relative_to_largest("∂v̇/∂τ", by_force.as_slice(), by_tau.as_slice(), 1e-9);
 
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
         let inverse_dynamics_of_whole = |q: &_, v: &_| whole.inverse_dynamics(t, q, v, &a);
         assert_close_relative_to_largest(
             "∂τ/∂q",
             by_q.as_slice(),
-            &difference_derivatives_at_zero(still, |by| {
-                inverse_dynamics_of_whole(&displaced_configuration(by), &v)
-            }),
+            derivative_columns(still, |by| inverse_dynamics_of_whole(&displaced_configuration(by), &v))
+                .as_slice(),
             DIFFERENCE,
         );
         assert_close_relative_to_largest(
             "∂τ/∂v",
             by_v.as_slice(),
-            &difference_derivatives_at_zero(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))),
+            derivative_columns(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))).as_slice(),
             DIFFERENCE,
         );
 
         let (by_q, by_v, by_u) = whole.generalized_forces_derivatives(t, &q, &v, &u);
         let forces_of_extended_system = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
-        let found = difference_derivatives_at_zero(still, |by| {
-            forces_of_extended_system(&displaced_configuration(by), &v, &u)
-        });
-        assert_close_relative_to_largest("inputs, ∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = difference_derivatives_at_zero(STEP, |by| forces_of_extended_system(&q, &(v + by), &u));
-        assert_close_relative_to_largest("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
-        let found = difference_derivatives_at_zero([1e-2; 2], |by: SVector<f64, 2>| {
-            forces_of_extended_system(&q, &v, &(u + by))
-        });
-        assert_close_relative_to_largest("inputs, ∂τ/∂u", by_u.as_slice(), &found, DIFFERENCE);
+        let found =
+            derivative_columns(still, |by| forces_of_extended_system(&displaced_configuration(by), &v, &u));
+        assert_close_relative_to_largest("inputs, ∂τ/∂q", by_q.as_slice(), found.as_slice(), DIFFERENCE);
+        let found = derivative_columns(STEP, |by| forces_of_extended_system(&q, &(v + by), &u));
+        assert_close_relative_to_largest("inputs, ∂τ/∂v", by_v.as_slice(), found.as_slice(), DIFFERENCE);
+        let found =
+            derivative_columns([1e-2; 2], |by: SVector<f64, 2>| forces_of_extended_system(&q, &v, &(u + by)));
+        assert_close_relative_to_largest("inputs, ∂τ/∂u", by_u.as_slice(), found.as_slice(), DIFFERENCE);
     }
 }
 
@@ -237,20 +212,16 @@ fn output_derivatives_include_first_order_states() {
     for Case { t, q, v, a, u } in random_fighter_cases() {
         let outputs_of_extended_mechanism = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
         let found = whole.output_derivatives(t, &q, &v, &a, &u);
-        let by_v =
-            difference_derivatives_at_zero(STEP, |by| outputs_of_extended_mechanism(&(v + by), &a, &u));
-        assert_close_relative_to_largest("∂y/∂v", found.by_v.as_slice(), &by_v, DIFFERENCE);
-        let by_a =
-            difference_derivatives_at_zero([1.0; 8], |by| outputs_of_extended_mechanism(&v, &(a + by), &u));
-        assert_close_relative_to_largest("∂y/∂v̇", found.by_a.as_slice(), &by_a, DIFFERENCE);
-        let by_u =
-            difference_derivatives_at_zero([1e-2; 2], |by| outputs_of_extended_mechanism(&v, &a, &(u + by)));
-        assert_close_relative_to_largest("∂y/∂u", found.by_u.as_slice(), &by_u, DIFFERENCE);
+        let by_v = derivative_columns(STEP, |by| outputs_of_extended_mechanism(&(v + by), &a, &u));
+        assert_close_relative_to_largest("∂y/∂v", found.by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
+        let by_a = derivative_columns([1.0; 8], |by| outputs_of_extended_mechanism(&v, &(a + by), &u));
+        assert_close_relative_to_largest("∂y/∂v̇", found.by_a.as_slice(), by_a.as_slice(), DIFFERENCE);
+        let by_u = derivative_columns([1e-2; 2], |by| outputs_of_extended_mechanism(&v, &a, &(u + by)));
+        assert_close_relative_to_largest("∂y/∂u", found.by_u.as_slice(), by_u.as_slice(), DIFFERENCE);
         let displaced_configuration = |by: SVector<f64, 8>| whole.integrate(&q, &by);
-        let by_q = difference_derivatives_at_zero([1e-2; 8], |by| {
-            whole.outputs(t, &displaced_configuration(by), &v, &a, &u)
-        });
-        assert_close_relative_to_largest("∂y/∂q", found.by_q.as_slice(), &by_q, DIFFERENCE);
+        let by_q =
+            derivative_columns([1e-2; 8], |by| whole.outputs(t, &displaced_configuration(by), &v, &a, &u));
+        assert_close_relative_to_largest("∂y/∂q", found.by_q.as_slice(), by_q.as_slice(), DIFFERENCE);
     }
 }
 
@@ -302,41 +273,27 @@ fn every_integrator_integrates_first_order_states() {
     check_sled_motion(Rosenbrock::step(1e-2), 1e-5, 1e-4);
 }
 
-/// Slider-crank that is driven either by a torque with a lag or by a torque that is an input.
-macro_rules! engine {
-    ($name:ident, { $($field:tt)* }) => {
-        #[mechanism(gravity = -9.81 * y)]
-        struct $name {
-            $($field)*
-            #[body(mass = 1, com = x / 10, inertia = rod(1, 0.2, x))]
-            crank: Body,
-            #[body(mass = 2, com = 0.3 * x, inertia = rod(2, 0.6, x))]
-            rod: Body,
-            #[body(mass = 1.5)]
-            piston: Body,
-            #[joint(ground -> crank, about = z)]
-            main: Pin,
-            #[joint(crank.at(0.2 * x) -> rod, about = z)]
-            big_end: Pin,
-            #[joint(ground -> piston, along = x)]
-            cylinder: Sleeve,
-            #[joint(rod.at(0.6 * x) -> piston, about = z)]
-            small_end: Pin,
-        }
-    };
+slider_crank! {
+    /// Slider-crank that is driven by a torque with a lag.
+    #[mechanism(gravity = -9.81 * y)]
+    struct Late {
+        lag: f64,
+        command: Input,
+        #[state(rate = (command - torque) / lag)]
+        torque: State,
+        #[acts(on = main, value = torque)]
+        motor: Torque,
+    }
 }
-engine!(Late, {
-    lag: f64,
-    command: Input,
-    #[state(rate = (command - torque) / lag)]
-    torque: State,
-    #[acts(on = main, value = torque)]
-    motor: Torque,
-});
-engine!(Prompt, {
-    #[acts(on = main)]
-    motor: Torque,
-});
+
+slider_crank! {
+    /// Slider-crank that is driven by a torque that is an input.
+    #[mechanism(gravity = -9.81 * y)]
+    struct Prompt {
+        #[acts(on = main)]
+        motor: Torque,
+    }
+}
 
 #[test]
 fn constrained_mechanisms_may_have_first_order_states() {

@@ -3,109 +3,12 @@
 
 use linkwork::contact::{self, Touch};
 use linkwork::integrate::{DormandPrince8, Hooks, Method, Rodas, Rosenbrock};
-use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use linkwork::{ByMotion, ConstrainedDerivatives, ConstraintError, Mechanism, at, constraint::stabilized};
+use linkwork::{ByMotion, ConstrainedDerivatives, Mechanism, at, constraint::stabilized};
 use linkwork_models::{CarAxle, RollingDisk};
-use std::cell::Cell;
-
-/// Mechanism that counts evaluations of forward dynamics and hides its derivatives unless `KNOWN`.
-struct CountingMechanism<'m, M, const KNOWN: bool> {
-    mechanism: &'m M,
-    count: Cell<usize>,
-}
-
-impl<'m, M, const KNOWN: bool> CountingMechanism<'m, M, KNOWN> {
-    fn new(mechanism: &'m M) -> Self {
-        Self { mechanism, count: Cell::new(0) }
-    }
-}
-
-macro_rules! pass {
-    ($($name:ident($($argument:ident: $n:ident),*) -> $result:ty;)*) => {$(
-        fn $name(&self, t: f64, $($argument: &SVector<f64, $n>),*) -> $result {
-            self.mechanism.$name(t, $($argument),*)
-        }
-    )*};
-}
-
-impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Mechanism<NQ, NV, NU>
-    for CountingMechanism<'_, M, KNOWN>
-where
-    M: Mechanism<NQ, NV, NU, Scalar = f64>,
-{
-    type Scalar = f64;
-    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
-    const INPUTS: [&'static str; NU] = M::INPUTS;
-
-    fn neutral(&self) -> SVector<f64, NQ> {
-        self.mechanism.neutral()
-    }
-    fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
-        self.mechanism.integrate(q, dv)
-    }
-    fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
-        self.mechanism.difference(from, to)
-    }
-    fn tangent_rate(&self, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.mechanism.tangent_rate(dv, v)
-    }
-    fn forward_dynamics(
-        &self,
-        t: f64,
-        q: &SVector<f64, NQ>,
-        v: &SVector<f64, NV>,
-        tau: &SVector<f64, NV>,
-    ) -> SVector<f64, NV> {
-        self.count.set(self.count.get() + 1);
-        self.mechanism.forward_dynamics(t, q, v, tau)
-    }
-    pass! {
-        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
-        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
-        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
-        generalized_forces(q: NQ, v: NV, u: NU) -> SVector<f64, NV>;
-        kinetic_energy(q: NQ, v: NV) -> f64;
-        potential_energy(q: NQ) -> f64;
-        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
-        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
-    }
-}
-
-impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Hooks<f64, NQ, NV, NU>
-    for CountingMechanism<'_, M, KNOWN>
-where
-    M: Mechanism<NQ, NV, NU, Scalar = f64>,
-{
-    const CONSTRAINED: bool = M::CONSTRAINED;
-    const FEEDBACK: bool = M::FEEDBACK;
-    const FIRST_ORDER: usize = M::FIRST_ORDER;
-
-    fn impulse(
-        &self,
-        t: f64,
-        q: &SVector<f64, NQ>,
-        v: &SVector<f64, NV>,
-        h: f64,
-        p: &SVector<f64, NV>,
-    ) -> SVector<f64, NV> {
-        self.mechanism.impulse(t, q, v, h, p)
-    }
-    fn acceleration_derivatives(
-        &self,
-        t: f64,
-        q: &SVector<f64, NQ>,
-        v: &SVector<f64, NV>,
-        u: &SVector<f64, NU>,
-    ) -> Option<ByMotion<f64, NV, NU>> {
-        if KNOWN { self.mechanism.acceleration_derivatives(t, q, v, u) } else { None }
-    }
-    pass! {
-        project(q: NQ, v: NV) -> Result<(SVector<f64, NQ>, SVector<f64, NV>), ConstraintError>;
-        is_nearly_singular(q: NQ, dv: NV) -> bool;
-    }
-}
+use support::counting::CountingMechanism;
+use support::differences::derivative_columns;
 
 /// Cart with a pendulum, on a stiff spring and dashpot.
 #[mechanism(gravity = -9.81 * y, derivatives, batch)]
@@ -219,7 +122,7 @@ where
     {
         let method = Rodas::new().tolerance(1e-2, 1e-2).initial_step(1e-6).max_step(1e-6);
         simulate(m).from(q, v).method(method).duration(1e-6).finish().unwrap();
-        m.count.get()
+        m.evaluations.get()
     }
     [
         count_evaluations(&CountingMechanism::<_, true>::new(m), q, v),
@@ -341,7 +244,7 @@ fn large_clock_times_cost_no_extra_steps() {
         let run = simulate(&counted).from([0.01, 0.4], [0.0, 1.0]).start_at(start).duration(1.0);
         let run = run.inputs(|t, _, _| [5.0 * (3.0 * (t - start)).sin()].into());
         let end = run.clone().method(Rodas::new().tolerance(1e-9, 1e-9)).finish().unwrap();
-        let count = counted.count.get();
+        let count = counted.evaluations.get();
         let fixed = run.method(Rosenbrock::step(1e-3)).finish().unwrap();
         (count, end.q, fixed.q)
     };
@@ -388,7 +291,7 @@ fn wrappers_forward_unchanged_derivatives() {
     assert_eq!(known, Some((linear.by_q, linear.by_v, linear.by_u)));
 }
 
-/// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` by central differences of fourth order.
+/// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` by central differences of eighth order.
 fn difference_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: f64,
@@ -401,23 +304,10 @@ where
     let forward_dynamics_with_input = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
         m.forward_dynamics(t, q, v, &m.generalized_forces(t, q, v, u))
     };
-    fn difference_derivatives_at_zero<const N: usize, const K: usize>(
-        f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
-    ) -> SMatrix<f64, N, K> {
-        let columns: Vec<SVector<f64, N>> = (0..K)
-            .map(|k| {
-                let value_at_displacement = |h: f64| f(SVector::from_fn(|i, _| if i == k { h } else { 0.0 }));
-                let central_difference =
-                    |h: f64| (value_at_displacement(h) - value_at_displacement(-h)) / (2.0 * h);
-                (central_difference(5e-4) * 4.0 - central_difference(1e-3)) / 3.0
-            })
-            .collect();
-        SMatrix::from_fn(|i, k| columns[k][i])
-    }
     (
-        difference_derivatives_at_zero(|dq| forward_dynamics_with_input(&m.integrate(q, &dq), v, u)),
-        difference_derivatives_at_zero(|dv| forward_dynamics_with_input(q, &(v + dv), u)),
-        difference_derivatives_at_zero(|du| forward_dynamics_with_input(q, v, &(u + du))),
+        derivative_columns([5e-4; _], |dq| forward_dynamics_with_input(&m.integrate(q, &dq), v, u)),
+        derivative_columns([5e-4; _], |dv| forward_dynamics_with_input(q, &(v + dv), u)),
+        derivative_columns([5e-4; _], |du| forward_dynamics_with_input(q, v, &(u + du))),
     )
 }
 

@@ -3,20 +3,13 @@
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Mechanism, at, mechanism};
 use support::compare::{assert_close, assert_close_relative_to_largest};
+use support::differences::{derivative_at_zero, derivative_columns};
 use support::random::Random;
 
 /// Tolerance of derivatives against finite differences.
 const DIFFERENCE: f64 = 1e-8;
 
-/// Returns the derivative of `f` at zero by central differences of fourth order.
-fn derivative_at_zero<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
-    let h = 1e-3;
-    ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
-}
-
-fn unit_vector<const N: usize>(i: usize) -> SVector<f64, N> {
-    SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
-}
+const STEP: f64 = 5e-4;
 
 /// Checks that each column of a matrix is the derivative of `f` along one unit vector, by finite differences.
 #[track_caller]
@@ -25,9 +18,7 @@ fn check_derivative_columns<const R: usize, const C: usize>(
     matrix: &SMatrix<f64, R, C>,
     f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
 ) {
-    let expected = SMatrix::<f64, R, C>::from_columns(&std::array::from_fn::<_, C, _>(|i| {
-        derivative_at_zero(|s| f(unit_vector::<C>(i) * s))
-    }));
+    let expected = derivative_columns([STEP; C], f);
     assert_close_relative_to_largest(what, matrix.as_slice(), expected.as_slice(), DIFFERENCE);
 }
 
@@ -47,37 +38,35 @@ macro_rules! check_differences {
                 (random.random_vector(1.0), random.random_vector(1.0), random.random_vector(1.0));
             let u: SVector<f64, NU> = random.random_vector(1.0);
 
+            let inverse_dynamics = |q: &_, v: &_| Mechanism::inverse_dynamics(m, 0.0, q, v, &a);
+            let forward_dynamics = |q: &_, v: &_, tau: &_| Mechanism::forward_dynamics(m, 0.0, q, v, tau);
+            let convert_to_input_derivatives = |q: &_, v: &_, u: &_| {
+                forward_dynamics(q, v, &Mechanism::generalized_forces(m, 0.0, q, v, u))
+            };
+
             let (by_q, by_v) = $at.inverse_dynamics_derivatives($($t,)? &q, &v, &a);
-            check_derivative_columns(
-                "∂τ/∂q", &by_q, |d| Mechanism::inverse_dynamics(m, 0.0, &m.integrate(&q, &d), &v, &a),
-            );
-            check_derivative_columns(
-                "∂τ/∂v", &by_v, |d| Mechanism::inverse_dynamics(m, 0.0, &q, &(v + d), &a),
-            );
+            check_derivative_columns("∂τ/∂q", &by_q, |d| inverse_dynamics(&m.integrate(&q, &d), &v));
+            check_derivative_columns("∂τ/∂v", &by_v, |d| inverse_dynamics(&q, &(v + d)));
 
             let (by_q, by_v, inverse) = $at.forward_dynamics_derivatives($($t,)? &q, &v, &tau);
-            check_derivative_columns(
-                "∂v̇/∂q", &by_q, |d| Mechanism::forward_dynamics(m, 0.0, &m.integrate(&q, &d), &v, &tau),
-            );
-            check_derivative_columns(
-                "∂v̇/∂v", &by_v, |d| Mechanism::forward_dynamics(m, 0.0, &q, &(v + d), &tau),
-            );
-            check_derivative_columns(
-                "∂v̇/∂τ", &inverse, |d| Mechanism::forward_dynamics(m, 0.0, &q, &v, &(tau + d)),
-            );
+            check_derivative_columns("∂v̇/∂q", &by_q, |d| forward_dynamics(&m.integrate(&q, &d), &v, &tau));
+            check_derivative_columns("∂v̇/∂v", &by_v, |d| forward_dynamics(&q, &(v + d), &tau));
+            check_derivative_columns("∂v̇/∂τ", &inverse, |d| forward_dynamics(&q, &v, &(tau + d)));
             assert_close("M⁻¹", $at.mass_matrix_inverse($($t,)? &q).as_slice(), inverse.as_slice(), 1e-9);
 
             let (state, input) = $at.linearize($($t,)? &q, &v, &u);
             check_derivative_columns("B", &input, |d| {
-                let change = Mechanism::forward_dynamics(m, 0.0, &q, &v, &Mechanism::generalized_forces(m, 0.0, &q, &v, &(u + d)));
+                let change = convert_to_input_derivatives(&q, &v, &(u + d));
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { 0.0 } else { change[i - NV] })
             });
             check_derivative_columns("A", &state, |d| {
                 let (dq, dv) = (SVector::from_fn(|i, _| d[i]), SVector::from_fn(|i, _| d[NV + i]));
                 let (start, w) = (m.integrate(&q, &dq), v + dv);
                 // Rate of change of the displacement from one motion to the other.
-                let apart = derivative_at_zero(|t| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t))));
-                let change = Mechanism::forward_dynamics(m, 0.0, &start, &w, &Mechanism::generalized_forces(m, 0.0, &start, &w, &u));
+                let displacement_after =
+                    |t: f64| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t)));
+                let apart = derivative_at_zero(STEP, displacement_after);
+                let change = convert_to_input_derivatives(&start, &w, &u);
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { apart[i] } else { change[i - NV] })
             });
         }

@@ -3,7 +3,9 @@
 
 use linkwork::prelude::*;
 use linkwork::{Derivatives, OutputDerivatives, Outputs, index_of};
+use support::differences;
 use support::random::Random;
+use support::with_common_fields;
 
 /// Flying body with a load on a ball joint, with a gyroscope, an accelerometer, an altimeter, a current and a
 /// camera.
@@ -151,19 +153,11 @@ fn body_momenta_and_energies_add_up() {
 
 const TOLERANCE: f64 = 1e-9;
 
-/// Returns the derivatives of `of` along every direction, a column for each, by differences of sixth order.
+/// Returns the derivatives of a function along each entry of its argument, a column for each.
 fn derivative_columns<const N: usize, const NY: usize>(
     of: impl Fn(&SVector<f64, N>) -> SVector<f64, NY>,
 ) -> SMatrix<f64, NY, N> {
-    let step = 2e-3;
-    let columns: [SVector<f64, NY>; N] = std::array::from_fn(|k| {
-        let value_at_displacement =
-            |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
-        let central_difference = |s: f64| value_at_displacement(s) - value_at_displacement(-s);
-        (central_difference(1.0) * 45.0 - central_difference(2.0) * 9.0 + central_difference(3.0))
-            / (60.0 * step)
-    });
-    SMatrix::from_fn(|i, j| columns[j][i])
+    differences::derivative_columns([1.5e-3; N], |d| of(&d))
 }
 
 fn assert_close_matrices<const R: usize, const C: usize>(
@@ -283,72 +277,64 @@ fn output_vector_contains_all_outputs() {
     assert_eq!(all[7], m.current(&q, &u));
 }
 
-/// Two rods on a cart with force elements of every kind.
-#[mechanism(gravity = -9.81 * y)]
-struct Loaded {
-    #[body(mass = 2)]
-    cart: Body,
-    #[joint(ground -> cart, along = x)]
-    rail: Sleeve,
-    #[body(mass = 1, com = 0.4 * x, inertia = diagonal(0.01, 0.05, 0.06))]
-    first: Body,
-    #[joint(cart -> first)]
-    ball: Ball,
-    #[body(mass = 0.5, com = 0.3 * y, inertia = diagonal(0.02, 0.01, 0.03))]
-    second: Body,
-    #[joint(first.at(0.8 * x) -> second, about = z)]
-    hinge: Pin,
-    #[acts(on = rail, stiffness = 30, free_length = 0.2)]
-    coil: Spring,
-    #[acts(between = (ground.at(2 * y), second.at(0.6 * y)), stiffness = 12, free_length = 0.5)]
-    rope: Spring,
-    #[acts(on = hinge, damping = 0.7)]
-    grease: Dashpot,
-    #[acts(between = (cart, second), damping = 0.4)]
-    damper: Dashpot,
-    #[acts(on = hinge, coulomb = 0.3, speed = 0.1)]
-    rubbing: Friction,
-    #[acts(on = second.at(0.6 * y), value = (2 + sin(hinge)) * ground.x)]
-    wind: Force,
-    #[acts(on = first, value = -0.2 * omega(first / ground))]
-    drag: Torque,
-    #[acts(between = (ground.at(3 * z), first.at(0.8 * x)), strength = 1.5)]
-    pull: Attraction,
-    #[acts(on = hinge)]
-    motor: Torque,
-    #[acts(on = first.at(0.5 * x), along = y)]
-    jet: Force,
-    #[acts(on = second, about = z)]
-    wheel: Torque,
-    #[acts(between = (ground, second.at(0.6 * y)))]
-    cylinder: Force,
-    #[output(power(coil) + power(rope) + power(pull))]
-    stored: Scalar,
-    #[output(power(grease) + power(damper) + power(rubbing))]
-    lost: Scalar,
-    #[output(power(wind) + power(drag))]
-    applied: Scalar,
-    #[output(power(motor) + power(jet) + power(wheel) + power(cylinder))]
-    controlled: Scalar,
-    #[output(power(grease))]
-    of_grease: Scalar,
-}
+with_common_fields! {
+    {
+        #[body(mass = 2)]
+        cart: Body,
+        #[joint(ground -> cart, along = x)]
+        rail: Sleeve,
+        #[body(mass = 1, com = 0.4 * x, inertia = diagonal(0.01, 0.05, 0.06))]
+        first: Body,
+        #[joint(cart -> first)]
+        ball: Ball,
+        #[body(mass = 0.5, com = 0.3 * y, inertia = diagonal(0.02, 0.01, 0.03))]
+        second: Body,
+        #[joint(first.at(0.8 * x) -> second, about = z)]
+        hinge: Pin,
+    }
 
-/// Two rods on a cart, without force elements.
-#[mechanism(gravity = -9.81 * y)]
-struct ForceFreeCart {
-    #[body(mass = 2)]
-    cart: Body,
-    #[joint(ground -> cart, along = x)]
-    rail: Sleeve,
-    #[body(mass = 1, com = 0.4 * x, inertia = diagonal(0.01, 0.05, 0.06))]
-    first: Body,
-    #[joint(cart -> first)]
-    ball: Ball,
-    #[body(mass = 0.5, com = 0.3 * y, inertia = diagonal(0.02, 0.01, 0.03))]
-    second: Body,
-    #[joint(first.at(0.8 * x) -> second, about = z)]
-    hinge: Pin,
+    /// Two rods on a cart with force elements of every kind.
+    #[mechanism(gravity = -9.81 * y)]
+    struct Loaded {
+        #[acts(on = rail, stiffness = 30, free_length = 0.2)]
+        coil: Spring,
+        #[acts(between = (ground.at(2 * y), second.at(0.6 * y)), stiffness = 12, free_length = 0.5)]
+        rope: Spring,
+        #[acts(on = hinge, damping = 0.7)]
+        grease: Dashpot,
+        #[acts(between = (cart, second), damping = 0.4)]
+        damper: Dashpot,
+        #[acts(on = hinge, coulomb = 0.3, speed = 0.1)]
+        rubbing: Friction,
+        #[acts(on = second.at(0.6 * y), value = (2 + sin(hinge)) * ground.x)]
+        wind: Force,
+        #[acts(on = first, value = -0.2 * omega(first / ground))]
+        drag: Torque,
+        #[acts(between = (ground.at(3 * z), first.at(0.8 * x)), strength = 1.5)]
+        pull: Attraction,
+        #[acts(on = hinge)]
+        motor: Torque,
+        #[acts(on = first.at(0.5 * x), along = y)]
+        jet: Force,
+        #[acts(on = second, about = z)]
+        wheel: Torque,
+        #[acts(between = (ground, second.at(0.6 * y)))]
+        cylinder: Force,
+        #[output(power(coil) + power(rope) + power(pull))]
+        stored: Scalar,
+        #[output(power(grease) + power(damper) + power(rubbing))]
+        lost: Scalar,
+        #[output(power(wind) + power(drag))]
+        applied: Scalar,
+        #[output(power(motor) + power(jet) + power(wheel) + power(cylinder))]
+        controlled: Scalar,
+        #[output(power(grease))]
+        of_grease: Scalar,
+    }
+
+    /// Two rods on a cart, without force elements.
+    #[mechanism(gravity = -9.81 * y)]
+    struct ForceFreeCart {}
 }
 
 /// The power of the elements equals their contribution to the rate of the kinetic energy, found from the bias

@@ -5,6 +5,8 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::{Rk4, SemiImplicitEuler};
 use linkwork::{Derivatives, Sensitivities, mechanism};
 use support::compare::assert_close_relative_to_largest;
+use support::differences::derivative_at_zero;
+use support::mechanisms::Hoop;
 use support::random::Random;
 
 /// Tolerance of derivatives against finite differences.
@@ -58,37 +60,18 @@ struct Quadruped {
     spring: Spring,
 }
 
-/// Bead on a hoop that is driven about the vertical.
-#[mechanism(gravity = -g * z, derivatives, sensitivities)]
-#[derive(Clone, Copy)]
-struct Hoop {
-    g: f64,
-    m: f64,
-    radius: f64,
-    spin: f64,
-    theta: Coordinate,
-    #[frame(ground, z(spin * t))]
-    hoop: Frame,
-    #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
-    bead: Particle,
-}
-
-/// Returns the derivatives of `f` with respect to each parameter, by differences of fourth order.
+/// Returns the derivatives of `f` with respect to each parameter, by differences.
 fn parameter_derivatives<M: Copy, const NV: usize, const NP: usize>(
     at: M,
     parameters: [fn(&mut M) -> &mut f64; NP],
     f: impl Fn(&M) -> SVector<f64, NV>,
 ) -> SMatrix<f64, NV, NP> {
     SMatrix::from_columns(&parameters.map(|parameter| {
-        let h = 1e-3;
-        let perturbed_value = |s: f64| {
+        derivative_at_zero(5e-4, |s| {
             let mut other = at;
-            *parameter(&mut other) += s * h;
+            *parameter(&mut other) += s;
             f(&other)
-        };
-        ((perturbed_value(1.0) - perturbed_value(-1.0)) * 8.0
-            - (perturbed_value(2.0) - perturbed_value(-2.0)))
-            / (12.0 * h)
+        })
     }))
 }
 

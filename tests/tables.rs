@@ -4,12 +4,15 @@
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Lanes, Real, Table, mechanism};
 use support::compare::assert_close_relative_to_largest;
+use support::differences::derivative_at_zero;
 use support::random::Random;
 
 /// Tolerance between an interpolated table and the formula from which its values were computed.
 const FORMULA: f64 = 1e-10;
 /// Tolerance between derivatives and central differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
+/// Step of these differences.
+const STEP: f64 = 2e-3;
 
 /// Defines an aircraft with coefficients from tables or formulas. The braces declare the parameters of the
 /// coefficients.
@@ -161,8 +164,8 @@ fn table_derivatives_agree_with_high_order_differences() {
             for k in 0..6 {
                 let unit = SVector::<f64, 6>::from_fn(|i, _| f64::from(u8::from(i == k)));
                 let none = SVector::<f64, 2>::zeros();
-                let by_q = derivative_at_zero(|s| acceleration_at_change(&(unit * s), &zero, &none));
-                let by_v = derivative_at_zero(|s| acceleration_at_change(&zero, &(unit * s), &none));
+                let by_q = derivative_at_zero(STEP, |s| acceleration_at_change(&(unit * s), &zero, &none));
+                let by_v = derivative_at_zero(STEP, |s| acceleration_at_change(&zero, &(unit * s), &none));
                 let acceleration_rows = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
                 assert_close_relative_to_largest(
                     "by q",
@@ -179,24 +182,12 @@ fn table_derivatives_agree_with_high_order_differences() {
             }
             for k in 0..2 {
                 let unit = SVector::<f64, 2>::from_fn(|i, _| f64::from(u8::from(i == k)));
-                let by_u = derivative_at_zero(|s| acceleration_at_change(&zero, &zero, &(unit * s)));
+                let by_u = derivative_at_zero(STEP, |s| acceleration_at_change(&zero, &zero, &(unit * s)));
                 let column = input.fixed_view::<6, 1>(6, k).into_owned();
                 assert_close_relative_to_largest("by u", column.as_slice(), by_u.as_slice(), DIFFERENCE);
             }
         }
     }
-}
-
-/// Returns the derivative of `f` at zero by central differences of eighth order.
-fn derivative_at_zero<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
-    let h = 2e-3;
-    let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-    let mut sum = SVector::zeros();
-    for (k, weight) in weights.into_iter().enumerate() {
-        let step = (k + 1) as f64 * h;
-        sum += (f(step) - f(-step)) * weight;
-    }
-    sum / h
 }
 
 #[test]

@@ -2,51 +2,40 @@
 
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
+use support::slider_crank;
 
-/// Slider-crank with a spring between the crank's pin and the ground, and a motor.
-#[mechanism(gravity = -9.81 * y)]
-struct SliderCrank {
-    #[body(mass = 1.5, com = 0.1 * x, inertia = rod(1.5, 0.2, x))]
-    crank: Body,
-    #[body(mass = 0.8, com = 0.3 * x, inertia = rod(0.8, 0.6, x))]
-    rod: Body,
-    #[body(mass = 0.5)]
-    piston: Body,
-    #[joint(ground -> crank, about = z)]
-    main: Pin,
-    #[joint(crank.at(0.2 * x) -> rod, about = z)]
-    big_end: Pin,
-    #[joint(ground -> piston, along = x)]
-    cylinder: Sleeve,
-    #[joint(rod.at(0.6 * x) -> piston, about = z)]
-    small_end: Pin,
-    #[acts(on = main)]
-    motor: Torque,
-    #[acts(between = (ground.at(0.5 * y), rod.at(0.2 * x)), stiffness = 40, free_length = 0.3)]
-    coil: Spring,
+slider_crank! {
+    /// Slider-crank with a spring between the crank's pin and the ground, and a motor.
+    #[mechanism(gravity = -9.81 * y)]
+    struct SliderCrank {
+        #[acts(on = main)]
+        motor: Torque,
+        #[acts(between = (ground.at(0.5 * y), rod.at(0.2 * x)), stiffness = 40, free_length = 0.3)]
+        coil: Spring,
 
-    #[output(reaction_force(main))]
-    on_crank: Vector,
-    #[output(reaction_torque(main))]
-    turning_crank: Vector,
-    #[output(reaction_force(big_end))]
-    on_rod: Vector,
-    #[output(reaction_force(big_end), resolved_in = rod)]
-    along_rod: Vector,
-    #[output(reaction_force(cylinder))]
-    wall: Vector,
-    #[output(reaction_force(small_end))]
-    on_piston: Vector,
-    #[output(norm(reaction_force(small_end)))]
-    load: Scalar,
-    #[point(on = rod, at = 0.3 * x)]
-    rod_centre: Point,
-    #[point(on = crank, at = 0.1 * x)]
-    crank_centre: Point,
-    #[output(a(rod_centre / ground / ground))]
-    rod_acceleration: Vector,
-    #[output(a(crank_centre / ground / ground))]
-    crank_acceleration: Vector,
+        #[output(reaction_force(main))]
+        on_crank: Vector,
+        #[output(reaction_torque(main))]
+        turning_crank: Vector,
+        #[output(reaction_force(big_end))]
+        on_rod: Vector,
+        #[output(reaction_force(big_end), resolved_in = rod)]
+        along_rod: Vector,
+        #[output(reaction_force(cylinder))]
+        wall: Vector,
+        #[output(reaction_force(small_end))]
+        on_piston: Vector,
+        #[output(norm(reaction_force(small_end)))]
+        load: Scalar,
+        #[point(on = rod, at = 0.3 * x)]
+        rod_centre: Point,
+        #[point(on = crank, at = 0.1 * x)]
+        crank_centre: Point,
+        #[output(a(rod_centre / ground / ground))]
+        rod_acceleration: Vector,
+        #[output(a(crank_centre / ground / ground))]
+        crank_acceleration: Vector,
+    }
 }
 
 #[test]

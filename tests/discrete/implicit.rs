@@ -9,26 +9,9 @@ use linkwork::prelude::*;
 use linkwork::{ConstrainedDerivatives, Mechanism, discrete};
 use support::random::Random;
 
-/// Ball that rolls on a tilted plane, with an input force and torque and a pendulum inside. It has
-/// constraints on velocities and on the configuration.
-#[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
-struct Ballbot {
-    radius: f64,
-    mass: f64,
-    #[body(mass = 2, com = 0.03 * z, inertia = diagonal(0.01, 0.02, 0.015))]
-    shell: Body,
-    #[body(mass = mass, com = -radius / 2 * z, inertia = diagonal(0.004, 0.005, 0.001))]
-    pendulum: Body,
-    #[joint(ground -> shell)]
-    flight: Free,
-    #[joint(shell -> pendulum, about = unit(x + 0.3 * y))]
-    hinge: Pin,
-    #[constraint(rolls(shell.sphere(radius), ground.plane(unit(0.2 * x + z))))]
-    contact: Rolling,
-    #[acts(on = hinge)]
-    motor: Torque,
-    #[acts(on = shell.at(0.1 * x), along = shell.y)]
-    push: Force,
+ballbot! {
+    /// Ball that rolls on a tilted plane. It has constraints on velocities and on the configuration.
+    struct Ballbot {}
 }
 
 /// Two arms on ball joints whose ends are connected by a rod of time-dependent length: a spatial loop.

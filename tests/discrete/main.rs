@@ -4,7 +4,36 @@
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::prelude::*;
 use linkwork::{Derivatives, Frames, Mechanism, frame, index_of};
+use support::differences::derivative_at_zero;
 use support::random::Random;
+
+/// Declares a ball that rolls on a tilted plane, with an input force and torque and a pendulum inside, and
+/// with further fields.
+macro_rules! ballbot {
+    ($(# $attribute:tt)* struct $name:ident { $($field:tt)* }) => {
+        $(# $attribute)*
+        #[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
+        struct $name {
+            radius: f64,
+            mass: f64,
+            #[body(mass = 2, com = 0.03 * z, inertia = diagonal(0.01, 0.02, 0.015))]
+            shell: Body,
+            #[body(mass = mass, com = -radius / 2 * z, inertia = diagonal(0.004, 0.005, 0.001))]
+            pendulum: Body,
+            #[joint(ground -> shell)]
+            flight: Free,
+            #[joint(shell -> pendulum, about = unit(x + 0.3 * y))]
+            hinge: Pin,
+            #[constraint(rolls(shell.sphere(radius), ground.plane(unit(0.2 * x + z))))]
+            contact: Rolling,
+            #[acts(on = hinge)]
+            motor: Torque,
+            #[acts(on = shell.at(0.1 * x), along = shell.y)]
+            push: Force,
+            $($field)*
+        }
+    };
+}
 
 mod implicit;
 mod speeds;
@@ -75,13 +104,10 @@ fn unit_direction_times<const N: usize>(k: usize, first: usize, size: f64) -> SV
     SVector::from_fn(|i, _| if first + i == k { size } else { 0.0 })
 }
 
-/// Returns the derivatives of `f` along each direction of state and inputs, by central differences of eighth
-/// order.
+/// Returns the derivatives of `f` along each direction of state and inputs, by central differences.
 fn derivatives_along_directions<const NV: usize, const NU: usize, const R: usize>(
     f: impl Fn(&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> SVector<f64, R>,
 ) -> Vec<SVector<f64, R>> {
-    let h = 1e-3;
-    let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let value_along_direction = |k: usize, x: f64| {
         f(
             &unit_direction_times(k, 0, x),
@@ -89,11 +115,7 @@ fn derivatives_along_directions<const NV: usize, const NU: usize, const R: usize
             &unit_direction_times(k, 2 * NV, x),
         )
     };
-    let derivative_along = |k| {
-        let central_difference = |x: f64| value_along_direction(k, x) - value_along_direction(k, -x);
-        weights.iter().zip([h, 2.0 * h, 3.0 * h, 4.0 * h]).map(|(w, x)| central_difference(x) * (w / h)).sum()
-    };
-    (0..2 * NV + NU).map(derivative_along).collect()
+    (0..2 * NV + NU).map(|k| derivative_at_zero(1e-3, |x| value_along_direction(k, x))).collect()
 }
 
 fn assert_concatenated_columns(what: &str, found: &[&[f64]], expected: &[f64], scale: f64) {

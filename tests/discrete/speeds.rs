@@ -40,38 +40,23 @@ struct Gimbal {
     wz: Speed,
 }
 
-/// Ball that rolls on a tilted plane, with a pendulum inside. The generalized speeds are the velocity of its
-/// centre in ground axes.
-#[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
-struct Ballbot {
-    radius: f64,
-    mass: f64,
-    #[body(mass = 2, com = 0.03 * z, inertia = diagonal(0.01, 0.02, 0.015))]
-    shell: Body,
-    #[body(mass = mass, com = -radius / 2 * z, inertia = diagonal(0.004, 0.005, 0.001))]
-    pendulum: Body,
-    #[joint(ground -> shell)]
-    flight: Free,
-    #[joint(shell -> pendulum, about = unit(x + 0.3 * y))]
-    hinge: Pin,
-    #[constraint(rolls(shell.sphere(radius), ground.plane(unit(0.2 * x + z))))]
-    contact: Rolling,
-    #[acts(on = hinge)]
-    motor: Torque,
-    #[acts(on = shell.at(0.1 * x), along = shell.y)]
-    push: Force,
-    #[speed(dot(v(shell / ground / ground), x))]
-    ux: Speed,
-    #[speed(dot(v(shell / ground / ground), y))]
-    uy: Speed,
-    #[speed(dot(v(shell / ground / ground), z))]
-    uz: Speed,
-    #[speed(dot(omega(shell / ground), x))]
-    wx: Speed,
-    #[speed(dot(omega(shell / ground), y))]
-    wy: Speed,
-    #[speed(dot(omega(shell / ground), z))]
-    wz: Speed,
+ballbot! {
+    /// Ball that rolls on a tilted plane. The generalized speeds are the velocity of its centre in ground
+    /// axes.
+    struct Ballbot {
+        #[speed(dot(v(shell / ground / ground), x))]
+        ux: Speed,
+        #[speed(dot(v(shell / ground / ground), y))]
+        uy: Speed,
+        #[speed(dot(v(shell / ground / ground), z))]
+        uz: Speed,
+        #[speed(dot(omega(shell / ground), x))]
+        wx: Speed,
+        #[speed(dot(omega(shell / ground), y))]
+        wy: Speed,
+        #[speed(dot(omega(shell / ground), z))]
+        wz: Speed,
+    }
 }
 
 /// Two arms whose ends are connected by a rod of time-dependent length: a spatial loop.

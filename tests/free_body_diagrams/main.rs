@@ -6,6 +6,7 @@ use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 use support::compare::assert_close;
 use support::random::Random;
+use support::slider_crank;
 
 mod contacts;
 mod places;
@@ -215,57 +216,45 @@ fn free_body_actions_equal_their_force_laws() {
     assert!(on_free.get("flight").is_none());
 }
 
-/// Slider-crank, and a rolling disk that carries a pendulum.
-#[mechanism(gravity = -9.81 * y)]
-struct Machine {
-    slope: f64,
-    #[body(mass = 1.5, com = 0.1 * x, inertia = rod(1.5, 0.2, x))]
-    crank: Body,
-    #[body(mass = 0.8, com = 0.3 * x, inertia = rod(0.8, 0.6, x))]
-    rod: Body,
-    #[body(mass = 0.5)]
-    piston: Body,
-    #[joint(ground -> crank, about = z)]
-    main: Pin,
-    #[joint(crank.at(0.2 * x) -> rod, about = z)]
-    big_end: Pin,
-    #[joint(ground -> piston, along = x)]
-    cylinder: Sleeve,
-    #[joint(rod.at(0.6 * x) -> piston, about = z)]
-    small_end: Pin,
-    #[acts(on = main)]
-    motor: Torque,
-    #[acts(between = (ground.at(0.5 * y), rod.at(0.2 * x)), stiffness = 40, free_length = 0.3)]
-    coil: Spring,
-    #[output(rod)]
-    on_rod: FreeBody,
-    #[output(momentum(rod))]
-    p_rod: Vector,
-    #[output(angular_momentum(rod / ground))]
-    h_rod: Vector,
-    #[output(center_of_mass(rod / ground))]
-    c_rod: Vector,
-    #[output(piston)]
-    on_piston: FreeBody,
+slider_crank! {
+    /// Slider-crank, and a rolling disk that carries a pendulum.
+    #[mechanism(gravity = -9.81 * y)]
+    struct Machine {
+        slope: f64,
+        #[acts(on = main)]
+        motor: Torque,
+        #[acts(between = (ground.at(0.5 * y), rod.at(0.2 * x)), stiffness = 40, free_length = 0.3)]
+        coil: Spring,
+        #[output(rod)]
+        on_rod: FreeBody,
+        #[output(momentum(rod))]
+        p_rod: Vector,
+        #[output(angular_momentum(rod / ground))]
+        h_rod: Vector,
+        #[output(center_of_mass(rod / ground))]
+        c_rod: Vector,
+        #[output(piston)]
+        on_piston: FreeBody,
 
-    #[body(mass = 0.8, inertia = disk(0.8, 0.15, z))]
-    disk: Body,
-    #[joint(ground -> disk, about = z)]
-    pose: Planar,
-    #[constraint(rolls(disk.circle(0.15, z), ground.plane(sin(slope) * x + cos(slope) * y)))]
-    ground_contact: Rolling,
-    #[body(mass = 0.4, com = -0.3 * y, inertia = rod(0.4, 0.6, y))]
-    bob: Body,
-    #[joint(disk.at(0.05 * x) -> bob, about = z)]
-    hook: Pin,
-    #[output(disk)]
-    on_disk: FreeBody,
-    #[output(momentum(disk))]
-    p_disk: Vector,
-    #[output(angular_momentum(disk / ground))]
-    h_disk: Vector,
-    #[output(center_of_mass(disk / ground))]
-    c_disk: Vector,
+        #[body(mass = 0.8, inertia = disk(0.8, 0.15, z))]
+        disk: Body,
+        #[joint(ground -> disk, about = z)]
+        pose: Planar,
+        #[constraint(rolls(disk.circle(0.15, z), ground.plane(sin(slope) * x + cos(slope) * y)))]
+        ground_contact: Rolling,
+        #[body(mass = 0.4, com = -0.3 * y, inertia = rod(0.4, 0.6, y))]
+        bob: Body,
+        #[joint(disk.at(0.05 * x) -> bob, about = z)]
+        hook: Pin,
+        #[output(disk)]
+        on_disk: FreeBody,
+        #[output(momentum(disk))]
+        p_disk: Vector,
+        #[output(angular_momentum(disk / ground))]
+        h_disk: Vector,
+        #[output(center_of_mass(disk / ground))]
+        c_disk: Vector,
+    }
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Checks of energies, motion and derivatives of a trampoline, a deck on many springs.
 
-use super::{derivative_at_zero, potential_gradient, unit_vector};
+use super::{STEP, potential_gradient, unit_vector};
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use support::compare::{assert_close, assert_close_relative_to_largest, assert_same_dynamics};
+use support::differences::derivative_at_zero;
 use support::random::Random;
 
 /// Deck on springs and dashpots around it, with a swinging arm.
@@ -333,7 +334,7 @@ fn all_functions_agree_for_many_springs() {
         let a = m.forward_dynamics(&q, &v, &tau);
         assert_close("τ", (m.mass_matrix(&q) * a + m.bias_forces(&q, &v)).as_slice(), tau.as_slice(), 1e-9);
         assert_close("τ", m.inverse_dynamics(&q, &v, &a).as_slice(), tau.as_slice(), 1e-9);
-        let rate = derivative_at_zero(|s| {
+        let rate = derivative_at_zero(STEP, |s| {
             m.generalized_momentum(&m.integrate(&q, &(v * s + a * (s * s / 2.0))), &(v + a * s))
         });
         assert_close_relative_to_largest(
@@ -362,22 +363,22 @@ fn derivatives_include_the_dependencies_of_passive_forces() {
                 (
                     "∂τ/∂q",
                     by_q.column(i),
-                    derivative_at_zero(|s| m.inverse_dynamics(&displaced_configuration(s), &v, &a)),
+                    derivative_at_zero(STEP, |s| m.inverse_dynamics(&displaced_configuration(s), &v, &a)),
                 ),
                 (
                     "∂τ/∂v",
                     by_v.column(i),
-                    derivative_at_zero(|s| m.inverse_dynamics(&q, &perturbed_velocity(s), &a)),
+                    derivative_at_zero(STEP, |s| m.inverse_dynamics(&q, &perturbed_velocity(s), &a)),
                 ),
                 (
                     "∂v̇/∂q",
                     of_a_by_q.column(i),
-                    derivative_at_zero(|s| m.forward_dynamics(&displaced_configuration(s), &v, &tau)),
+                    derivative_at_zero(STEP, |s| m.forward_dynamics(&displaced_configuration(s), &v, &tau)),
                 ),
                 (
                     "∂v̇/∂v",
                     of_a_by_v.column(i),
-                    derivative_at_zero(|s| m.forward_dynamics(&q, &perturbed_velocity(s), &tau)),
+                    derivative_at_zero(STEP, |s| m.forward_dynamics(&q, &perturbed_velocity(s), &tau)),
                 ),
             ];
             for (what, column, expected) in columns {

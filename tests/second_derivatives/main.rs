@@ -14,6 +14,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::{compile, read_source};
 use std::path::Path;
+use support::differences;
 use support::random::Random;
 
 /// Flying body with rotors, two of which also exert a drag torque, and a pendulum on a ball joint below.
@@ -67,19 +68,13 @@ struct Solo;
 /// Maximum difference of derivatives, relative to the largest entry.
 const TOLERANCE: f64 = 2e-9;
 
-/// Returns the derivatives of a matrix function along every direction by differences of sixth order.
-fn derivatives_along_directions<const N: usize, const R: usize, const C: usize>(
-    of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, R, C>,
-) -> Vec<SMatrix<f64, R, C>> {
-    let derivative_along = |k: usize| {
-        let step = 1.2e-3;
-        let value_at_displacement =
-            |s: f64| of(&SVector::from_fn(|i, _| if i == k { s * step } else { 0.0 }));
-        let central_difference = |s: f64| value_at_displacement(s) - value_at_displacement(-s);
-        (central_difference(1.0) * 45.0 - central_difference(2.0) * 9.0 + central_difference(3.0))
-            / (60.0 * step)
-    };
-    (0..N).map(derivative_along).collect()
+const STEP: f64 = 9e-4;
+
+/// Returns the derivatives of a vector function along each entry of its argument, as columns.
+fn derivative_columns<const N: usize, const R: usize>(
+    of: impl Fn(&SVector<f64, N>) -> SVector<f64, R>,
+) -> SMatrix<f64, R, N> {
+    differences::derivative_columns([STEP; N], |d| of(&d))
 }
 
 /// Returns the derivatives of `λᵀ A` by differences: entry `(i, j)` is the derivative along `j` of the
@@ -88,8 +83,7 @@ fn contracted_derivatives<const NV: usize, const N: usize, const C: usize>(
     lambda: &SVector<f64, NV>,
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, NV, C>,
 ) -> SMatrix<f64, C, N> {
-    let columns = derivatives_along_directions(|d: &SVector<f64, N>| of(d).tr_mul(lambda));
-    SMatrix::from_fn(|i, j| columns[j][i])
+    derivative_columns(|d: &SVector<f64, N>| of(d).tr_mul(lambda))
 }
 
 fn assert_block<const R: usize, const C: usize>(
@@ -261,43 +255,17 @@ fn check_second_derivatives_of_steps<M, S, const NV: usize, const NU: usize>(
     let gradient_of_step = |q: &_, v: &_, u: &_| {
         discrete::transition(m, method, t, q, v, u).expect("it moves").adjoint(&factors.0, &factors.1)
     };
-    let transposed_columns =
-        |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NV>::from_fn(|i, j| columns[j][i]);
-    let by_q = transposed_columns(derivatives_along_directions(|d: &SVector<f64, NV>| {
-        gradient_of_step(&(q + d), &v, &u).0
-    }));
+    let by_q = derivative_columns(|d: &SVector<f64, NV>| gradient_of_step(&(q + d), &v, &u).0);
     let size = by_q.amax().max(1.0);
     assert_block(&format!("{name}: qq"), &qq, &by_q, size);
     let gradient_at_velocity_step = |d: &SVector<f64, NV>| gradient_of_step(&q, &(v + d), &u);
-    assert_block(
-        &format!("{name}: qv"),
-        &qv,
-        &transposed_columns(derivatives_along_directions(|d| gradient_at_velocity_step(d).0)),
-        size,
-    );
-    assert_block(
-        &format!("{name}: vv"),
-        &vv,
-        &transposed_columns(derivatives_along_directions(|d| gradient_at_velocity_step(d).1)),
-        size,
-    );
+    assert_block(&format!("{name}: qv"), &qv, &derivative_columns(|d| gradient_at_velocity_step(d).0), size);
+    assert_block(&format!("{name}: vv"), &vv, &derivative_columns(|d| gradient_at_velocity_step(d).1), size);
     let gradient_at_input_step = |d: &SVector<f64, NU>| gradient_of_step(&q, &v, &(u + d));
-    let matrix_from_column_function =
-        |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NU>::from_fn(|i, j| columns[j][i]);
-    assert_block(
-        &format!("{name}: qu"),
-        &qu,
-        &matrix_from_column_function(derivatives_along_directions(|d| gradient_at_input_step(d).0)),
-        size,
-    );
-    assert_block(
-        &format!("{name}: vu"),
-        &vu,
-        &matrix_from_column_function(derivatives_along_directions(|d| gradient_at_input_step(d).1)),
-        size,
-    );
-    let inputs = derivatives_along_directions(|d| gradient_at_input_step(d).2);
-    assert_block(&format!("{name}: uu"), &uu, &SMatrix::from_fn(|i, j| inputs[j][i]), size);
+    assert_block(&format!("{name}: qu"), &qu, &derivative_columns(|d| gradient_at_input_step(d).0), size);
+    assert_block(&format!("{name}: vu"), &vu, &derivative_columns(|d| gradient_at_input_step(d).1), size);
+    let by_inputs = derivative_columns(|d| gradient_at_input_step(d).2);
+    assert_block(&format!("{name}: uu"), &uu, &by_inputs, size);
 }
 
 #[test]

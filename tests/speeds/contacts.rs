@@ -11,91 +11,81 @@ use linkwork::inverse_kinematics::{InverseKinematics, Target, Unreached};
 use linkwork::{Frames, index_of};
 use support::compare::{assert_close, assert_close_relative_to_largest};
 use support::random::Random;
+use support::with_common_fields;
 
-/// Tripod: a body on three feet with different contacts, one of which is a ball, and a wind force as input.
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct Tripod {
-    #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
-    hull: Body,
-    #[joint(ground -> hull)]
-    pose: Free,
-    #[contact(hull.at(0.3 * x), ground.plane(z), friction = 0.4, restitution = 0.3)]
-    front: Contact,
-    #[contact(hull.at(-0.2 * x + 0.2 * y).sphere(0.02), ground.plane(z), friction = 0.6, torsional = 0.01)]
-    left: Contact,
-    #[contact(hull.at(-0.2 * x - 0.2 * y), ground.plane(z))]
-    right: Contact,
-    #[acts(on = hull, along = ground.x)]
-    wind: Force,
+with_common_fields! {
+    {
+        #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
+        hull: Body,
+        #[joint(ground -> hull)]
+        pose: Free,
+        #[contact(hull.at(0.3 * x), ground.plane(z), friction = 0.4, restitution = 0.3)]
+        front: Contact,
+        #[contact(
+            hull.at(-0.2 * x + 0.2 * y).sphere(0.02), ground.plane(z), friction = 0.6, torsional = 0.01
+        )]
+        left: Contact,
+        #[contact(hull.at(-0.2 * x - 0.2 * y), ground.plane(z))]
+        right: Contact,
+        #[acts(on = hull, along = ground.x)]
+        wind: Force,
+    }
+
+    /// Tripod: a body on three feet with different contacts, one of which is a ball, and a wind force as
+    /// input.
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct Tripod {}
+
+    /// Tripod whose generalized speeds are the velocity of its hull's origin and the angular velocity, in
+    /// ground axes.
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct TripodInSpeeds {
+        #[speed(dot(v(hull / ground / ground), x))]
+        ux: Speed,
+        #[speed(dot(v(hull / ground / ground), y))]
+        uy: Speed,
+        #[speed(dot(v(hull / ground / ground), z))]
+        uz: Speed,
+        #[speed(dot(omega(hull / ground), x))]
+        wx: Speed,
+        #[speed(dot(omega(hull / ground), y))]
+        wy: Speed,
+        #[speed(dot(omega(hull / ground), z))]
+        wz: Speed,
+    }
 }
 
-/// Tripod whose generalized speeds are the velocity of its hull's origin and the angular velocity, in ground
-/// axes.
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct TripodInSpeeds {
-    #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
-    hull: Body,
-    #[joint(ground -> hull)]
-    pose: Free,
-    #[contact(hull.at(0.3 * x), ground.plane(z), friction = 0.4, restitution = 0.3)]
-    front: Contact,
-    #[contact(hull.at(-0.2 * x + 0.2 * y).sphere(0.02), ground.plane(z), friction = 0.6, torsional = 0.01)]
-    left: Contact,
-    #[contact(hull.at(-0.2 * x - 0.2 * y), ground.plane(z))]
-    right: Contact,
-    #[acts(on = hull, along = ground.x)]
-    wind: Force,
-    #[speed(dot(v(hull / ground / ground), x))]
-    ux: Speed,
-    #[speed(dot(v(hull / ground / ground), y))]
-    uy: Speed,
-    #[speed(dot(v(hull / ground / ground), z))]
-    uz: Speed,
-    #[speed(dot(omega(hull / ground), x))]
-    wx: Speed,
-    #[speed(dot(omega(hull / ground), y))]
-    wy: Speed,
-    #[speed(dot(omega(hull / ground), z))]
-    wz: Speed,
-}
+with_common_fields! {
+    {
+        #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
+        thigh: Body,
+        #[body(mass = 1, com = -0.2 * y, inertia = rod(1, 0.4, y))]
+        shank: Body,
+        #[joint(ground -> thigh, about = z)]
+        hip: Pin,
+        #[joint(thigh.at(-0.4 * y) -> shank, about = z)]
+        knee: Pin,
+        #[limit(on = knee, from = 0, to = 2, restitution = 0.4)]
+        stop: Limit,
+    }
 
-/// Leg on a hip and a knee, whose knee has limits with stops.
-#[mechanism(gravity = -9.81 * y, derivatives)]
-struct Leg {
-    #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
-    thigh: Body,
-    #[body(mass = 1, com = -0.2 * y, inertia = rod(1, 0.4, y))]
-    shank: Body,
-    #[joint(ground -> thigh, about = z)]
-    hip: Pin,
-    #[joint(thigh.at(-0.4 * y) -> shank, about = z)]
-    knee: Pin,
-    #[limit(on = knee, from = 0, to = 2, restitution = 0.4)]
-    stop: Limit,
-}
+    /// Leg on a hip and a knee, whose knee has limits with stops.
+    #[mechanism(gravity = -9.81 * y, derivatives)]
+    struct Leg {}
 
-/// Leg whose generalized speeds are the angular velocity of its shank, times a length, and the velocity of
-/// its foot across the thigh.
-#[mechanism(gravity = -9.81 * y, derivatives)]
-struct LegInSpeeds {
-    #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
-    thigh: Body,
-    #[body(mass = 1, com = -0.2 * y, inertia = rod(1, 0.4, y))]
-    shank: Body,
-    #[joint(ground -> thigh, about = z)]
-    hip: Pin,
-    #[joint(thigh.at(-0.4 * y) -> shank, about = z)]
-    knee: Pin,
-    #[body(mass = 0, inertia = 0)]
-    foot: Body,
-    #[joint(shank.at(-0.4 * y) -> foot)]
-    sole: Weld,
-    #[limit(on = knee, from = 0, to = 2, restitution = 0.4)]
-    stop: Limit,
-    #[speed(0.4 * rate(hip) + 0.4 * rate(knee))]
-    swing: Speed,
-    #[speed(dot(v(shank.at(-0.7 * y) / ground / ground), thigh.x))]
-    across: Speed,
+    /// Leg whose generalized speeds are the angular velocity of its shank, times a length, and the velocity of
+    /// its foot across the thigh.
+    #[mechanism(gravity = -9.81 * y, derivatives)]
+    struct LegInSpeeds {
+        #[body(mass = 0, inertia = 0)]
+        foot: Body,
+        #[joint(shank.at(-0.4 * y) -> foot)]
+        sole: Weld,
+        #[speed(0.4 * rate(hip) + 0.4 * rate(knee))]
+        swing: Speed,
+        #[speed(dot(v(shank.at(-0.7 * y) / ground / ground), thigh.x))]
+        across: Speed,
+    }
 }
 
 fn tripod_start() -> (SVector<f64, 7>, SVector<f64, 6>) {

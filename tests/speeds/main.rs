@@ -5,164 +5,102 @@ use linkwork::frame;
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
 use support::compare::{assert_close, assert_close_relative_to_largest};
+use support::differences;
+use support::mechanisms::SatelliteInSpeeds;
 use support::random::Random;
 use support::simulate::state_after_duration;
+use support::with_common_fields;
 
 mod contacts;
 mod singular;
 
-/// Tolerance of derivatives against finite differences of order four.
+/// Tolerance of derivatives against finite differences.
 const DIFFERENCE: f64 = 1e-8;
 
-/// Rigid body about a fixed point, with Euler angles as coordinates.
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct Angles {
-    #[body(mass = 0, inertia = 0)]
-    first: Body,
-    #[body(mass = 0, inertia = 0)]
-    second: Body,
-    #[body(mass = 2, com = 0.3 * z, inertia = diagonal(0.2, 0.3, 0.45))]
-    top: Body,
-    #[joint(ground -> first, about = z)]
-    psi: Pin,
-    #[joint(first -> second, about = x)]
-    theta: Pin,
-    #[joint(second -> top, about = z)]
-    phi: Pin,
-    #[acts(on = theta, stiffness = 0.4, free_angle = 1)]
-    spring: Spring,
-    #[acts(on = phi)]
-    motor: Torque,
+with_common_fields! {
+    {
+        axial: f64,
+        #[body(mass = 0, inertia = 0)]
+        first: Body,
+        #[body(mass = 0, inertia = 0)]
+        second: Body,
+        #[body(mass = 2, com = 0.3 * z, inertia = diagonal(0.2, 0.3, axial))]
+        top: Body,
+        #[joint(ground -> first, about = z)]
+        psi: Pin,
+        #[joint(first -> second, about = x)]
+        theta: Pin,
+        #[joint(second -> top, about = z)]
+        phi: Pin,
+        #[acts(on = theta, stiffness = 0.4, free_angle = 1)]
+        spring: Spring,
+        #[acts(on = phi)]
+        motor: Torque,
+    }
+
+    /// Rigid body about a fixed point, with Euler angles as coordinates.
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct Angles {}
+
+    /// Rigid body about a fixed point. The generalized speeds are the components of its angular velocity in
+    /// body axes.
+    #[mechanism(gravity = -9.81 * z, derivatives, prepare, batch)]
+    struct Speeds {
+        #[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))]
+        wx: Speed,
+        #[speed(dot(omega(top / ground), top.y))]
+        wy: Speed,
+        #[speed(rate(psi) * cos(theta) + rate(phi))]
+        wz: Speed,
+        #[output(wz)]
+        spin: Scalar,
+    }
 }
 
-/// Rigid body about a fixed point. The generalized speeds are the components of its angular velocity in body
-/// axes.
-#[mechanism(gravity = -9.81 * z, derivatives, prepare, batch)]
-struct Speeds {
-    axial: f64,
-    #[body(mass = 0, inertia = 0)]
-    first: Body,
-    #[body(mass = 0, inertia = 0)]
-    second: Body,
-    #[body(mass = 2, com = 0.3 * z, inertia = diagonal(0.2, 0.3, axial))]
-    top: Body,
-    #[joint(ground -> first, about = z)]
-    psi: Pin,
-    #[joint(first -> second, about = x)]
-    theta: Pin,
-    #[joint(second -> top, about = z)]
-    phi: Pin,
-    #[acts(on = theta, stiffness = 0.4, free_angle = 1)]
-    spring: Spring,
-    #[acts(on = phi)]
-    motor: Torque,
-    #[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))]
-    wx: Speed,
-    #[speed(dot(omega(top / ground), top.y))]
-    wy: Speed,
-    #[speed(rate(psi) * cos(theta) + rate(phi))]
-    wz: Speed,
-    #[output(wz)]
-    spin: Scalar,
+with_common_fields! {
+    {
+        #[body(mass = 0, inertia = 0)]
+        upright: Body,
+        #[body(mass = 0, inertia = 0)]
+        turned: Body,
+        #[body(mass = 0, inertia = 0)]
+        leaning: Body,
+        #[body(mass = 3, inertia = disk(3, 0.4, y))]
+        disk: Body,
+        #[joint(ground -> upright, along = (x, y, z))]
+        place: Stage,
+        #[joint(upright -> turned, about = z)]
+        heading: Pin,
+        #[joint(turned -> leaning, about = x)]
+        lean: Pin,
+        #[joint(leaning -> disk, about = y)]
+        roll: Pin,
+        #[constraint(rolls(disk.circle(0.4, y), ground.plane(z)))]
+        contact: Rolling,
+    }
+
+    /// Disk that rolls on a table, in joint velocities.
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct Disk {}
+
+    /// Rolling disk whose generalized speeds are the components of its angular velocity in the leaning axes
+    /// (Kane and Levinson 1985, ch. 4).
+    #[mechanism(gravity = -9.81 * z, derivatives)]
+    struct DiskInSpeeds {
+        #[speed(dot(omega(disk / ground), leaning.x))]
+        u1: Speed,
+        #[speed(dot(omega(disk / ground), leaning.y))]
+        u2: Speed,
+        #[speed(dot(omega(disk / ground), leaning.z))]
+        u3: Speed,
+    }
 }
 
-/// Body in space with a pendulum on it. The generalized speeds are the velocity of the body's origin and the
-/// angular velocity in ground axes.
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct Satellite {
-    #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
-    hull: Body,
-    #[body(mass = 0.5, com = -0.4 * z, inertia = rod(0.5, 0.8, z))]
-    boom: Body,
-    #[joint(ground -> hull)]
-    pose: Free,
-    #[joint(hull.at(0.2 * y) -> boom, about = y)]
-    hinge: Pin,
-    #[acts(on = hinge, damping = 0.1)]
-    friction: Dashpot,
-    #[acts(on = hull, along = x)]
-    thrust: Force,
-    #[speed(dot(v(hull / ground / ground), x))]
-    ux: Speed,
-    #[speed(dot(v(hull / ground / ground), y))]
-    uy: Speed,
-    #[speed(dot(v(hull / ground / ground), z))]
-    uz: Speed,
-    #[speed(dot(omega(hull / ground), x))]
-    wx: Speed,
-    #[speed(dot(omega(hull / ground), y))]
-    wy: Speed,
-    #[speed(dot(omega(hull / ground), z))]
-    wz: Speed,
-}
-
-/// Disk that rolls on a table, in joint velocities.
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct Disk {
-    #[body(mass = 0, inertia = 0)]
-    upright: Body,
-    #[body(mass = 0, inertia = 0)]
-    turned: Body,
-    #[body(mass = 0, inertia = 0)]
-    leaning: Body,
-    #[body(mass = 3, inertia = disk(3, 0.4, y))]
-    disk: Body,
-    #[joint(ground -> upright, along = (x, y, z))]
-    place: Stage,
-    #[joint(upright -> turned, about = z)]
-    heading: Pin,
-    #[joint(turned -> leaning, about = x)]
-    lean: Pin,
-    #[joint(leaning -> disk, about = y)]
-    roll: Pin,
-    #[constraint(rolls(disk.circle(0.4, y), ground.plane(z)))]
-    contact: Rolling,
-}
-
-/// Rolling disk whose generalized speeds are the components of its angular velocity in the leaning axes (Kane
-/// and Levinson 1985, ch. 4).
-#[mechanism(gravity = -9.81 * z, derivatives)]
-struct DiskInSpeeds {
-    #[body(mass = 0, inertia = 0)]
-    upright: Body,
-    #[body(mass = 0, inertia = 0)]
-    turned: Body,
-    #[body(mass = 0, inertia = 0)]
-    leaning: Body,
-    #[body(mass = 3, inertia = disk(3, 0.4, y))]
-    disk: Body,
-    #[joint(ground -> upright, along = (x, y, z))]
-    place: Stage,
-    #[joint(upright -> turned, about = z)]
-    heading: Pin,
-    #[joint(turned -> leaning, about = x)]
-    lean: Pin,
-    #[joint(leaning -> disk, about = y)]
-    roll: Pin,
-    #[constraint(rolls(disk.circle(0.4, y), ground.plane(z)))]
-    contact: Rolling,
-    #[speed(dot(omega(disk / ground), leaning.x))]
-    u1: Speed,
-    #[speed(dot(omega(disk / ground), leaning.y))]
-    u2: Speed,
-    #[speed(dot(omega(disk / ground), leaning.z))]
-    u3: Speed,
-}
-
-fn unit_vector<const N: usize>(i: usize) -> SVector<f64, N> {
-    SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
-}
-
-/// Returns the derivatives of `f` along unit vectors, a column for each, by central differences of order
-/// four.
+/// Returns the derivatives of `f` along each entry of its argument, a column for each.
 fn derivative_columns<const R: usize, const C: usize>(
     f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
 ) -> SMatrix<f64, R, C> {
-    let h = 1e-3;
-    let derivative_column = |e: SVector<f64, C>| {
-        ((f(e * h) - f(e * -h)) * 8.0 - (f(e * (2.0 * h)) - f(e * (-2.0 * h)))) / (12.0 * h)
-    };
-    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| derivative_column(unit_vector(i))))
+    differences::derivative_columns([5e-4; C], f)
 }
 
 /// Checks the operations of the configuration space in generalized speeds: inverses, rates, and all
@@ -285,15 +223,15 @@ fn configuration_space_is_independent_of_speeds() {
     let (q, v) = euler_angle_start_state();
     check_configuration_space(&mechanism_with_speeds(), &q);
     check_steps(&mechanism_with_speeds(), &q, &(v * 0.3));
-    let q = Random::new(5).random_configuration(&Satellite {});
-    check_configuration_space(&Satellite {}, &q);
-    check_steps(&Satellite {}, &q, &Random::new(6).random_vector(0.8));
+    let q = Random::new(5).random_configuration(&SatelliteInSpeeds {});
+    check_configuration_space(&SatelliteInSpeeds {}, &q);
+    check_steps(&SatelliteInSpeeds {}, &q, &Random::new(6).random_vector(0.8));
 }
 
 #[test]
 fn speeds_have_names_and_conversions() {
     assert_eq!(Speeds::VELOCITIES, ["wx", "wy", "wz"]);
-    assert_eq!(Satellite::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
+    assert_eq!(SatelliteInSpeeds::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
     assert_eq!(Speeds::CONFIGURATION, ["psi", "theta", "phi"]);
     let (q, rates) = euler_angle_start_state();
     let m = mechanism_with_speeds();
@@ -310,7 +248,7 @@ fn speeds_have_names_and_conversions() {
 #[test]
 fn frame_velocities_are_equal_in_speeds() {
     let (q, rates) = euler_angle_start_state();
-    let (plain, m) = (Angles {}, mechanism_with_speeds());
+    let (plain, m) = (Angles { axial: 0.45 }, mechanism_with_speeds());
     let u = m.speeds_of_rates(&q, &rates);
     let (twist, expected) = (
         m.frame_velocity(frame!(Speeds, "top"), &q, &u),
@@ -356,7 +294,7 @@ fn end_state_transformed_to_velocities<S: linkwork::integrate::Method<f64>>(
 #[test]
 fn integrators_in_speeds_have_their_orders() {
     let (q, rates) = euler_angle_start_state();
-    let exact = state_after_duration(&Angles {}, &q, &rates, 0.5);
+    let exact = state_after_duration(&Angles { axial: 0.45 }, &q, &rates, 0.5);
     let error_of_end =
         |(q, v): (SVector<f64, 3>, SVector<f64, 3>)| (q - exact.0).norm() + (v - exact.1).norm();
     let order_of_errors = |coarse: f64, fine: f64| (coarse / fine).log2();
@@ -424,7 +362,7 @@ fn rolling_disk_moves_equally_in_kanes_speeds() {
     );
     let tau: SVector<f64, 6> = Random::new(2).random_vector(1.0);
     // Generalized forces in joint velocities with the same power: `Yᵀ τ`.
-    let forces = SVector::<f64, 6>::from_fn(|k, _| tau.dot(&m.speeds_of_rates(&q, &unit_vector(k))));
+    let forces = SVector::<f64, 6>::from_fn(|k, _| tau.dot(&m.speeds_of_rates(&q, &SVector::ith(k, 1.0))));
     let expected = plain.forward_dynamics(&q, &rates, &forces);
     let du = m.forward_dynamics(&q, &u, &tau);
     let rates_later = |h: f64| {

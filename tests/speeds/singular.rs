@@ -1,10 +1,11 @@
 //! Isolated configurations in which generalized speeds do not determine the rates of coordinates: integration
 //! is impossible there and returns an error.
 
-use super::{DiskInSpeeds, Satellite, Speeds, mechanism_with_speeds};
+use super::{DiskInSpeeds, Speeds, mechanism_with_speeds};
 use linkwork::discrete;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
+use support::mechanisms::SatelliteInSpeeds;
 
 /// Returns a gimbal-lock configuration, in which `ψ` and `φ` rotate about the same axis (`sin θ = 0`), and
 /// generalized speeds.
@@ -62,7 +63,7 @@ fn constraints_do_not_hide_singular_speeds() {
     let run = simulate(&DiskInSpeeds {}).from(flat, [0.1, 0.0, 0.0, 0.3, 0.2, 0.1]).duration(0.1);
     // The cosine of a right angle is 6e-17 in floating point: rates are finite, but too large for any step.
     assert!(run.method(Rk4::step(1e-3)).finish().is_err());
-    let m = Satellite {};
+    let m = SatelliteInSpeeds {};
     let upside_down = m.integrate(&m.neutral(), &[0.0, 0.0, 0.0, 0.0, std::f64::consts::PI, 0.0, 0.0].into());
     assert!(m.rates_of_speeds(&upside_down, &SVector::repeat(1.0)).iter().all(|x| x.is_finite()));
 }

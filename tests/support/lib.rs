@@ -2,6 +2,8 @@
 //! several tests use.
 
 pub mod compare;
+pub mod counting;
+pub mod differences;
 pub mod mechanisms;
 pub mod model;
 pub mod random;

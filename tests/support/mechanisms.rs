@@ -299,3 +299,92 @@ pub struct Spacecraft {
     #[acts(on = hinge)]
     motor: Torque,
 }
+
+/// Bead on a hoop that is driven about the vertical.
+#[mechanism(gravity = -g * z, derivatives, sensitivities, prepare)]
+#[derive(Clone, Copy)]
+pub struct Hoop {
+    /// Gravitational acceleration, m/s².
+    pub g: f64,
+    /// Mass of the bead, kg.
+    pub m: f64,
+    /// Radius of the hoop, m.
+    pub radius: f64,
+    /// Angular velocity of the hoop, rad/s.
+    pub spin: f64,
+    theta: Coordinate,
+    #[frame(ground, z(spin * t))]
+    hoop: Frame,
+    #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
+    bead: Particle,
+}
+
+/// Body in space with a pendulum on it. The generalized speeds are the velocity of the body's origin and the
+/// angular velocity in ground axes.
+#[mechanism(gravity = -9.81 * z, second_derivatives)]
+pub struct SatelliteInSpeeds {
+    #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
+    hull: Body,
+    #[body(mass = 0.5, com = -0.4 * z, inertia = rod(0.5, 0.8, z))]
+    boom: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[joint(hull.at(0.2 * y) -> boom, about = y)]
+    hinge: Pin,
+    #[acts(on = hinge, damping = 0.1)]
+    friction: Dashpot,
+    #[acts(on = hull, along = x)]
+    thrust: Force,
+    #[speed(dot(v(hull / ground / ground), x))]
+    ux: Speed,
+    #[speed(dot(v(hull / ground / ground), y))]
+    uy: Speed,
+    #[speed(dot(v(hull / ground / ground), z))]
+    uz: Speed,
+    #[speed(dot(omega(hull / ground), x))]
+    wx: Speed,
+    #[speed(dot(omega(hull / ground), y))]
+    wy: Speed,
+    #[speed(dot(omega(hull / ground), z))]
+    wz: Speed,
+}
+
+/// Declares several mechanisms that have the fields in braces in common, before those of each.
+#[macro_export]
+macro_rules! with_common_fields {
+    (@declare { $($common:tt)* } $(# $attribute:tt)* struct $name:ident { $($field:tt)* }) => {
+        $(# $attribute)*
+        struct $name {
+            $($common)*
+            $($field)*
+        }
+    };
+    ($common:tt $($(# $attribute:tt)* struct $name:ident $fields:tt)+) => {
+        $($crate::with_common_fields!(@declare $common $(# $attribute)* struct $name $fields);)+
+    };
+}
+
+/// Declares a slider-crank whose crank is `main`, with further fields.
+#[macro_export]
+macro_rules! slider_crank {
+    ($(# $attribute:tt)* struct $name:ident { $($field:tt)* }) => {
+        $(# $attribute)*
+        struct $name {
+            #[body(mass = 1.5, com = 0.1 * x, inertia = rod(1.5, 0.2, x))]
+            crank: Body,
+            #[body(mass = 0.8, com = 0.3 * x, inertia = rod(0.8, 0.6, x))]
+            rod: Body,
+            #[body(mass = 0.5)]
+            piston: Body,
+            #[joint(ground -> crank, about = z)]
+            main: Pin,
+            #[joint(crank.at(0.2 * x) -> rod, about = z)]
+            big_end: Pin,
+            #[joint(ground -> piston, along = x)]
+            cylinder: Sleeve,
+            #[joint(rod.at(0.6 * x) -> piston, about = z)]
+            small_end: Pin,
+            $($field)*
+        }
+    };
+}

@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use support::compare::{assert_close, assert_same_dynamics};
 use support::random::Random;
 use support::simulate::state_after_duration;
+use support::with_common_fields;
 
 #[mechanism]
 struct MassInerter {
@@ -266,35 +267,31 @@ fn projectile_with_linear_drag_has_the_closed_form() {
     assert_close("flight", &[q[0], q[1], v[0], v[1]], &expected, MOTION);
 }
 
-/// Pendulum whose weight is a potential, with a spring as a potential, too.
-#[mechanism]
-struct PendulumByPotential {
-    m: f64,
-    g: f64,
-    k: f64,
-    #[body(inertia = diagonal(0.1, 0.1, 0.1))]
-    rod: Body,
-    #[particle(mass = m, at = rod.at(-0.6 * y))]
-    bob: Particle,
-    #[joint(ground -> rod, about = z)]
-    pin: Pin,
-    #[energy(m * g * dot(r(bob / ground), y) + k / 2 * pow(pin - 0.3, 2))]
-    weight: Potential,
-}
+with_common_fields! {
+    {
+        m: f64,
+        g: f64,
+        k: f64,
+        #[body(inertia = diagonal(0.1, 0.1, 0.1))]
+        rod: Body,
+        #[particle(mass = m, at = rod.at(-0.6 * y))]
+        bob: Particle,
+        #[joint(ground -> rod, about = z)]
+        pin: Pin,
+    }
 
-#[mechanism(gravity = -g * y)]
-struct PendulumByGravity {
-    m: f64,
-    g: f64,
-    k: f64,
-    #[body(inertia = diagonal(0.1, 0.1, 0.1))]
-    rod: Body,
-    #[particle(mass = m, at = rod.at(-0.6 * y))]
-    bob: Particle,
-    #[joint(ground -> rod, about = z)]
-    pin: Pin,
-    #[acts(on = pin, stiffness = k, free_angle = 0.3)]
-    spring: Spring,
+    /// Pendulum whose weight is a potential, with a spring as a potential, too.
+    #[mechanism]
+    struct PendulumByPotential {
+        #[energy(m * g * dot(r(bob / ground), y) + k / 2 * pow(pin - 0.3, 2))]
+        weight: Potential,
+    }
+
+    #[mechanism(gravity = -g * y)]
+    struct PendulumByGravity {
+        #[acts(on = pin, stiffness = k, free_angle = 0.3)]
+        spring: Spring,
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use linkwork::prelude::*;
 use support::random::Random;
+use support::with_common_fields;
 
 /// Ladder that slides down a wall: its ends are on the floor and on the wall.
 #[mechanism(gravity = -9.81 * y)]
@@ -224,57 +225,49 @@ fn eulers_laws_hold_for_a_set_of_bodies() {
     }
 }
 
-/// Wheel on three axes that rolls by a rolling pair of surfaces.
-#[mechanism(gravity = -9.81 * z)]
-struct RollingWheel {
-    radius: f64,
-    #[body]
-    hub: Body,
-    #[body]
-    fork: Body,
-    #[body(mass = 2, inertia = disk(2, radius, y))]
-    wheel: Body,
-    #[joint(ground -> hub, along = (x, y, z))]
-    place: Stage,
-    #[joint(hub -> fork, about = (z, x))]
-    lean: Universal,
-    #[joint(fork -> wheel, about = y)]
-    spin: Pin,
-    #[constraint(rolls(wheel.circle(radius, y), ground.plane(z)))]
-    contact: Rolling,
-}
+with_common_fields! {
+    {
+        radius: f64,
+        #[body]
+        hub: Body,
+        #[body]
+        fork: Body,
+        #[body(mass = 2, inertia = disk(2, radius, y))]
+        wheel: Body,
+        #[joint(ground -> hub, along = (x, y, z))]
+        place: Stage,
+        #[joint(hub -> fork, about = (z, x))]
+        lean: Universal,
+        #[joint(fork -> wheel, about = y)]
+        spin: Pin,
+    }
 
-/// The wheel of [`RollingWheel`] with its lowest point given in the axes of the fork: this point is on the
-/// ground, and at rest.
-#[mechanism(gravity = -9.81 * z)]
-struct Written {
-    radius: f64,
-    #[body]
-    hub: Body,
-    #[body]
-    fork: Body,
-    #[body(mass = 2, inertia = disk(2, radius, y))]
-    wheel: Body,
-    #[joint(ground -> hub, along = (x, y, z))]
-    place: Stage,
-    #[joint(hub -> fork, about = (z, x))]
-    lean: Universal,
-    #[joint(fork -> wheel, about = y)]
-    spin: Pin,
-    #[constraint(dot(r(wheel.at(-radius * fork.z) / ground), z))]
-    height: Holonomic,
-    #[constraint(dot(v(wheel.at(-radius * fork.z) / ground / ground), x))]
-    forth: Nonholonomic,
-    #[constraint(dot(v(wheel.at(-radius * fork.z) / ground / ground), y))]
-    across: Nonholonomic,
-    #[acts(on = wheel.at(-radius * fork.z), along = fork.x)]
-    rubs: Force,
-    #[acts(on = wheel.at(-radius * fork.z), value = 3 * fork.x)]
-    pushes: Force,
-    #[output(v(wheel.at(-radius * fork.z) / ground / ground))]
-    slides: Vector,
-    #[output(dot(v(wheel.at(-radius * fork.z) / ground / ground), fork.x))]
-    forward: Scalar,
+    /// Wheel on three axes that rolls by a rolling pair of surfaces.
+    #[mechanism(gravity = -9.81 * z)]
+    struct RollingWheel {
+        #[constraint(rolls(wheel.circle(radius, y), ground.plane(z)))]
+        contact: Rolling,
+    }
+
+    /// The wheel of [`RollingWheel`] with its lowest point given in the axes of the fork: this point is on the
+    /// ground, and at rest.
+    #[mechanism(gravity = -9.81 * z)]
+    struct Written {
+        #[constraint(dot(r(wheel.at(-radius * fork.z) / ground), z))]
+        height: Holonomic,
+        #[constraint(dot(v(wheel.at(-radius * fork.z) / ground / ground), x))]
+        forth: Nonholonomic,
+        #[constraint(dot(v(wheel.at(-radius * fork.z) / ground / ground), y))]
+        across: Nonholonomic,
+        #[acts(on = wheel.at(-radius * fork.z), along = fork.x)]
+        rubs: Force,
+        #[acts(on = wheel.at(-radius * fork.z), value = 3 * fork.x)]
+        pushes: Force,
+        #[output(v(wheel.at(-radius * fork.z) / ground / ground))]
+        slides: Vector,
+        #[output(dot(v(wheel.at(-radius * fork.z) / ground / ground), fork.x))]
+        forward: Scalar,
+    }
 }
 
 #[test]
