@@ -40,36 +40,6 @@ impl Response {
 }
 
 impl StateSpace {
-    /// Returns instants, s, that resolve a response: until the slowest mode has decayed, or for several
-    /// periods of undamped modes. For a discrete system they are the sampling instants.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NotConverged`].
-    pub fn natural_times(&self) -> Result<Vec<f64>, Error> {
-        let mut end = 0.0_f64;
-        let mut fastest = 0.0_f64;
-        for pole in self.poles()? {
-            let s = self.period.map_or(pole, |h| pole.ln() / h);
-            if !s.norm().is_finite() || s.norm() < 1e-9 {
-                continue;
-            }
-            fastest = fastest.max(s.norm());
-            let ratio = s.re.abs() / s.norm();
-            let wanted = if ratio > 1e-3 { 5.0 / s.re.abs() } else { 60.0 / s.norm() };
-            end = end.max(if s.re > 0.0 { wanted.min(4.0 / s.re) } else { wanted });
-        }
-        if end == 0.0 {
-            end = self.period.map_or(10.0, |h| 20.0 * h);
-        }
-        let points = match self.period {
-            Some(h) => ((end / h).ceil() as usize).clamp(10, 20_000) + 1,
-            None => ((end * fastest * 2.0).ceil() as usize).clamp(400, 8000) + 1,
-        };
-        let step = self.period.unwrap_or(end / (points - 1) as f64);
-        Ok((0..points).map(|k| step * k as f64).collect())
-    }
-
     /// Returns `count` instants from zero to `end`, s; for a discrete system the sampling instants up to
     /// `end`.
     ///

@@ -105,7 +105,6 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     constraints: Option<(ConstraintFunction<M, NQ, NV>, MultiplierFunction<M, NQ, NV>)>,
     outputs: Option<OutputFunction<M, NQ, NV, NU>>,
     nearest: bool,
-    iterations: usize,
 }
 
 /// State that satisfies all conditions of a [`Trim`].
@@ -223,7 +222,6 @@ where
             constraints: None,
             outputs: None,
             nearest: false,
-            iterations: 200,
         }
     }
 
@@ -430,12 +428,6 @@ where
     /// initial guess. The default is an error.
     pub fn nearest(mut self) -> Self {
         self.nearest = true;
-        self
-    }
-
-    /// Sets the maximum number of iterations. The default is 200.
-    pub fn most_iterations(mut self, iterations: usize) -> Self {
-        self.iterations = iterations;
         self
     }
 

@@ -27,6 +27,9 @@ const WITHOUT_INFLUENCE: f64 = 1e-8;
 /// Maximum step of a coordinate, rad or m: a larger step would leave the neighbourhood of the guess.
 const LONGEST: f64 = 1.0;
 
+/// Maximum number of iterations.
+const MOST_ITERATIONS: usize = 200;
+
 /// Damping of Levenberg–Marquardt steps at which steps vanish and the iteration ends.
 const DAMPED: f64 = 1e20;
 
@@ -171,7 +174,7 @@ where
     let (rows, columns) = equations.jacobian.shape();
     let mut scales = EquationScales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
     let (mut mu, mut iterations) = (1e-4, 0);
-    while iterations < problem.trim.iterations && mu < DAMPED {
+    while iterations < MOST_ITERATIONS && mu < DAMPED {
         iterations += 1;
         let sizes: Vec<f64> =
             problem.unknowns.iter().map(|u| problem.magnitude_of_unknown(&place, *u)).collect();
