@@ -1,18 +1,17 @@
 //! Comparison of the control functions with published values and exact solutions.
 
+#[path = "support/compare.rs"]
+mod compare;
+#[path = "support/transport.rs"]
+mod transport;
+
+use compare::assert_relatively_close;
 use linkwork_design::matrices::{Cost, discrete_riccati, eigenvalues, riccati};
-use linkwork_design::{Polynomial, Special, StateSpace, TransferFunction};
+use linkwork_design::{Polynomial, Special, TransferFunction};
 use nalgebra::{Complex, DMatrix, dmatrix};
+use transport::jet_transport;
 
 type C = Complex<f64>;
-
-#[track_caller]
-fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
-    assert!(
-        (found - expected).abs() <= relative * expected.abs().max(1e-3),
-        "expected {expected}, found {found}"
-    );
-}
 
 #[track_caller]
 fn assert_contains_pole(all: &[C], re: f64, im: f64, tolerance: f64) {
@@ -21,28 +20,6 @@ fn assert_contains_pole(all: &[C], re: f64, im: f64, tolerance: f64) {
         all.iter().any(|x| (x - expected).norm() <= tolerance * expected.norm()),
         "expected {expected} among {all:?}"
     );
-}
-
-/// Returns a jet transport at Mach 0.8 and 40 000 ft in lateral motion, from "Yaw Damper Design for a 747"
-/// (Control System Toolbox).
-fn jet_transport() -> StateSpace {
-    let a = dmatrix![
-        -0.0558, -0.9968, 0.0802, 0.0415;
-        0.598, -0.115, -0.0318, 0.0;
-        -3.05, 0.388, -0.4650, 0.0;
-        0.0, 0.0805, 1.0, 0.0
-    ];
-    let b = dmatrix![0.00729, 0.0; -0.475, 0.00775; 0.153, 0.143; 0.0, 0.0];
-    let c = dmatrix![0.0, 1.0, 0.0, 0.0; 0.0, 0.0, 0.0, 1.0];
-    let system = StateSpace::new(a, b, c, DMatrix::zeros(2, 2)).unwrap();
-    let system = system.with_states([
-        ("sideslip", "rad"),
-        ("yaw rate", "rad/s"),
-        ("roll rate", "rad/s"),
-        ("bank", "rad"),
-    ]);
-    let system = system.unwrap().with_inputs([("rudder", "rad"), ("aileron", "rad")]).unwrap();
-    system.with_outputs([("yaw rate", "rad/s"), ("bank", "rad")]).unwrap()
 }
 
 #[test]
@@ -167,44 +144,57 @@ fn step_responses_match_published() {
 #[test]
 #[expect(clippy::approx_constant, reason = "an entry of a published matrix")]
 fn boeing_747_matches_published_modes() {
-    let longitudinal = dmatrix![
-        -0.006868, 0.01395, 0.0, -32.2;
-        -0.09055, -0.3151, 773.98, 0.0;
-        0.0001187, -0.001026, -0.4285, 0.0;
-        0.0, 0.0, 1.0, 0.0
+    let printed_and_own = [
+        (
+            dmatrix![
+                -0.006868, 0.01395, 0.0, -32.2;
+                -0.09055, -0.3151, 773.98, 0.0;
+                0.0001187, -0.001026, -0.4285, 0.0;
+                0.0, 0.0, 1.0, 0.0
+            ],
+            &[(-0.371945, 0.887540, 1e-5), (-0.00328948, 0.0672311, 1e-5)][..],
+        ),
+        (
+            dmatrix![
+                -0.0558, 0.0, -774.0, 32.2;
+                -0.003865, -0.4342, 0.4136, 0.0;
+                0.001086, -0.006112, -0.1458, 0.0;
+                0.0, 1.0, 0.0, 0.0
+            ],
+            &[(-0.0330114, 0.946546, 1e-5), (-0.562480, 0.0, 1e-5), (-0.00729733, 0.0, 1e-5)][..],
+        ),
+        (
+            dmatrix![
+                -0.006866611275943936, 0.013943035674208383, 0.0, -9.81;
+                -0.09050889360654447, -0.31489494006034713, 235.89334048404203, 0.0;
+                0.00038918098285667125, -0.003361353515319591, -0.42814117544558544, 0.0;
+                0.0, 0.0, 1.0, 0.0
+            ],
+            &[
+                (-0.37166215649674494, 0.8868788584671381, 1e-12),
+                (-0.003289206894193512, 0.06720807985472561, 1e-10),
+            ][..],
+        ),
+        (
+            dmatrix![
+                -0.05576578472342987, 0.0, -235.9, 9.81;
+                -0.01270078301241097, -0.4349018915599015, 0.4142375389921919, 0.0;
+                0.003565068319118036, -0.006054072298785469, -0.14579164379805434, 0.0;
+                0.0, 1.0, 0.0, 0.0
+            ],
+            &[
+                (-0.033052210108050734, 0.9467852313277423, 1e-12),
+                (-0.5630776981191257, 0.0, 1e-12),
+                (-0.007277201746158317, 0.0, 1e-10),
+            ][..],
+        ),
     ];
-    let poles = eigenvalues(&longitudinal).unwrap();
-    assert_contains_pole(&poles, -0.371945, 0.887540, 1e-5);
-    assert_contains_pole(&poles, -0.00328948, 0.0672311, 1e-5);
-    let lateral = dmatrix![
-        -0.0558, 0.0, -774.0, 32.2;
-        -0.003865, -0.4342, 0.4136, 0.0;
-        0.001086, -0.006112, -0.1458, 0.0;
-        0.0, 1.0, 0.0, 0.0
-    ];
-    let poles = eigenvalues(&lateral).unwrap();
-    assert_contains_pole(&poles, -0.0330114, 0.946546, 1e-5);
-    assert_contains_pole(&poles, -0.562480, 0.0, 1e-5);
-    assert_contains_pole(&poles, -0.00729733, 0.0, 1e-5);
-    let own = dmatrix![
-        -0.006866611275943936, 0.013943035674208383, 0.0, -9.81;
-        -0.09050889360654447, -0.31489494006034713, 235.89334048404203, 0.0;
-        0.00038918098285667125, -0.003361353515319591, -0.42814117544558544, 0.0;
-        0.0, 0.0, 1.0, 0.0
-    ];
-    let poles = eigenvalues(&own).unwrap();
-    assert_contains_pole(&poles, -0.37166215649674494, 0.8868788584671381, 1e-12);
-    assert_contains_pole(&poles, -0.003289206894193512, 0.06720807985472561, 1e-10);
-    let own = dmatrix![
-        -0.05576578472342987, 0.0, -235.9, 9.81;
-        -0.01270078301241097, -0.4349018915599015, 0.4142375389921919, 0.0;
-        0.003565068319118036, -0.006054072298785469, -0.14579164379805434, 0.0;
-        0.0, 1.0, 0.0, 0.0
-    ];
-    let poles = eigenvalues(&own).unwrap();
-    assert_contains_pole(&poles, -0.033052210108050734, 0.9467852313277423, 1e-12);
-    assert_contains_pole(&poles, -0.5630776981191257, 0.0, 1e-12);
-    assert_contains_pole(&poles, -0.007277201746158317, 0.0, 1e-10);
+    for (matrix, modes) in printed_and_own {
+        let poles = eigenvalues(&matrix).unwrap();
+        for (re, im, tolerance) in modes {
+            assert_contains_pole(&poles, *re, *im, *tolerance);
+        }
+    }
 }
 
 /// Compares with the published matrices and eigenvalues of the benchmark bicycle (Meijaard, Papadopoulos,

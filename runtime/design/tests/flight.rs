@@ -1,18 +1,16 @@
 //! Linear systems of aircraft, lags, rotors and satellites, computed from mechanisms and compared with closed
 //! forms.
 
+#[path = "support/compare.rs"]
+mod compare;
+
+use compare::assert_relatively_close;
 use linkwork::constraint::stabilized;
 use linkwork::prelude::*;
 use linkwork_design::mechanism::{constrained_system, linear_system, measured_system, second_order_form};
 use linkwork_design::steady::{constrained_equilibrium, equilibrium};
 use linkwork_design::{Error, Signal, StateSpace};
 use nalgebra::Complex;
-
-#[track_caller]
-fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
-    let allowed = relative * expected.abs().max(1e-3);
-    assert!((found - expected).abs() <= allowed, "expected {expected}, found {found}");
-}
 
 #[track_caller]
 fn assert_contains_pole(system: &StateSpace, re: f64, im: f64) {

@@ -1,8 +1,12 @@
 //! Checks that pictures are well-formed SVG with names and units. If `PICTURES` names a folder, they are
 //! written there for inspection.
 
+#[path = "support/transport.rs"]
+mod transport;
+
 use linkwork_design::{StateSpace, TransferFunction, picture};
-use nalgebra::{DMatrix, dmatrix};
+use nalgebra::dmatrix;
+use transport::jet_transport;
 
 fn check_and_save_picture(name: &str, svg: &str) {
     if let Ok(folder) = std::env::var("PICTURES") {
@@ -14,18 +18,7 @@ fn check_and_save_picture(name: &str, svg: &str) {
 
 #[test]
 fn all_pictures_are_well_formed() {
-    let a = dmatrix![
-        -0.0558, -0.9968, 0.0802, 0.0415;
-        0.598, -0.115, -0.0318, 0.0;
-        -3.05, 0.388, -0.4650, 0.0;
-        0.0, 0.0805, 1.0, 0.0
-    ];
-    let b = dmatrix![0.00729, 0.0; -0.475, 0.00775; 0.153, 0.143; 0.0, 0.0];
-    let c = dmatrix![0.0, 1.0, 0.0, 0.0; 0.0, 0.0, 0.0, 1.0];
-    let names = [("sideslip", "rad"), ("yaw rate", "rad/s"), ("roll rate", "rad/s"), ("bank", "rad")];
-    let transport = StateSpace::new(a, b, c, DMatrix::zeros(2, 2)).unwrap().with_states(names).unwrap();
-    let transport = transport.with_inputs([("rudder", "rad"), ("aileron", "rad")]).unwrap();
-    let transport = transport.with_outputs([("yaw rate", "rad/s"), ("bank", "rad")]).unwrap();
+    let transport = jet_transport();
     let yaw = transport.channel("yaw rate", "rudder").unwrap();
     let grid = yaw.natural_frequencies(400).unwrap();
     let response = yaw.frequency_response("yaw rate", "rudder", &grid).unwrap();

@@ -1,20 +1,15 @@
 //! Equilibria and steady motions, compared with closed forms.
 
+#[path = "../support/compare.rs"]
+mod compare;
 mod loads;
 
+use compare::assert_relatively_close;
 use linkwork::prelude::*;
 use linkwork_design::Error;
 use linkwork_design::steady::{Verdict, constrained_equilibrium, equilibrium};
 use nalgebra::vector;
 use std::f64::consts::PI;
-
-#[track_caller]
-fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
-    assert!(
-        (found - expected).abs() <= relative * expected.abs().max(1e-3),
-        "expected {expected}, found {found}"
-    );
-}
 
 /// Finds a root of a function between two points by bisection.
 fn root_by_bisection(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
