@@ -9,6 +9,7 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 use support::compare::{assert_close, assert_same_dynamics};
+use support::mechanisms::Hoop;
 use support::random::Random;
 
 const TOLERANCE: f64 = 1e-11;
@@ -153,20 +154,6 @@ fn prepared_loaded_robot_equals_the_robot() {
     let heavier = LoadedPanda { load: 2.0, ..arm };
     assert_ne!(heavier.prepare(), arm.prepare());
     assert_same_dynamics(&heavier.prepare(), &heavier, 5, TOLERANCE);
-}
-
-/// Bead on a hoop that is driven about the vertical.
-#[mechanism(gravity = -g * z, prepare)]
-struct Hoop {
-    g: f64,
-    m: f64,
-    radius: f64,
-    spin: f64,
-    theta: Coordinate,
-    #[frame(ground, z(spin * t))]
-    hoop: Frame,
-    #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))]
-    bead: Particle,
 }
 
 #[test]
