@@ -1,16 +1,11 @@
 use linkwork::prelude::*;
 
-#[mechanism(gravity = -9.81 * y)]
+#[mechanism]
 struct Machine {
-    a: Coordinate,
-    #[body(mass = 1, inertia = diagonal(1, 1, 1))]
-    arm: Body,
-    #[joint(ground -> arm, about = z)]
-    pin: Pin,
-    #[particle(mass = 1, at = arm.at(a * x))]
+    #[particle(mass = 1)]
     bead: Particle,
-    #[frame(arm, x(a))]
-    tilted: Frame,
+    #[joint(ground -> bead, along = x)]
+    rail: Sleeve,
     #[acts(between = (bead, bead), stiffness = 1)]
     spring: Spring,
 }
