@@ -127,9 +127,9 @@ pub const COSINE: [f64; 6] = [
 /// Number whose addition rounds to an integer with the quadrant of an angle in its last bits: 1.5 · 2⁵².
 pub const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Parts of π/2 for reductions with fused multiply-add. The first is the nearest number, a multiple of which is
-/// subtracted without error because the difference has fewer digits. The second has 36 bits, whose products
-/// with integers are exact. The third is the remainder.
+/// Parts of π/2 for reductions with fused multiply-add. The first is the nearest number, a multiple of which
+/// is subtracted without error because the difference has fewer digits. The second has 36 bits, whose
+/// products with integers are exact. The third is the remainder.
 pub const QUARTER_TURN: [f64; 3] = [FRAC_PI_2, 6.123_233_995_707_727e-17, 2.903_855_973_979_360_5e-28];
 
 /// Returns sine and cosine of the reduced angle, and the number whose last bits are the quadrant of the

@@ -151,9 +151,8 @@ impl Visitor for Call<'_> {
 
 /// Writes the first `n` rows and columns of each matrix, by columns one after the other.
 fn write_matrices<const N: usize>(n: usize, matrices: &[SMatrix<f64, N, N>], out: &mut [f64]) {
-    for (to, from) in out.chunks_exact_mut(n * n).zip(matrices) {
-        for (to, from) in to.chunks_exact_mut(n).zip(from.column_iter()) {
-            to.copy_from_slice(&from.as_slice()[..n]);
-        }
+    let columns = matrices.iter().flat_map(|matrix| matrix.column_iter().take(n));
+    for (k, column) in columns.enumerate() {
+        out[k * n..(k + 1) * n].copy_from_slice(&column.as_slice()[..n]);
     }
 }

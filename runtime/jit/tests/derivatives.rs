@@ -1,5 +1,6 @@
 //! Checks derivatives of contacts, linear systems in independent coordinates and second derivatives of
-//! accelerations of loaded mechanisms: with the same mechanisms compiled by the attribute, and with differences.
+//! accelerations of loaded mechanisms. They are compared with the same mechanisms compiled by the attribute,
+//! and with differences.
 
 use linkwork::contact::{self, Touch};
 use linkwork::integrate::TimeStepping;
@@ -202,7 +203,7 @@ fn linear_systems_in_independent_coordinates_equal_compiled_ones() -> Result<(),
     Ok(())
 }
 
-/// If links are aligned, the constraints lose rank; mechanisms without constraints have another function.
+/// Mechanisms without constraints or without derivatives, and slices of the wrong length, are errors.
 #[test]
 fn linear_systems_that_do_not_exist_are_errors() -> Result<(), Failure> {
     let robot = Loader::text(FOUR_BAR).options("derivatives").load()?;
@@ -295,15 +296,15 @@ fn second_derivatives_of_accelerations_are_differences() -> Result<(), Error> {
     };
     let e = 1e-6;
     for j in 0..N {
-        let moved = |mut x: [f64; N], by: f64| {
-            x[j] += by;
+        let add_to_entry = |mut x: [f64; N], change: f64| {
+            x[j] += change;
             x
         };
         let slope = |ahead: Vec<f64>, behind: Vec<f64>| -> Vec<f64> {
             ahead.iter().zip(behind).map(|(a, b)| (a - b) / (2.0 * e)).collect()
         };
-        let by_q = slope(contracted(moved(q, e), v)?, contracted(moved(q, -e), v)?);
-        let by_v = slope(contracted(q, moved(v, e))?, contracted(q, moved(v, -e))?);
+        let by_q = slope(contracted(add_to_entry(q, e), v)?, contracted(add_to_entry(q, -e), v)?);
+        let by_v = slope(contracted(q, add_to_entry(v, e))?, contracted(q, add_to_entry(v, -e))?);
         for i in 0..N {
             // Blocks are ∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ, with rows for `q`.
             let entry = |block: usize, row: usize, column: usize| found[block * N * N + column * N + row];
@@ -317,6 +318,27 @@ fn second_derivatives_of_accelerations_are_differences() -> Result<(), Error> {
                 assert!((found - expected).abs() < 1e-7, "({i}, {j}): {found} instead of {expected}");
             }
         }
+    }
+    Ok(())
+}
+
+/// A mechanism without velocities has empty derivatives.
+#[test]
+fn derivatives_of_a_fixed_body_are_empty() -> Result<(), Error> {
+    let fixed = Loader::text(
+        "#[mechanism(second_derivatives)]
+        struct Fixed {
+            #[body(mass = 1)]
+            block: Body,
+            #[joint(ground -> block)]
+            weld: Weld,
+        }",
+    )
+    .load()?;
+    for name in ["forward_dynamics_derivatives", "forward_dynamics_second_derivatives"] {
+        let f = fixed.function(name)?;
+        let arguments = vec![&[][..]; f.arguments().len()];
+        assert!(fixed.evaluate(&f, &arguments)?.is_empty(), "{name}");
     }
     Ok(())
 }

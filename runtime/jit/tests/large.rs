@@ -1,4 +1,4 @@
-//! Checks motions of loaded mechanisms with more than 64 coordinates, and the error beyond the largest number.
+//! Checks motions of loaded mechanisms with more than 64 coordinates, and the error beyond the largest size.
 
 use linkwork_jit::{Error, Inputs, Loader, Method, Robot};
 use std::fmt::Write;

@@ -27,7 +27,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         integrate_derivatives(dv: &Vector<NV>) -> (Square<NV>, Square<NV>);
         tangent_rate_derivatives(dv: &Vector<NV>, v: &Vector<NV>) -> (Square<NV>, Square<NV>);
         integrate_derivatives_at(q: &Vector<NQ>, dv: &Vector<NV>) -> (Square<NV>, Square<NV>);
-        displacement_rate_derivatives(q: &Vector<NQ>, dv: &Vector<NV>, v: &Vector<NV>) -> ByMotion<f64, NV, NV>;
+        displacement_rate_derivatives(q: &Vector<NQ>, dv: &Vector<NV>, v: &Vector<NV>)
+            -> ByMotion<f64, NV, NV>;
         turning(q: &Vector<NQ>, v: &Vector<NV>) -> Square<NV>;
         coriolis_matrix(t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Square<NV>;
         inverse_dynamics_derivatives(t: f64, q: &Vector<NQ>, v: &Vector<NV>, a: &Vector<NV>)

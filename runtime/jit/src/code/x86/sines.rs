@@ -121,54 +121,37 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes sine and cosine of the reduced angle: the function `reduced_sine_and_cosine` of the runtime, with
-    /// fused products and sums.
+    /// Writes sine and cosine of the reduced angle: the function `reduced_sine_and_cosine` of the runtime,
+    /// with fused products and sums.
     fn sines_of_angle_register(&mut self, width: usize) -> Result<(), String> {
         let r = Rm::Register;
-        let [
-            _,
-            per_angle,
-            round,
-            q0,
-            q1,
-            q2,
-            s0,
-            s1,
-            s2,
-            s3,
-            s4,
-            s5,
-            c0,
-            c1,
-            c2,
-            c3,
-            c4,
-            c5,
-            minus_half,
-            one,
-        ] = std::array::from_fn(|k| self.constant_of_sines(k));
+        let constant = |k: usize| self.constant_of_sines(k);
+        let ([per_angle, round], [minus_half, one]) = ([1, 2].map(constant), [18, 19].map(constant));
+        let quarter: [Rm; 3] = std::array::from_fn(|k| constant(3 + k));
+        let sine: [Rm; 6] = std::array::from_fn(|k| constant(6 + k));
+        let cosine: [Rm; 6] = std::array::from_fn(|k| constant(12 + k));
         let steps = [
             (PRODUCT_AND_SUM, SHIFTED, [r(ANGLE), per_angle, round]),
             (DIFFERENCE, OTHER, [r(SHIFTED), round, r(OTHER)]),
-            (SUM_MINUS_PRODUCT, ANGLE, [r(OTHER), q0, r(ANGLE)]),
-            (SUM_MINUS_PRODUCT, REDUCED, [r(OTHER), q1, r(ANGLE)]),
+            (SUM_MINUS_PRODUCT, ANGLE, [r(OTHER), quarter[0], r(ANGLE)]),
+            (SUM_MINUS_PRODUCT, REDUCED, [r(OTHER), quarter[1], r(ANGLE)]),
             (DIFFERENCE, LOW, [r(ANGLE), r(REDUCED), r(LOW)]),
-            (SUM_MINUS_PRODUCT, LOW, [r(OTHER), q1, r(LOW)]),
-            (SUM_MINUS_PRODUCT, LOW, [r(OTHER), q2, r(LOW)]),
+            (SUM_MINUS_PRODUCT, LOW, [r(OTHER), quarter[1], r(LOW)]),
+            (SUM_MINUS_PRODUCT, LOW, [r(OTHER), quarter[2], r(LOW)]),
             (PRODUCT, SQUARE, [r(REDUCED), r(REDUCED), r(SQUARE)]),
             (PRODUCT, FOURTH, [r(SQUARE), r(SQUARE), r(FOURTH)]),
             (PRODUCT, EIGHTH, [r(FOURTH), r(FOURTH), r(EIGHTH)]),
             // The sine's polynomial.
-            (PRODUCT_AND_SUM, SIN, [r(SQUARE), s4, s3]),
-            (PRODUCT_AND_SUM, OTHER, [r(SQUARE), s2, s1]),
+            (PRODUCT_AND_SUM, SIN, [r(SQUARE), sine[4], sine[3]]),
+            (PRODUCT_AND_SUM, OTHER, [r(SQUARE), sine[2], sine[1]]),
             (PRODUCT_AND_SUM, SIN, [r(SIN), r(FOURTH), r(OTHER)]),
-            (PRODUCT_AND_SUM, SIN, [r(EIGHTH), s5, r(SIN)]),
-            (PRODUCT_AND_SUM, SIN, [r(SQUARE), r(SIN), s0]),
+            (PRODUCT_AND_SUM, SIN, [r(EIGHTH), sine[5], r(SIN)]),
+            (PRODUCT_AND_SUM, SIN, [r(SQUARE), r(SIN), sine[0]]),
             // The cosine's polynomial.
-            (PRODUCT_AND_SUM, COS, [r(SQUARE), c3, c2]),
-            (PRODUCT_AND_SUM, OTHER, [r(SQUARE), c1, c0]),
+            (PRODUCT_AND_SUM, COS, [r(SQUARE), cosine[3], cosine[2]]),
+            (PRODUCT_AND_SUM, OTHER, [r(SQUARE), cosine[1], cosine[0]]),
             (PRODUCT_AND_SUM, COS, [r(COS), r(FOURTH), r(OTHER)]),
-            (PRODUCT_AND_SUM, OTHER, [r(SQUARE), c5, c4]),
+            (PRODUCT_AND_SUM, OTHER, [r(SQUARE), cosine[5], cosine[4]]),
             (PRODUCT_AND_SUM, COS, [r(EIGHTH), r(OTHER), r(COS)]),
             // Sine and cosine.
             (PRODUCT, OTHER, [r(REDUCED), r(SQUARE), r(OTHER)]),
