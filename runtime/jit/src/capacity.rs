@@ -80,7 +80,7 @@ impl Robot {
             ..=8 => Ok(visitor.visit(&Padded::<8, 8, 8, _>::new(self)?)),
             9..=24 => Ok(visitor.visit(&Padded::<24, 24, 24, _>::new(self)?)),
             25..=MEDIUM => Ok(visitor.visit(&Padded::<MEDIUM, MEDIUM, MEDIUM, _>::new(self)?)),
-            ..=LARGEST => on_stack(LARGE_STACK, || {
+            count if count <= LARGEST => on_stack(LARGE_STACK, || {
                 Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?))
             }),
             count => {
@@ -108,7 +108,7 @@ impl Robot {
                 Ok(visitor
                     .visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, MOST_CONTACTS, 192, _>::new(self)?))
             }
-            ..=LARGEST => on_stack(LARGE_STACK, || {
+            count if count <= LARGEST => on_stack(LARGE_STACK, || {
                 Ok(visitor
                     .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 192, _>::new(self)?))
             }),
