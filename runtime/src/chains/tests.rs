@@ -56,7 +56,7 @@ struct Tree {
 }
 
 /// Placement of a link and its motion subspace, in the axes of the root.
-struct Placed {
+struct PlacedTestLink {
     rotation: Matrix3<f64>,
     position: Vector3<f64>,
     subspace: Vector6<f64>,
@@ -90,15 +90,15 @@ impl Tree {
         if self.free && link > 0 { link + FREE_VELOCITIES - 1 } else { link }
     }
 
-    fn place(&self, q: &[f64]) -> Vec<Placed> {
-        let mut all: Vec<Placed> = Vec::new();
+    fn place(&self, q: &[f64]) -> Vec<PlacedTestLink> {
+        let mut all: Vec<PlacedTestLink> = Vec::new();
         for (k, link) in self.links.iter().enumerate() {
             let (rotation, position) = match link.parent {
                 Some(p) => (all[p].rotation, all[p].position),
                 None => (Matrix3::identity(), Vector3::zeros()),
             };
             if k < self.first_joint() {
-                all.push(Placed { rotation, position, subspace: Vector6::zeros() });
+                all.push(PlacedTestLink { rotation, position, subspace: Vector6::zeros() });
                 continue;
             }
             let angle = q[self.velocity(k)];
@@ -107,13 +107,13 @@ impl Tree {
             let position = position + rotation * link.translation + axis * (link.pitch * angle);
             let turned = own * Rotation3::from_axis_angle(&link.axis, angle).matrix();
             let subspace = spatial(axis * link.pitch + position.cross(&axis), axis);
-            all.push(Placed { rotation: turned, position, subspace });
+            all.push(PlacedTestLink { rotation: turned, position, subspace });
         }
         all
     }
 
     /// Returns momentum or force for a body's inertia about the root's origin.
-    fn apply_inertia(&self, k: usize, place: &Placed, x: &Vector6<f64>) -> Vector6<f64> {
+    fn apply_inertia(&self, k: usize, place: &PlacedTestLink, x: &Vector6<f64>) -> Vector6<f64> {
         let link = &self.links[k];
         let ((linear, angular), p) = (parts(x), place.position);
         let (moment, tensor) =
