@@ -280,9 +280,8 @@ proptest! {
         let source = creature.creature_source();
         let interacts = source.1.contains(" between");
         // Models with an element between a limb and itself are rejected.
-        let refused = check_model_or_errors(
-            &source, |_, model| check_limb_variants(model, interacts, seed)).is_err(,
-        );
+        let variants = check_model_or_errors(&source, |_, model| check_limb_variants(model, interacts, seed));
+        let refused = variants.is_err();
         prop_assert!(!refused || interacts);
     }
 
