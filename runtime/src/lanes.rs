@@ -13,8 +13,7 @@ mod registers;
 #[cfg(all(
     feature = "std",
     target_arch = "x86_64",
-    not(all(target_feature = "avx2", target_feature = "fma")),
-    any(test, not(debug_assertions))
+    not(all(target_feature = "avx2", target_feature = "fma"))
 ))]
 pub(crate) mod x86;
 

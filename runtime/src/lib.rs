@@ -199,7 +199,7 @@ pub mod prelude {
 #[doc(hidden)]
 pub mod __private {
     pub use crate::absent;
-    pub use crate::arithmetic::dispatch::{Evaluate, dispatch};
+    pub use crate::arithmetic::dispatch::{Evaluate, dispatch, dispatch_in_any_build};
     pub use crate::arithmetic::{Arithmetic, Compiled, Vector};
     pub use crate::chains::{Block as LinkBlock, Row as LinkRow, chain_derivatives};
     pub use crate::constraint::{

@@ -21,7 +21,7 @@ mod x86;
 
 use crate::layout::Layout;
 use crate::table::AnyTable;
-use linkwork::__private::{Arithmetic, Evaluate, dispatch};
+use linkwork::__private::{Arithmetic, Evaluate, dispatch_in_any_build};
 use linkwork_compiler::expr::Function as Elementary;
 use linkwork_compiler::lower::Program;
 use pieces::Pieces;
@@ -259,7 +259,7 @@ called! {
     fn write_sines_and_cosines(array: *mut f64, count: u64) {
         // SAFETY: generated code passes an array of `3 * count` numbers on its stack.
         let array = unsafe { std::slice::from_raw_parts_mut(array, 3 * count as usize) };
-        dispatch::<0, f64, _, _>(&SineCosineEvaluation, array);
+        dispatch_in_any_build::<0, f64, _, _>(&SineCosineEvaluation, array);
     }
 }
 

@@ -17,17 +17,30 @@ pub trait Evaluate<const K: usize, Arguments> {
     fn evaluate<A: Arithmetic>(&self, arguments: Arguments) -> Self::Output;
 }
 
-/// Evaluates a body on numbers of type `T` with the best instructions available.
+/// Evaluates a body on numbers of type `T` with the best instructions available; in debug builds, with those
+/// of the target.
 #[inline(always)]
 pub fn dispatch<const K: usize, T: Real, M: Evaluate<K, Arguments>, Arguments>(
+    mechanism: &M,
+    arguments: Arguments,
+) -> M::Output {
+    #[cfg(any(test, not(debug_assertions)))]
+    return dispatch_in_any_build::<K, T, M, Arguments>(mechanism, arguments);
+    #[cfg(not(any(test, not(debug_assertions))))]
+    mechanism.evaluate::<Compiled>(arguments)
+}
+
+/// Evaluates a body on numbers of type `T` with the best instructions available, in debug builds, too: their
+/// results are then those of code that is generated at run time.
+#[inline(always)]
+pub fn dispatch_in_any_build<const K: usize, T: Real, M: Evaluate<K, Arguments>, Arguments>(
     mechanism: &M,
     arguments: Arguments,
 ) -> M::Output {
     #[cfg(all(
         feature = "std",
         target_arch = "x86_64",
-        not(all(target_feature = "avx2", target_feature = "fma")),
-        any(test, not(debug_assertions))
+        not(all(target_feature = "avx2", target_feature = "fma"))
     ))]
     if crate::lanes::x86::avx2::has_faster_instructions::<T>() && crate::lanes::x86::avx2::is_available() {
         #[expect(unsafe_code, reason = "calls of functions with target features are")]
@@ -40,8 +53,7 @@ pub fn dispatch<const K: usize, T: Real, M: Evaluate<K, Arguments>, Arguments>(
 #[cfg(all(
     feature = "std",
     target_arch = "x86_64",
-    not(all(target_feature = "avx2", target_feature = "fma")),
-    any(test, not(debug_assertions))
+    not(all(target_feature = "avx2", target_feature = "fma"))
 ))]
 #[target_feature(enable = "avx2,fma")]
 fn with_avx2<const K: usize, M: Evaluate<K, Arguments>, Arguments>(

@@ -1,12 +1,15 @@
 //! Program without the standard library, without an allocator and without panics. It has a computed-torque
 //! controller with its seven-axis arm, a body in flight with every integrator, an engine with a closed loop,
-//! and a sledge that collides with the ground and comes to rest. The panic handler calls a function that does
-//! not exist, so that a program with a remaining panic cannot be linked.
+//! a sledge that collides with the ground and comes to rest, a long chain, and two stones that fall on each
+//! other. The panic handler calls a function that does not exist, so that a program with a remaining panic
+//! cannot be linked.
 
 #![no_std]
 #![no_main]
 
+mod chain;
 mod handler;
+mod stones;
 
 use core::hint::black_box;
 use linkwork::batch::{Rollout, unwatched};
@@ -192,6 +195,8 @@ extern "C" fn main(_: i32, _: *const *const u8) -> i32 {
     let arrived = (q - target).norm() < 1e-3;
     let alone = integrators_agree_on_flight(black_box(0.5))
         && keeps_loop_closed(black_box(0.13))
-        && comes_to_rest(black_box(0.4));
+        && comes_to_rest(black_box(0.4))
+        && chain::derivatives_agree_with_differences(black_box(0.7))
+        && stones::upper_stone_comes_to_rest(black_box(0.5));
     i32::from(!(sound && arrived && side_by_side(&q, &v) && alone))
 }

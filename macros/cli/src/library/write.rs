@@ -90,7 +90,7 @@ fn function_table_row(f: &Function, nv: usize) -> String {
         f.results.iter().map(|(_, shape)| shape.iter().product::<usize>().to_string()).collect();
     let format_row_closure = |call: &str| {
         let g = if f.arguments.is_empty() { "_" } else { "g" };
-        format!("|m, {g}, to| Results::give({call}, to)")
+        format!("|m, {g}, to| Results::write_to_sink({call}, to)")
     };
     let eight = f.lanes.as_ref().map_or("None".to_string(), |call| {
         let call = call.replacen("_lanes(", "_lanes::<8>(", 1);

@@ -14,7 +14,7 @@ use compiled::{
 use linkwork::prelude::*;
 use linkwork::{Frames, discrete};
 use linkwork_models::{AnymalB, CartPole, FourBar, FurutaPendulum, PandaArm, SimpleHumanoid, Solo12, Ur5};
-use mechanisms::{Balloon, MechanismWithAwkwardNames, Wing};
+use mechanisms::{Awkward, Balloon, Wing};
 
 fn deterministic_numbers(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + 1.7 * k as f64).sin()).collect()
@@ -280,9 +280,9 @@ fn cuda_kernels_of_trees_agree_with_rust() {
     case.entries.extend(steps!(Balloon, m, case));
     case.entries.extend(products!(Balloon, m, case, 0.7));
     kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
-    let m = MechanismWithAwkwardNames { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
-    let mut case = case!("awkward", MechanismWithAwkwardNames, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
-    case.entries.extend(products!(MechanismWithAwkwardNames, m, case));
+    let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
+    let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
+    case.entries.extend(products!(Awkward, m, case));
     kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
     let ([drag], [lift], [moment]) = wing_tables(true, true);
     let m = Wing { mass: 2.0, lift, drag, moment };
@@ -319,8 +319,8 @@ fn c_code_of_declared_mechanisms_agrees_with_rust() {
 
 #[test]
 fn names_reserved_in_c_are_replaced() {
-    let m = MechanismWithAwkwardNames { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
-    let mut case = case!("awkward", MechanismWithAwkwardNames, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
+    let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
+    let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
     let argument_values = |name: &str| {
         let (_, numbers) = case.given.iter().find(|(known, _)| *known == name).expect("an argument");
         numbers.clone()
@@ -342,7 +342,7 @@ fn names_reserved_in_c_are_replaced() {
         entry!("inverse_dynamics_by_parameters", "q, v, a", m.inverse_dynamics_by_parameters(&q, &v, &a)),
         entry!("inverse_dynamics_second_derivatives", "q, v, a, tau", qq, qv, vv, qa),
     ]);
-    case.entries.extend(steps!(MechanismWithAwkwardNames, m, case));
+    case.entries.extend(steps!(Awkward, m, case));
     check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
 }
 

@@ -91,7 +91,7 @@ pub struct Door {
 
 /// Pendulum whose names are keywords of C, no identifiers of C, or names of arguments of functions.
 #[mechanism(gravity = -9.81 * y)]
-pub struct MechanismWithKeywordNames {
+pub struct Kernel {
     pub double: f64,
     pub int: f64,
     pub θ: f64,
