@@ -250,7 +250,7 @@ fn rolling_disk_has_textbook_accelerations() {
     assert_close("acceleration", &a.as_slice()[3..], &expected, 1e-12);
 }
 
-/// Minimum and maximum of two expressions in outputs, and in the law of a spring that only pushes.
+/// Cart with outputs and a one-sided spring whose laws contain the minimum or maximum of two expressions.
 #[mechanism(derivatives)]
 struct MinimumMaximumCart {
     k: f64,

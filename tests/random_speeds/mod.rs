@@ -89,7 +89,8 @@ impl<'g> CompiledMechanism<'g> {
     }
 }
 
-/// Returns the matrices `Y` and `Z` of the transformation at a configuration, as lists of rows.
+/// Returns the matrices of generalized speeds at a configuration, as lists of rows: `Y` of `u = Y v` and `Z`
+/// of `v = Z u`.
 fn speed_transformation(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
     let speeds = model.speeds.as_ref().expect("there are speeds");
     let state = State { q: q.to_vec(), ..State::default() };

@@ -41,8 +41,8 @@ const TIES: [&str; 9] = [
     "#[acts(on = @o, value = 0.3 * @o.x - 0.4 * omega(@o / ground))] #: Torque,",
 ];
 
-/// Returns trees with up to `joints` joints, with more free joints than `trees` has, and with elements
-/// between their bodies and the ground.
+/// Returns trees with up to `joints` joints, with more free joints than [`random_trees`] has, and with
+/// elements between two bodies or a body and the ground.
 #[allow(dead_code, reason = "not every test that has trees has tied ones")]
 pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
     let ties = vec((0..TIES.len(), 0..8_usize, 0..8_usize), 0..=3);

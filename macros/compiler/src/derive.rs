@@ -39,8 +39,8 @@ use regressor::IdentificationFunctions;
 use specialisation::ParameterSpecialisation;
 
 pub use output::{
-    AssociatedConstant, BlockLoops, FrameSteps, Function, LinkRecursionPrograms, Output, PLACEMENT, Prepared,
-    TWIST,
+    AssociatedConstant, BlockLoopDerivatives, FrameSteps, Function, LinkRecursionPrograms, Output, PLACEMENT,
+    Prepared, TWIST,
 };
 
 /// Maximum number of products in the elimination of constraints.

@@ -220,7 +220,7 @@ fn errors_elsewhere_preserve_output_arguments() {
 }
 
 /// Returns the bound of an absent function, which is the only bound over a lifetime.
-fn bound_of_absent_function(block: &ItemImpl) -> Option<String> {
+fn marker_trait_of_absent_function(block: &ItemImpl) -> Option<String> {
     let bounds = block.generics.where_clause.as_ref()?.predicates.iter();
     let reasons = bounds.filter_map(|predicate| match predicate {
         syn::WherePredicate::Type(bound) if bound.lifetimes.is_some() => match bound.bounds.first()? {
@@ -240,7 +240,7 @@ impl GeneratedItems {
             self.traits.insert(format!("{of}: {}", path.segments.last().unwrap().ident));
             return;
         }
-        let reason = bound_of_absent_function(block);
+        let reason = marker_trait_of_absent_function(block);
         for item in &block.items {
             let (name, arguments) = match item {
                 ImplItem::Fn(f) => (f.sig.ident.to_string(), Some(signature_text(f))),
@@ -438,7 +438,7 @@ fn names_by_availability(arguments: &str, name: &str, fields: &str) -> String {
                 ImplItem::Const(c) => c.ident.to_string(),
                 _ => continue,
             };
-            let list = bound_of_absent_function(&block)
+            let list = marker_trait_of_absent_function(&block)
                 .map_or("there".to_string(), |reason| format!("not there, {reason}"));
             by.entry(list).or_default().insert(name);
         }

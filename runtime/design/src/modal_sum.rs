@@ -214,10 +214,10 @@ impl ModalSum {
             let t = rest.t.view((k, k), (m - k, m - k)).into_owned();
             rest = Schur { q: CMatrix::identity(m - k, m - k), t };
         }
-        Ok(Self::from_modal_terms(terms, sampled))
+        Ok(Self::modal_sum_of_terms(terms, sampled))
     }
 
-    fn from_modal_terms(terms: Vec<ModalTerm>, sampled: bool) -> Self {
+    fn modal_sum_of_terms(terms: Vec<ModalTerm>, sampled: bool) -> Self {
         let noise =
             64.0 * f64::EPSILON * terms.iter().map(ModalTerm::bound_at_all_instants).sum::<f64>().max(1.0);
         // A term decays beyond the last maximum of its powers.

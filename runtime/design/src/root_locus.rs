@@ -67,7 +67,7 @@ impl StateSpace {
         let poles = self.poles()?;
         let all = poles.iter().copied().chain(self.zeros()?);
         let size = all.map(|x| x.norm()).fold(1e-6, f64::max);
-        let largest_pole_shift = |k: f64| -> Result<f64, Error> {
+        let distance_from_open_loop_poles = |k: f64| -> Result<f64, Error> {
             let closed = self.feedback_gain(&DMatrix::from_element(1, 1, k))?.poles()?;
             Ok(order_poles_along_branches(&poles, closed)
                 .iter()
@@ -77,13 +77,13 @@ impl StateSpace {
         };
         let (mut low, mut high) = (1.0, 1.0);
         for _ in 0..60 {
-            if largest_pole_shift(low)? <= 0.01 * size {
+            if distance_from_open_loop_poles(low)? <= 0.01 * size {
                 break;
             }
             low *= 0.4;
         }
         for _ in 0..60 {
-            if largest_pole_shift(high)? >= 4.0 * size {
+            if distance_from_open_loop_poles(high)? >= 4.0 * size {
                 break;
             }
             high *= 2.5;

@@ -61,7 +61,7 @@ where
         ContactSelection::<NK, NR>::select_closed_contacts(ContactLayout::of_mechanism(mechanism), &closed);
     let mut acted = ContactsWithImpulses::contacts_without_impulses(selection, true);
     let carried = came.transport_velocity_to_end(mechanism, t + h, &free.q);
-    let velocities_before = || {
+    let contact_velocities_before_impulses = || {
         ContactVelocities::<M, T, NQ, NV, NR>::rates_of_selected_contacts(
             &selection,
             velocities.rates_of_velocity(&carried),
@@ -72,7 +72,7 @@ where
         (t + h, &velocities),
         (&free.q, &end),
         &closed,
-        (velocities_before, Some(((&given, &impulses), true))),
+        (contact_velocities_before_impulses, Some(((&given, &impulses), true))),
         &mut acted,
     );
     Ok(solved.map_err(constraint_error)?.impulses / h)

@@ -8,7 +8,7 @@ use nalgebra::SVector;
 pub(super) struct GapClosingDisplacement<T, const CK: usize, const CR: usize> {
     /// Gaps of the selected contacts before the displacement.
     pub(super) gaps: SVector<T, CK>,
-    /// Largest gap that is closed.
+    /// Largest gap that the displacement closes, m; larger gaps stay open.
     pub(super) reach: T,
     /// Impulses without friction whose effect on velocities is the displacement; `None` if all gaps are zero
     /// to rounding or are not closed.

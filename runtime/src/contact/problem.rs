@@ -282,7 +282,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         self.set_step_sizes();
     }
 
-    /// Sets the steps of the contact velocities, after `B` or `W`.
+    /// Computes the step size of the natural map for each contact from the diagonal of `W`, which must be
+    /// known.
     pub(super) fn set_step_sizes(&mut self) {
         let mut diagonal = RowList::<T, NR>::repeat_entry(T::zero());
         (0..self.size).for_each(|i| diagonal[i] = self.delassus_matrix_entry(i, i));

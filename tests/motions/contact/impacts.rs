@@ -4,7 +4,7 @@ use super::laws::{Chain, Pile, Random, check_impact_conditions};
 use linkwork::prelude::*;
 
 #[mechanism(gravity = -9.81 * z)]
-struct Dice {
+struct BlockAtFloorAndWall {
     friction: f64,
     restitution: f64,
     #[body(mass = 2, com = 0.02 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
@@ -27,7 +27,7 @@ fn corner_impacts_of_a_block_satisfy_contact_conditions() {
     let mut random = Random(1);
     for _ in 0..400 {
         let friction = random.random_choice([0.0, 0.05, 0.3, 0.8, 2.0]);
-        let m = Dice { friction, restitution: random.random_choice([0.0, 0.0, 0.4, 1.0]) };
+        let m = BlockAtFloorAndWall { friction, restitution: random.random_choice([0.0, 0.0, 0.4, 1.0]) };
         let mut q = m.neutral();
         q[2] = 0.05;
         if random.next() > 0.3 {

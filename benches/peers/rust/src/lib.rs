@@ -10,8 +10,9 @@ use std::error::Error;
 use std::ffi::{CStr, c_char};
 use std::path::Path;
 
-/// Gravitational acceleration of Linkwork and the other peers, and of the crate dynibo, m/s².
+/// Gravitational acceleration of Linkwork and of all peers but dynibo, m/s².
 const G: f64 = 9.81;
+/// Gravitational acceleration that the crate dynibo uses, m/s².
 const G_OF_DYNIBO: f64 = 9.80665;
 
 /// State of a robot, with the joints in the order of the crate dynibo.

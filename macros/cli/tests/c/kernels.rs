@@ -48,7 +48,7 @@ fn kernel_test_program(case: &Case, scalar: &str) -> String {
                 varied_batch_numbers_text(&case.parameters)
             );
             let mut list = "own, ".to_string();
-            for (k, table) in split_table_initialisers(tables).iter().enumerate() {
+            for (k, table) in split_into_table_initialisers(tables).iter().enumerate() {
                 let _ = writeln!(text, "    static const {p}_device::{p}_table table{k} = {table};");
                 let _ = write!(list, "table{k}, ");
             }
@@ -70,7 +70,7 @@ fn kernel_test_program(case: &Case, scalar: &str) -> String {
 }
 
 /// Splits a list of C table initialisers into the tables.
-fn split_table_initialisers(tables: &str) -> Vec<String> {
+fn split_into_table_initialisers(tables: &str) -> Vec<String> {
     let parts = tables.split("{{").skip(1);
     parts.map(|part| format!("{{{{{}", part.trim_end_matches(", "))).collect()
 }

@@ -1,6 +1,6 @@
 //! Form of the derivatives of inverse dynamics with loops over blocks of links.
 
-use super::output::BlockLoops;
+use super::output::BlockLoopDerivatives;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::lower::{Operand, Program, lower};
@@ -15,7 +15,7 @@ pub(super) fn cheaper_block_loops<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     program: &Program,
-) -> Option<BlockLoops> {
+) -> Option<BlockLoopDerivatives> {
     let best = program.simd.as_deref().unwrap_or(program).estimated_cost();
     let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
     let found = link_blocks(model, joints, &v, &a)?;
@@ -28,7 +28,7 @@ pub(super) fn cheaper_block_loops<'g>(
     if cost + quantities.estimated_cost() >= best {
         return None;
     }
-    Some(BlockLoops {
+    Some(BlockLoopDerivatives {
         zeros: zeros_on_paths(&found.blocks, program, model.nv()),
         program: quantities,
         free: found.free,

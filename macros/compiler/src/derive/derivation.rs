@@ -3,7 +3,7 @@
 
 use super::derivatives::Derivatives;
 use super::dynamics::Dynamics;
-use super::output::{BlockLoops, Function};
+use super::output::{BlockLoopDerivatives, Function};
 use super::regressor::IdentificationFunctions;
 use super::sensitivities::SensitivityDerivation;
 use super::specialisation::ParameterSpecialisation;
@@ -103,7 +103,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         &self,
         declared: &DeclaredFunction,
         program: &Program,
-    ) -> Option<Box<BlockLoops>> {
+    ) -> Option<Box<BlockLoopDerivatives>> {
         match declared.id {
             Id::InverseDynamicsDerivatives | Id::InverseDynamicsDerivativesInto => {
                 self.derivatives?.block_loops(program).map(Box::new)

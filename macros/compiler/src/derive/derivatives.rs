@@ -1,6 +1,6 @@
 //! Derivation of the functions of the option `derivatives`.
 
-use super::output::{BlockLoops, Function};
+use super::output::{BlockLoopDerivatives, Function};
 use super::second;
 use super::specialisation::ParameterSpecialisation;
 use super::{block_loops, limb_lanes};
@@ -106,7 +106,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     /// Returns the form of the derivatives of inverse dynamics with loops over blocks of links, if it costs
     /// less than their `program`.
-    pub(super) fn block_loops(&self, program: &Program) -> Option<BlockLoops> {
+    pub(super) fn block_loops(&self, program: &Program) -> Option<BlockLoopDerivatives> {
         let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
         let supported = *specialisation == ParameterSpecialisation::None
             && model.nv() >= BLOCKED_VELOCITIES

@@ -23,12 +23,12 @@ pub struct Function {
     /// Structure of its matrices: zeros, packed entries, form of an inverse.
     pub structure: Structure,
     /// Form with loops over blocks of links, if it is faster than the program for a single state.
-    pub loops: Option<Box<BlockLoops>>,
+    pub loops: Option<Box<BlockLoopDerivatives>>,
 }
 
 /// Form of the derivatives of inverse dynamics that calls loops of the runtime.
 #[derive(Clone)]
-pub struct BlockLoops {
+pub struct BlockLoopDerivatives {
     /// Program of the quantities that the loops need (`mechanics::derivatives::blocks`), followed by the
     /// derivatives of passive forces that are not zero.
     pub program: Program,
@@ -42,7 +42,7 @@ pub struct BlockLoops {
     pub zeros: [Vec<(usize, usize)>; 2],
 }
 
-impl BlockLoops {
+impl BlockLoopDerivatives {
     /// Returns the number of outputs with quantities of links, which are followed by their mass properties.
     pub fn link_output_count(&self) -> usize {
         self.blocks.len() * LINK_QUANTITIES * BLOCK_LENGTH

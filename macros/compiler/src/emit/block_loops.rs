@@ -2,7 +2,7 @@
 
 use super::pieces::{Piece, Statement, array_expression};
 use super::signature::{Signature, matrix_argument_names};
-use crate::derive::{BlockLoops, Function};
+use crate::derive::{BlockLoopDerivatives, Function};
 use crate::mechanism::{BLOCK_LENGTH, LINK_QUANTITIES, LinkBlock, MASS_PROPERTIES};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -11,7 +11,7 @@ const RUNTIME: &str = "::linkwork::__private";
 
 /// Returns the statement that declares the array `links` of the quantities of the links. Inputs and constants
 /// are stored in it at once.
-pub fn declaration_of_links(loops: &BlockLoops, outputs: &[Piece], zero: &str) -> String {
+pub fn declaration_of_links(loops: &BlockLoopDerivatives, outputs: &[Piece], zero: &str) -> String {
     let links = outputs.get(..loops.link_output_count()).unwrap_or(&[]);
     let known = links.iter().map(|piece| if piece.needs.is_empty() { piece.text.as_str() } else { zero });
     format!("let mut links = {};\n", rows_of_blocks(&known.collect::<Vec<_>>(), LINK_QUANTITIES))
@@ -20,7 +20,7 @@ pub fn declaration_of_links(loops: &BlockLoops, outputs: &[Piece], zero: &str) -
 /// Returns the statements with those that store the quantities of the links in the array `links`, each after
 /// the quantity is computed.
 pub fn with_stored_links(
-    loops: &BlockLoops,
+    loops: &BlockLoopDerivatives,
     statements: Vec<Statement>,
     outputs: &[Piece],
 ) -> Vec<Statement> {
@@ -47,13 +47,18 @@ pub fn with_stored_links(
 }
 
 /// Returns the outputs that the call of the loops contains.
-pub fn outputs_of_call<'a>(loops: &BlockLoops, outputs: &'a [Piece]) -> &'a [Piece] {
+pub fn outputs_of_call<'a>(loops: &BlockLoopDerivatives, outputs: &'a [Piece]) -> &'a [Piece] {
     outputs.get(loops.link_output_count()..).unwrap_or(&[])
 }
 
 /// Returns the call of the loops, which write the derivatives to the matrix arguments, and the statements
 /// that add the derivatives of passive forces.
-pub fn call_of_loops(f: &Function, loops: &BlockLoops, s: &Signature<'_>, outputs: &[Piece]) -> String {
+pub fn call_of_loops(
+    f: &Function,
+    loops: &BlockLoopDerivatives,
+    s: &Signature<'_>,
+    outputs: &[Piece],
+) -> String {
     let texts: Vec<&str> = outputs_of_call(loops, outputs).iter().map(|piece| piece.text.as_str()).collect();
     let (inertias, others) = texts.split_at(texts.len().min(loops.inertia_output_count()));
     let (ground, passive) = others.split_at(others.len().min(3));

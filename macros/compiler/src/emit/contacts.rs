@@ -47,7 +47,7 @@ impl UnilateralContact {
             matches!(Quantity::from_symbol(symbol), Quantity::Velocity(_)).then(|| model.graph.zero())
         });
         let mut rows = rates.iter().zip(&at_rest);
-        let contact_from_model = |c: &Contact<'_>| {
+        let unilateral_contact_of_model_contact = |c: &Contact<'_>| {
             let own: Vec<_> = rows.by_ref().take(c.rates.len()).collect();
             let own_rates: Vec<_> = own.iter().map(|(rate, _)| **rate).collect();
             let used: Vec<usize> = symbols_in(&own_rates).into_iter().filter_map(velocity_index).collect();
@@ -65,7 +65,7 @@ impl UnilateralContact {
                 drifts: own.iter().any(|(_, at_rest)| **at_rest != model.graph.zero()),
             }
         };
-        model.contacts.iter().map(contact_from_model).collect()
+        model.contacts.iter().map(unilateral_contact_of_model_contact).collect()
     }
 
     /// Returns one unnamed contact for a mechanism whose contacts are unknown because of an error.

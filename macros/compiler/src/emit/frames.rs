@@ -257,12 +257,12 @@ fn add_path_kinematics_methods(
         let parameters = s.parameter_list(&s.with_time_argument(arguments));
         steps.add("(always)", &format!("fn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}]"), body);
     };
-    let parent_path_argument = |name: &str, state: &str| {
+    let parent_path_call_argument = |name: &str, state: &str| {
         link.parent.map_or(String::new(), |p| format!(", &self.__link{p}_path_{name}({t}{state})"))
     };
-    let placement = format!("self.__link{k}_placement({t}q{})", parent_path_argument("placement", "q"));
+    let placement = format!("self.__link{k}_placement({t}q{})", parent_path_call_argument("placement", "q"));
     method("placement", &[Q], 12, &placement);
-    let twist = format!("self.__link{k}_twist({t}q, v{})", parent_path_argument("twist", "q, v"));
+    let twist = format!("self.__link{k}_twist({t}q, v{})", parent_path_call_argument("twist", "q, v"));
     method("twist", &[Q, V], 6, &twist);
     let motion = match link.parent {
         Some(p) => format!(

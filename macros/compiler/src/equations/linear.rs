@@ -153,11 +153,11 @@ fn polynomials_of_linear_rows<'g>(
         let mut left = Polynomial::default();
         // Highest derivatives first: atoms are printed in the order in which they are added.
         for (symbol, coefficients) in symbols.iter().zip(&all.orders).rev() {
-            add_symbol_products(&mut left, &coefficients[k], *symbol, 1.0, &mut normal)?;
+            add_coefficients_times_symbols(&mut left, &coefficients[k], *symbol, 1.0, &mut normal)?;
         }
         let mut right = Polynomial::default();
-        add_symbol_products(&mut right, &all.inputs[k], Quantity::Input, -1.0, &mut normal)?;
-        add_symbol_products(&mut right, &all.multipliers[k], multiplier_symbol, 1.0, &mut normal)?;
+        add_coefficients_times_symbols(&mut right, &all.inputs[k], Quantity::Input, -1.0, &mut normal)?;
+        add_coefficients_times_symbols(&mut right, &all.multipliers[k], multiplier_symbol, 1.0, &mut normal)?;
         motion.push(left);
         forces.push(right);
     }
@@ -174,7 +174,7 @@ fn polynomials_of_linear_rows<'g>(
 }
 
 /// Adds products of coefficients and symbols to a sum.
-fn add_symbol_products<'g>(
+fn add_coefficients_times_symbols<'g>(
     sum: &mut Polynomial,
     coefficients: &[Expr<'g>],
     symbol: fn(usize) -> Quantity,

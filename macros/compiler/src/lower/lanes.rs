@@ -17,7 +17,7 @@ pub(super) struct ValueLaneCounts {
 
 impl ValueLaneCounts {
     /// Returns the lanes of the constants and inputs of a program, before its instructions.
-    pub(super) fn lanes_of_inputs(program: &Program) -> ValueLaneCounts {
+    pub(super) fn program_input_lane_counts(program: &Program) -> ValueLaneCounts {
         let gathers = program.gathers.iter().map(Vec::len).collect();
         ValueLaneCounts { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }
     }
@@ -116,7 +116,7 @@ impl Program {
 
     /// Returns the number of SIMD lanes of each value; one for scalars.
     pub fn lane_counts(&self) -> Vec<usize> {
-        let mut lanes = ValueLaneCounts::lanes_of_inputs(self);
+        let mut lanes = ValueLaneCounts::program_input_lane_counts(self);
         for op in &self.instructions {
             lanes.record_lanes(op);
         }

@@ -127,7 +127,7 @@ impl Program {
         let mut out = SumWriter {
             sums,
             instructions: Vec::new(),
-            lanes: ValueLaneCounts::lanes_of_inputs(self),
+            lanes: ValueLaneCounts::program_input_lane_counts(self),
             values: Vec::new(),
             written: vec![None; sums.sums.len()],
         };

@@ -180,7 +180,7 @@ impl Quantity {
         }
     }
 
-    /// Returns this quantity as an expression.
+    /// Returns the symbol of this quantity as an expression.
     pub fn expr(self, graph: &Graph) -> Expr<'_> {
         graph.symbol(self.symbol())
     }

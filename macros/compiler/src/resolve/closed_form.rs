@@ -49,10 +49,10 @@ pub fn find_closed_form_loops(
             continue;
         }
         let tree_joint_of_child_body = |end: &Endpoint| {
-            let is_holding_joint = |(k, other): &(usize, &Joint)| {
+            let is_tree_joint_of_end = |(k, other): &(usize, &Joint)| {
                 !closing[*k] && other.child.body.text == end.body.text && end.body.text != GROUND
             };
-            d.joints.iter().enumerate().find(is_holding_joint).map(|(k, _)| k)
+            d.joints.iter().enumerate().find(is_tree_joint_of_end).map(|(k, _)| k)
         };
         let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
         let can_be_solved = |k: &usize| {

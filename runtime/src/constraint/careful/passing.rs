@@ -223,20 +223,22 @@ impl<T: Real, const NQ: usize, const NV: usize> PathPoints<'_, T, NQ, NV> {
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
         let (step, half) = (self.step, constant::<T>(0.5));
-        let accelerations_at = |h: T, course: &AccelerationAndJerk<T, NV>| {
+        let permitted_accelerations_at = |h: T, course: &AccelerationAndJerk<T, NV>| {
             self.permitted_accelerations(mechanism, structure, h, course)
         };
         let mut course = (SVector::zeros(), SVector::zeros());
         // The path has the smallest curvature that the branch permits.
         for _ in 0..if self.way.moves { 2 } else { 0 } {
-            let (before, after) =
-                (accelerations_at(-step, &course)?.bend, accelerations_at(step, &course)?.bend);
+            let (before, after) = (
+                permitted_accelerations_at(-step, &course)?.bend,
+                permitted_accelerations_at(step, &course)?.bend,
+            );
             course = ((before + after) * half, (after - before) * (half / step));
         }
         let mut sum = PermittedAccelerations { free: SMatrix::zeros(), bend: SVector::zeros() };
         for (k, weight) in [(1.0, 0.75), (2.0, -0.3), (3.0, 0.05)] {
             for side in [-k, k] {
-                let possible = accelerations_at(step * constant(side), &course)?;
+                let possible = permitted_accelerations_at(step * constant(side), &course)?;
                 sum.free += possible.free * constant::<T>(weight);
                 sum.bend += possible.bend * constant::<T>(weight);
             }

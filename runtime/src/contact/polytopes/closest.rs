@@ -57,7 +57,8 @@ pub(super) fn edge_parameters<T: Real>(
     second: &Placed<'_, T>,
     [i, j]: [usize; 2],
 ) -> Option<[T; 2]> {
-    let [(a, own), (b, along)] = [ends(first, i)?, ends(second, j)?];
+    let [(a, own), (b, along)] =
+        [edge_midpoint_and_half_vector(first, i)?, edge_midpoint_and_half_vector(second, j)?];
     let (offset, x, y, z) = (a - b, own.norm_squared(), along.norm_squared(), own.dot(&along));
     let determinant = x * y - z * z;
     if determinant <= x * y * constant(PARALLEL) {
@@ -69,8 +70,11 @@ pub(super) fn edge_parameters<T: Real>(
     (s.abs() <= T::one() && t.abs() <= T::one()).then_some([s, t])
 }
 
-/// Returns midpoint of an edge and half of the vector along it.
-fn ends<T: Real>(shape: &Placed<'_, T>, edge: usize) -> Option<(Vector3<T>, Vector3<T>)> {
+/// Returns the midpoint of an edge, and half of the vector along it.
+fn edge_midpoint_and_half_vector<T: Real>(
+    shape: &Placed<'_, T>,
+    edge: usize,
+) -> Option<(Vector3<T>, Vector3<T>)> {
     let edge = shape.shape.edges.get(edge)?;
     let ([a, b], half) = (edge.ends.map(|k| shape.vertex(k)), constant::<T>(0.5));
     Some(((a + b) * half, (b - a) * half))
@@ -96,7 +100,7 @@ pub(super) fn closest_features<T: Real>(
                 continue;
             }
             for j in 0..other.shape.edges.len() {
-                let Some((middle, half)) = ends(other, j) else { continue };
+                let Some((middle, half)) = edge_midpoint_and_half_vector(other, j) else { continue };
                 let offset = vertex - middle;
                 let t = (offset.dot(&half) / half.norm_squared()).clamp(-T::one(), T::one());
                 let square = (offset - half * t).norm_squared();

@@ -19,7 +19,7 @@ pub(in super::super) struct ImpulseBasisRows<T, const NR: usize> {
     reach: TotalArray<(usize, usize), NR>,
     /// Number of rows.
     size: usize,
-    /// Entry of `w` for each column.
+    /// Index of the entry of `w`, the velocity in the metric of the kinetic energy, of each column.
     columns: TotalArray<usize, NR>,
     /// Number of columns; zero if `B` is not computed yet.
     rank: usize,
@@ -197,7 +197,7 @@ impl<T: Real, const NR: usize> ImpulseBasisRows<T, NR> {
                 (first, last) = (first.min(start), last.max(start + row.len()));
             }
         }
-        let row_columns = |i: usize| self.rows[i].get(first..last).unwrap_or_default();
+        let row_part_in_column_range = |i: usize| self.rows[i].get(first..last).unwrap_or_default();
         for top in (0..*count).step_by(AT_ONCE) {
             let mut products = [RowList::<T, NR>::repeat_entry(T::zero()); AT_ONCE];
             let mut left = [&[] as &[T]; AT_ONCE];
@@ -205,10 +205,10 @@ impl<T: Real, const NR: usize> ImpulseBasisRows<T, NR> {
             for ((product, left), i) in products.iter_mut().zip(&mut left).zip(top..*count) {
                 let product = product.get_mut(..last.saturating_sub(first)).unwrap_or_default();
                 let (Some(row), Some(factors)) = (rows.get(i), entries.get(i)) else { continue };
-                *left = row_columns(*row);
+                *left = row_part_in_column_range(*row);
                 for (factor, j) in factors.iter().zip(rows).take(*count) {
                     if *factor != T::zero() {
-                        add_multiple(product, *factor, row_columns(*j));
+                        add_multiple(product, *factor, row_part_in_column_range(*j));
                         is_any = true;
                     }
                 }

@@ -184,7 +184,7 @@ fn frame_definitions(i: &ExportedMechanism<'_>, mut template: Template, is_late:
     let mut add_step = |name: &str, is_link: bool, given: &[Argument], programs: Vec<Option<&Program>>| {
         let time = (is_link && i.model.time).then_some(Argument::T);
         let arguments: Vec<Argument> = time.into_iter().chain(given.iter().copied()).collect();
-        template.add_value(name, &step_definition(i, name, &arguments, &programs, is_late));
+        template.add_value(name, &recursion_step_definition(i, name, &arguments, &programs, is_late));
     };
     let of_links = |program: fn(&crate::derive::LinkRecursionPrograms) -> &Program| {
         links.iter().map(|link| Some(program(link))).collect::<Vec<_>>()
@@ -217,7 +217,7 @@ fn frame_definitions(i: &ExportedMechanism<'_>, mut template: Template, is_late:
 
 /// Returns the function of a step of the recursion: a switch over links or frames. Without a program, the
 /// placement is that of the link.
-fn step_definition(
+fn recursion_step_definition(
     i: &ExportedMechanism<'_>,
     name: &str,
     arguments: &[Argument],

@@ -129,8 +129,8 @@ fn add_joint_fields(
             let description = describe_joint_parameter(&format!("Place, on the parent {link},"));
             let e =
                 add(FileFieldKind::Placement, of, word, description, (values, units), &name.place, fields);
-            let expression_at_name = |e| Expr { kind: e, place: name.place.clone() };
-            joint.parent.at = Some(expression_at_name(ExprKind::Array(e[..3].to_vec())));
+            let expression_with_span_of_name = |e| Expr { kind: e, place: name.place.clone() };
+            joint.parent.at = Some(expression_with_span_of_name(ExprKind::Array(e[..3].to_vec())));
             let turns = [("z", 5), ("y", 4), ("x", 3)];
             joint.parent.rotated = turns
                 .map(|(axis, k)| Expr::function_call_expression(axis, vec![e[k].clone()], &name.place))

@@ -113,7 +113,7 @@ pub(super) fn import_sdf(
     })
 }
 
-/// Reads the root element of an SDF file in `folder`.
+/// Imports the mechanism from the root element of an SDF file, whose meshes are looked up in `folder`.
 fn read_root_element<'a>(
     root_node: Node<'a>,
     folder: &Path,
