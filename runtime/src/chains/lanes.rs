@@ -34,10 +34,10 @@ pub struct Spatials<A, T> {
     pub angular: Vectors<A, T>,
 }
 
-/// Reads row `k`.
+/// Reads row `k`; zeros if there is no such row.
 #[inline(always)]
 pub fn read<A: Arithmetic, T: Real, const K: usize>(rows: &Rows<T, K>, k: usize) -> Eight<A, T> {
-    A::lanes(rows[k].0)
+    A::lanes(rows.get(k).map_or([T::zero(); WIDTH], |row| row.0))
 }
 
 /// Reads three rows from `k` on.
@@ -46,10 +46,12 @@ pub fn read_vectors<A: Arithmetic, T: Real, const K: usize>(rows: &Rows<T, K>, k
     [read::<A, T, K>(rows, k), read::<A, T, K>(rows, k + 1), read::<A, T, K>(rows, k + 2)]
 }
 
-/// Writes row `k`.
+/// Writes row `k`, if it exists.
 #[inline(always)]
 pub fn write<A: Arithmetic, T: Real, const K: usize>(rows: &mut Rows<T, K>, k: usize, x: Eight<A, T>) {
-    rows[k].0 = *x.lane_numbers();
+    if let Some(row) = rows.get_mut(k) {
+        row.0 = *x.lane_numbers();
+    }
 }
 
 /// Writes three rows from `k` on.

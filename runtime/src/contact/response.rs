@@ -118,20 +118,26 @@ impl<T: Real, const N: usize> CholeskyFactor<T, N> {
             }
         }
         for j in 0..N {
-            let pivot = (starts[j]..j).fold(m[j][j], |pivot, k| pivot - m[j][k] * m[j][k]);
-            // It is not where it is no number, either.
+            let (above, below) = m.split_at_mut_checked(j + 1).unwrap_or_default();
+            let Some(own) = above.last_mut() else { return false };
+            let first = starts[j];
+            let before = own.get(first..j).unwrap_or_default();
+            let pivot = before.iter().fold(own[j], |pivot, entry| pivot - *entry * *entry);
+            // A pivot that is NaN is not positive.
             let positive = pivot > T::zero();
             if !positive {
                 return false;
             }
             let reciprocal = T::one() / pivot.sqrt();
-            m[j][j] = reciprocal;
-            for i in j + 1..ends[j] {
-                if starts[i] <= j {
-                    let from = starts[i].max(starts[j]);
-                    let entry = (from..j).fold(m[i][j], |entry, k| entry - m[i][k] * m[j][k]);
-                    m[i][j] = entry * reciprocal;
-                }
+            own[j] = reciprocal;
+            let count = ends[j].saturating_sub(j + 1);
+            let reached = below.iter_mut().zip(starts.iter().skip(j + 1)).take(count);
+            for (row, start) in reached.filter(|(_, start)| **start <= j) {
+                let from = (*start).max(first);
+                let (left, right) = (row.get(from..j), own.get(from..j));
+                let products = left.unwrap_or_default().iter().zip(right.unwrap_or_default());
+                let entry = products.fold(row[j], |entry, (left, right)| entry - *left * *right);
+                row[j] = entry * reciprocal;
             }
         }
         true
@@ -180,7 +186,10 @@ impl<T: Real, const N: usize> CholeskyFactor<T, N> {
     pub(super) fn solve_lower(&self, x: &mut [T; N], start: usize, end: usize) {
         let Self { rows, starts, .. } = self;
         for i in start..end.min(N) {
-            x[i] = (starts[i].max(start)..i).fold(x[i], |sum, k| sum - rows[i][k] * x[k]) * rows[i][i];
+            let known = starts[i].max(start)..i;
+            let (row, solved) = (rows[i].get(known.clone()), x.get(known));
+            let products = row.unwrap_or_default().iter().zip(solved.unwrap_or_default());
+            x[i] = products.fold(x[i], |sum, (entry, x)| sum - *entry * *x) * rows[i][i];
         }
     }
 
@@ -190,7 +199,9 @@ impl<T: Real, const N: usize> CholeskyFactor<T, N> {
         let mut product = [T::zero(); N];
         for i in 0..N {
             product[i] = x[i] / rows[i][i];
-            (starts[i]..i).for_each(|k| product[k] += rows[i][k] * x[i]);
+            let above = product.get_mut(starts[i]..i).unwrap_or_default().iter_mut();
+            let row = rows[i].get(starts[i]..i).unwrap_or_default();
+            above.zip(row).for_each(|(product, entry)| *product += *entry * x[i]);
         }
         product
     }
@@ -202,7 +213,9 @@ impl<T: Real, const N: usize> CholeskyFactor<T, N> {
             if x[i] != T::zero() {
                 x[i] *= rows[i][i];
                 let value = x[i];
-                (starts[i]..i).for_each(|k| x[k] -= rows[i][k] * value);
+                let above = x.get_mut(starts[i]..i).unwrap_or_default().iter_mut();
+                let row = rows[i].get(starts[i]..i).unwrap_or_default();
+                above.zip(row).for_each(|(x, entry)| *x -= *entry * value);
             }
         }
         x

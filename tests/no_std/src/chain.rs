@@ -16,8 +16,10 @@ type Joints = SVector<f64, { Chain::NV }>;
 
 /// Whether the derivatives of inverse and forward dynamics agree with central differences along a direction.
 pub fn derivatives_agree_with_differences(angle: f64) -> bool {
-    let scaled_sine = |factor: f64| Joints::from_fn(|k, _| (factor * (k as f64 + 1.0) * angle) % 1.7 - 0.8);
-    let (q, v, a, along) = (scaled_sine(1.0), scaled_sine(2.3), scaled_sine(3.1), scaled_sine(4.7));
+    let alternating = |factor: f64| {
+        Joints::from_fn(|k, _| if k & 1 == 0 { angle * factor } else { -angle / (factor + k as f64) })
+    };
+    let (q, v, a, along) = (alternating(1.0), alternating(-1.3), alternating(0.7), alternating(0.4));
     let (by_q, by_v) = Chain {}.inverse_dynamics_derivatives(&q, &v, &a);
     let h = 1e-5;
     let force_at = |part: f64| Chain {}.inverse_dynamics(&(q + along * part), &(v + along * part), &a);
