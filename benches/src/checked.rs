@@ -39,7 +39,7 @@ impl CompiledRuntime {
         let artifact =
             messages.lines().rfind(|line| line.contains("/liblinkwork-") && line.contains(".rlib\""));
         let file = artifact.and_then(|line| line.split('"').find(|word| word.ends_with(".rlib")));
-        Ok(CompiledRuntime { rlib: file.ok_or("cargo told of no library")?.into() })
+        Ok(CompiledRuntime { rlib: file.ok_or("cargo reported no library")?.into() })
     }
 }
 

@@ -1,12 +1,15 @@
 //! Problems for the comparison of integration methods: an n-body problem, and stiff or constrained
 //! mechanisms.
 
+#[path = "../../tests/support/counting.rs"]
+mod counting;
+
+use counting::CountingMechanism;
+use linkwork::Mechanism;
 use linkwork::integrate::Method;
-use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
-use linkwork::{ByMotion, ConstraintError, Mechanism};
 use linkwork_models::{AndrewsSqueezer, CarAxle};
-use std::cell::Cell;
 use std::time::Instant;
 
 /// Seven stars in a plane that attract each other, with close encounters (Hairer, Nørsett and Wanner,
@@ -62,7 +65,7 @@ pub struct Pleiades {
 }
 
 impl Pleiades {
-    /// Initial configuration and velocity of Andrews' squeezer.
+    /// Initial configuration and velocity of the stars.
     pub const START: ([f64; 14], [f64; 14]) = (
         [3.0, 3.0, 3.0, -3.0, -1.0, 2.0, -3.0, 0.0, 2.0, 0.0, -2.0, -4.0, 2.0, 4.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.25, 0.0, 1.0, 1.75, 0.0, -1.5, 0.0],
@@ -89,109 +92,6 @@ pub struct StiffGovernor {
     oil: Dashpot,
     #[acts(on = hinge, damping = 0.02)]
     air: Dashpot,
-}
-
-/// Mechanism wrapper that counts how often an integrator evaluates the accelerations.
-struct CountingMechanism<'m, M> {
-    mechanism: &'m M,
-    evaluations: &'m Cell<usize>,
-    derivatives: &'m Cell<usize>,
-}
-
-fn increment_counter(cell: &Cell<usize>) {
-    cell.set(cell.get() + 1);
-}
-
-macro_rules! pass {
-    ($($name:ident($($argument:ident: $n:ident),*) -> $result:ty;)*) => {$(
-        fn $name(&self, t: f64, $($argument: &SVector<f64, $n>),*) -> $result {
-            self.mechanism.$name(t, $($argument),*)
-        }
-    )*};
-}
-
-impl<M, const NQ: usize, const NV: usize> Mechanism<NQ, NV, 0> for CountingMechanism<'_, M>
-where
-    M: Mechanism<NQ, NV, 0, Scalar = f64>,
-{
-    type Scalar = f64;
-    const CONFIGURATION: [&'static str; NQ] = M::CONFIGURATION;
-    const VELOCITIES: [&'static str; NV] = M::VELOCITIES;
-    const INPUTS: [&'static str; 0] = [];
-
-    fn neutral(&self) -> SVector<f64, NQ> {
-        self.mechanism.neutral()
-    }
-    fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
-        self.mechanism.integrate(q, dv)
-    }
-    fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
-        self.mechanism.difference(from, to)
-    }
-    fn tangent_rate(&self, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.mechanism.tangent_rate(dv, v)
-    }
-    fn forward_dynamics(
-        &self,
-        t: f64,
-        q: &SVector<f64, NQ>,
-        v: &SVector<f64, NV>,
-        tau: &SVector<f64, NV>,
-    ) -> SVector<f64, NV> {
-        increment_counter(self.evaluations);
-        self.mechanism.forward_dynamics(t, q, v, tau)
-    }
-    fn generalized_forces(
-        &self,
-        _t: f64,
-        _q: &SVector<f64, NQ>,
-        _v: &SVector<f64, NV>,
-        _u: &SVector<f64, 0>,
-    ) -> SVector<f64, NV> {
-        SVector::zeros()
-    }
-    pass! {
-        bias_forces(q: NQ, v: NV) -> SVector<f64, NV>;
-        inverse_dynamics(q: NQ, v: NV, a: NV) -> SVector<f64, NV>;
-        kinetic_energy(q: NQ, v: NV) -> f64;
-        generalized_momentum(q: NQ, v: NV) -> SVector<f64, NV>;
-        momentum_rate(q: NQ, v: NV) -> SVector<f64, NV>;
-        mass_matrix(q: NQ) -> SMatrix<f64, NV, NV>;
-        potential_energy(q: NQ) -> f64;
-    }
-}
-
-impl<M, const NQ: usize, const NV: usize> linkwork::integrate::Hooks<f64, NQ, NV, 0>
-    for CountingMechanism<'_, M>
-where
-    M: Mechanism<NQ, NV, 0, Scalar = f64>,
-{
-    const CONSTRAINED: bool = M::CONSTRAINED;
-
-    fn impulse(
-        &self,
-        t: f64,
-        q: &SVector<f64, NQ>,
-        v: &SVector<f64, NV>,
-        h: f64,
-        p: &SVector<f64, NV>,
-    ) -> SVector<f64, NV> {
-        self.mechanism.impulse(t, q, v, h, p)
-    }
-    fn acceleration_derivatives(
-        &self,
-        t: f64,
-        q: &SVector<f64, NQ>,
-        v: &SVector<f64, NV>,
-        u: &SVector<f64, 0>,
-    ) -> Option<ByMotion<f64, NV, 0>> {
-        increment_counter(self.derivatives);
-        self.mechanism.acceleration_derivatives(t, q, v, u)
-    }
-    pass! {
-        project(q: NQ, v: NV) -> Result<(SVector<f64, NQ>, SVector<f64, NV>), ConstraintError>;
-        is_nearly_singular(q: NQ, dv: NV) -> bool;
-    }
 }
 
 /// Result of an integration method on a test problem: final state, evaluations and time.
@@ -237,9 +137,7 @@ impl<S: Method<f64> + Clone> ProblemVisitor for IntegrationVisitor<S> {
     {
         let mut best: Option<IntegrationResult> = None;
         for _ in 0..5 {
-            let (evaluations, derivatives) = (Cell::new(0), Cell::new(0));
-            let counted =
-                CountingMechanism { mechanism: m, evaluations: &evaluations, derivatives: &derivatives };
+            let counted = CountingMechanism::<M, true>::new(m);
             let clock = Instant::now();
             let run =
                 simulate(&counted).from(start.0, start.1).method(self.0.clone()).duration(end).finish()?;
@@ -248,8 +146,8 @@ impl<S: Method<f64> + Clone> ProblemVisitor for IntegrationVisitor<S> {
                 let q = run.q.iter().copied().collect();
                 best = Some(IntegrationResult {
                     q,
-                    evaluations: evaluations.get(),
-                    derivatives: derivatives.get(),
+                    evaluations: counted.evaluations.get(),
+                    derivatives: counted.derivatives.get(),
                     seconds,
                 });
             }

@@ -13,6 +13,7 @@ use nalgebra::{SMatrix, SVector};
 mod banded;
 mod basis;
 mod convex;
+mod elimination;
 mod islands;
 mod linear;
 mod newton;
@@ -63,7 +64,7 @@ pub(super) struct ContactProblem<T, const NK: usize, const NR: usize> {
     given: RowList<T, NR>,
     /// Impulses of compression for Poisson's restitution, and whether there are any.
     compression: RowList<T, NR>,
-    is_contact_compressed: bool,
+    is_compressed: bool,
     /// Impulses of compression, and the smallest impulses of restitution. They act in addition to those that
     /// are searched.
     base: RowList<T, NR>,
@@ -111,7 +112,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             places: TotalArray::repeat_entry(0),
             given: TotalArray::repeat_entry(T::zero()),
             compression: TotalArray::repeat_entry(T::zero()),
-            is_contact_compressed: false,
+            is_compressed: false,
             base: TotalArray::repeat_entry(T::zero()),
             free: TotalArray::repeat_entry(T::zero()),
             weights: None,
@@ -272,7 +273,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Copies the rows of closed contacts from `W = G M⁻¹ Gᵀ` of all contacts.
     pub(super) fn copy_closed_contact_weights(&mut self, weights: &SMatrix<T, NR, NR>) {
         let (places, none) = (self.places, T::zero());
-        let own = self.weights.insert(linear::zero_matrix());
+        let own = self.weights.insert(elimination::zero_matrix());
         for (j, place) in places.iter().enumerate().take(self.size) {
             let Some(column) = weights.data.0.get(*place) else { continue };
             for (row, i) in own.iter_mut().zip(places.iter()).take(self.size) {
@@ -460,7 +461,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         if self.basis.is_exact() {
             return;
         }
-        let own = self.weights.insert(linear::zero_matrix());
+        let own = self.weights.insert(elimination::zero_matrix());
         for (row, i) in own.iter_mut().zip(rows) {
             row.iter_mut().zip(rows).for_each(|(to, j)| *to = other.delassus_matrix_entry(*i, *j));
         }

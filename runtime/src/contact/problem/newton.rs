@@ -10,7 +10,7 @@ use super::super::total::TotalArray;
 use super::banded::{set_unit_rows, solve_banded_system};
 use super::basis::ImpulseDerivativeBlock;
 use super::convex::PARTS;
-use super::linear::zero_matrix;
+use super::elimination::zero_matrix;
 use super::search::PATIENCE;
 use super::trial::{ContactMode, ImpulseTrial};
 use super::{ContactProblem, ContactRowMatrix, RowList};

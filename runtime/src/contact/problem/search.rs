@@ -1,7 +1,8 @@
 //! Search for impulses that satisfy the conditions of all contacts.
 
 use super::super::total::TotalArray;
-use super::linear::{ImpulseEquations, zero_matrix};
+use super::elimination::zero_matrix;
+use super::linear::ImpulseEquations;
 use super::newton::STEPS;
 use super::trial::ImpulseTrial;
 use super::{ContactProblem, ContactRowMatrix, RowList};

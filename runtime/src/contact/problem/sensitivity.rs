@@ -6,7 +6,7 @@
 
 use super::super::total::TotalArray;
 use super::banded::set_unit_rows;
-use super::linear::{independence_threshold, zero_matrix};
+use super::elimination::{independence_threshold, subtract_multiple, zero_matrix};
 use super::trial::ContactMode;
 use super::{ContactProblem, ContactRowMatrix, RowList, entry_or_zero};
 use crate::Real;
@@ -102,9 +102,6 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
 
     /// Solves for right-hand sides in place, with the factors.
     fn solve_with_stored_factors<const C: usize>(&self, right: &mut TotalArray<[T; C], NR>) {
-        let subtract_multiple = |from: &mut [T; C], factor: T, row: &[T; C]| {
-            from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
-        };
         (0..self.size).for_each(|column| right.exchange_entries(self.pivots[column], column));
         for column in 0..self.size {
             let value = right[column];
@@ -174,7 +171,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// The contact with Poisson's restitution, or the one that violates the contact conditions most if the
     /// violation is larger than the errors of the search.
     pub(in super::super) fn check_derivatives(&self, impulses: &RowList<T, NR>) -> Result<(), usize> {
-        if self.is_contact_compressed {
+        if self.is_compressed {
             let is_contact_compressed = |k: &usize| self.compression[self.rows[*k].first] > T::zero();
             return Err(self.contacts[(0..self.count).find(is_contact_compressed).unwrap_or_default()].0);
         }

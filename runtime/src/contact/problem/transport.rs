@@ -2,7 +2,8 @@
 
 use super::super::response::{CholeskyFactor, ImpulseEffects};
 use super::convex::{cholesky_in_place, solve_by_cholesky_factor};
-use super::linear::{ImpulseEquations, zero_matrix};
+use super::elimination::zero_matrix;
+use super::linear::ImpulseEquations;
 use super::{ContactProblem, RowList, entry_or_zero};
 use crate::Real;
 use crate::private::constant;
