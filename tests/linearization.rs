@@ -40,7 +40,7 @@ macro_rules! check_differences {
 
             let inverse_dynamics = |q: &_, v: &_| Mechanism::inverse_dynamics(m, 0.0, q, v, &a);
             let forward_dynamics = |q: &_, v: &_, tau: &_| Mechanism::forward_dynamics(m, 0.0, q, v, tau);
-            let convert_to_input_derivatives = |q: &_, v: &_, u: &_| {
+            let accelerations_under_inputs = |q: &_, v: &_, u: &_| {
                 forward_dynamics(q, v, &Mechanism::generalized_forces(m, 0.0, q, v, u))
             };
 
@@ -56,7 +56,7 @@ macro_rules! check_differences {
 
             let (state, input) = $at.linearize($($t,)? &q, &v, &u);
             check_derivative_columns("B", &input, |d| {
-                let change = convert_to_input_derivatives(&q, &v, &(u + d));
+                let change = accelerations_under_inputs(&q, &v, &(u + d));
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { 0.0 } else { change[i - NV] })
             });
             check_derivative_columns("A", &state, |d| {
@@ -66,7 +66,7 @@ macro_rules! check_differences {
                 let displacement_after =
                     |t: f64| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t)));
                 let apart = derivative_at_zero(STEP, displacement_after);
-                let change = convert_to_input_derivatives(&start, &w, &u);
+                let change = accelerations_under_inputs(&start, &w, &u);
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { apart[i] } else { change[i - NV] })
             });
         }

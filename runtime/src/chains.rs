@@ -102,7 +102,7 @@ impl<T: Real, const N: usize, const B: usize, const FREE: bool> VectorLoop
         }
         for (b, block) in blocks.iter().enumerate() {
             let free = FREE && b == 0;
-            entries::write_jacobian_columns::<A, T, N, B>((b, block), blocks, links, &work, by_q, by_v, free);
+            entries::write_columns_of_block::<A, T, N, B>((b, block), blocks, links, &work, by_q, by_v, free);
         }
         for (matrix, zeros) in [by_q, by_v].into_iter().zip(zeros) {
             clear_entries(matrix, zeros);

@@ -262,36 +262,36 @@ fn rust_only_functions(source: &Source) -> Vec<String> {
 /// Reports why a mechanism or the options of an export are not supported.
 fn report_unsupported_export(
     model: &mechanism::Model<'_>,
-    unfit: export::CExportObstacle,
+    unfit: export::ExportObstacle,
     cx: &mut Diagnostics,
 ) {
     let (what, help) = match unfit {
-        export::CExportObstacle::NoParameter(name) => (
+        export::ExportObstacle::NoParameter(name) => (
             format!("there is no parameter `{name}` to be fixed"),
             match model.parameters.is_empty() {
                 true => "the mechanism has no parameters".to_string(),
                 false => format!("there are {}", model.parameters.join(", ")),
             },
         ),
-        export::CExportObstacle::SingleCasadi => (
+        export::ExportObstacle::SingleCasadi => (
             "CasADi has no functions of single precision".to_string(),
             "export them in double precision".to_string(),
         ),
-        export::CExportObstacle::Irreproducible(what) => (
+        export::ExportObstacle::Irreproducible(what) => (
             format!("{what} has no reproducible arithmetic in C"),
             "remove it or `arithmetic = reproducible`; functions in Rust are reproducible".to_string(),
         ),
-        export::CExportObstacle::CasadiSpeeds => (
+        export::ExportObstacle::CasadiSpeeds => (
             "functions for CasADi have no declared speeds".to_string(),
             "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the \
              rates of coordinates: remove `#[speed(…)]`, or export plain C"
                 .to_string(),
         ),
-        export::CExportObstacle::Missing => (
+        export::ExportObstacle::Missing => (
             "internal error: a value of the functions in C is missing".to_string(),
             "please report this with the declaration of the mechanism".to_string(),
         ),
-        export::CExportObstacle::Lanes(of) => (
+        export::ExportObstacle::Lanes(of) => (
             format!("internal error: `{of}` was derived with lanes"),
             "please report this with the declaration of the mechanism".to_string(),
         ),

@@ -39,8 +39,7 @@ const LARGE_STACK: usize = if cfg!(target_pointer_width = "64") { 1 << 30 } else
 fn on_stack<T: Send>(size: usize, run: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(size);
-        let thread =
-            thread.spawn_scoped(scope, run).map_err(|error| Error::InternalFunction(error.to_string()))?;
+        let thread = thread.spawn_scoped(scope, run).map_err(|error| Error::Internal(error.to_string()))?;
         thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }

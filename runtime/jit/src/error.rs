@@ -65,7 +65,7 @@ pub enum Error {
         message: String,
     },
     /// Error: Linkwork itself has a defect.
-    InternalFunction(String),
+    Internal(String),
 }
 
 impl fmt::Display for Error {
@@ -87,7 +87,7 @@ impl fmt::Display for Error {
             }
             Error::Value(message) | Error::Motion { message, .. } => f.write_str(message),
             Error::OtherMechanism(name) => write!(f, "`{name}` is a function of another mechanism"),
-            Error::InternalFunction(message) => {
+            Error::Internal(message) => {
                 write!(f, "internal error of Linkwork, please report it with the file: {message}")
             }
         }

@@ -38,9 +38,9 @@ impl Inverse {
 
     /// Completes the inverse mass matrix from the columns that the program has computed and its further
     /// outputs.
-    pub fn complete(&self, matrix: &mut [f64], beside: &[f64], work: &mut [f64]) {
+    pub fn complete(&self, matrix: &mut [f64], trunk_factors: &[f64], work: &mut [f64]) {
         if !self.trunk.is_empty() || self.limbs.is_some() {
-            kernels::run_kernel(self.n, InverseCompletion { inverse: self, matrix, beside, work });
+            kernels::run_kernel(self.n, InverseCompletion { inverse: self, matrix, trunk_factors, work });
         }
     }
 
@@ -112,11 +112,11 @@ impl Inverse {
 
     /// Converts a column of generalized forces to accelerations in place, if the program computes forces, as
     /// it does for mechanisms with limbs in SIMD lanes.
-    pub fn solve(&self, inverse: &[f64], beside: &[f64], column: &mut [f64], work: &mut [f64]) {
+    pub fn solve(&self, inverse: &[f64], trunk_factors: &[f64], column: &mut [f64], work: &mut [f64]) {
         if let Some(limbs) = &self.limbs {
             kernels::run_kernel(
                 self.n,
-                Solution { inverse: self, limbs, matrix: inverse, beside, column, work },
+                Solution { inverse: self, limbs, matrix: inverse, trunk_factors, column, work },
             );
         }
     }
@@ -126,17 +126,17 @@ impl Inverse {
 struct InverseCompletion<'a> {
     inverse: &'a Inverse,
     matrix: &'a mut [f64],
-    beside: &'a [f64],
+    trunk_factors: &'a [f64],
     work: &'a mut [f64],
 }
 
 impl Kernel for InverseCompletion<'_> {
     #[inline(always)]
     fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
-        let InverseCompletion { inverse, matrix, beside, work } = self;
+        let InverseCompletion { inverse, matrix, trunk_factors, work } = self;
         match &inverse.limbs {
-            None => inverse.add_trunk_columns(matrix, beside, mul_add),
-            Some(limbs) => inverse.invert_with_limbs(limbs, matrix, beside, work, mul_add),
+            None => inverse.add_trunk_columns(matrix, trunk_factors, mul_add),
+            Some(limbs) => inverse.invert_with_limbs(limbs, matrix, trunk_factors, work, mul_add),
         }
     }
 }
@@ -146,7 +146,7 @@ struct Solution<'a> {
     inverse: &'a Inverse,
     limbs: &'a [Option<usize>],
     matrix: &'a [f64],
-    beside: &'a [f64],
+    trunk_factors: &'a [f64],
     column: &'a mut [f64],
     work: &'a mut [f64],
 }
@@ -154,7 +154,7 @@ struct Solution<'a> {
 impl Kernel for Solution<'_> {
     #[inline(always)]
     fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
-        let Solution { inverse, limbs, matrix, beside, column, work } = self;
+        let Solution { inverse, limbs, matrix, trunk_factors, column, work } = self;
         let (n, width) = (inverse.n, inverse.trunk.len());
         let (x, rest) = work[..2 * n].split_at_mut(n);
         rest.copy_from_slice(column);
@@ -170,7 +170,7 @@ impl Kernel for Solution<'_> {
             column.iter_mut().zip(&*x).for_each(|(a, x)| *a += x);
             for k in 0..n {
                 for (t, trunk) in inverse.trunk.iter().enumerate() {
-                    rest[*trunk] -= x[k] * beside[k * width + t];
+                    rest[*trunk] -= x[k] * trunk_factors[k * width + t];
                 }
             }
         }

@@ -139,8 +139,8 @@ impl Loader {
         run: impl FnOnce() -> Result<T, Error> + Send + 'static,
     ) -> Result<T, Error> {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
-        let thread = thread.spawn(run).map_err(|error| Error::InternalFunction(error.to_string()))?;
-        thread.join().map_err(|panic| Error::InternalFunction(panic_message(&*panic)))?
+        let thread = thread.spawn(run).map_err(|error| Error::Internal(error.to_string()))?;
+        thread.join().map_err(|panic| Error::Internal(panic_message(&*panic)))?
     }
 
     fn compile(self) -> Result<Shared, Error> {
@@ -227,7 +227,7 @@ impl Loader {
     pub(crate) fn report_errors(&self, cx: &Diagnostics) -> Error {
         let messages: Vec<String> = cx.distinct_errors().map(|one| self.diagnostic_message(one)).collect();
         match messages.is_empty() {
-            true => Error::InternalFunction("the mechanism could not be compiled".to_string()),
+            true => Error::Internal("the mechanism could not be compiled".to_string()),
             false => Error::Mechanism(messages),
         }
     }

@@ -91,7 +91,7 @@ impl Robot {
         result?;
         match row == rows {
             true => Ok(()),
-            false => Err(Error::InternalFunction(format!("{row} samples of {rows}"))),
+            false => Err(Error::Internal(format!("{row} samples of {rows}"))),
         }
     }
 }

@@ -185,7 +185,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
         let mut last = None;
         let every = self.every.or(Some(self.duration).filter(|duration| *duration > 0.0));
         Self { every, ..self }.each(&mut |sample| last = Some(sample))?;
-        last.ok_or_else(|| Error::InternalFunction("a run without samples".to_string()))
+        last.ok_or_else(|| Error::Internal("a run without samples".to_string()))
     }
 
     /// Checks the start, the duration and the interval between samples.

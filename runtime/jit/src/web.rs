@@ -105,7 +105,7 @@ impl Robot {
         if !shared.polytopes.is_empty() {
             return Err(refused("it has contacts of hulls with hulls, boxes, capsules or cylinders"));
         }
-        let module = self.web_module(drawing).map_err(Error::InternalFunction)?;
+        let module = self.web_module(drawing).map_err(Error::Internal)?;
         let mut fields = self.web_structure();
         let parameters = self.parameter_values();
         for (name, list) in

@@ -281,10 +281,10 @@ fn robots_of_files_have_names_and_limits() -> Result<(), Error> {
         <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/>
         <limit lower="-1" upper="2" velocity="3" effort="4"/></joint></robot>"#;
     let path = std::env::temp_dir().join(format!("linkwork_jit_{}.urdf", std::process::id()));
-    std::fs::write(&path, urdf).map_err(|error| Error::InternalFunction(error.to_string()))?;
+    std::fs::write(&path, urdf).map_err(|error| Error::Internal(error.to_string()))?;
     let robot = linkwork_jit::load(&path);
     let parameters = Loader::file(&path).options("parameters = inertial(\"b\")").load();
-    std::fs::remove_file(&path).map_err(|error| Error::InternalFunction(error.to_string()))?;
+    std::fs::remove_file(&path).map_err(|error| Error::Internal(error.to_string()))?;
     let (robot, parameters) = (robot?, parameters?);
     assert_eq!((robot.velocities()[0].name.as_str(), robot.velocities()[0].unit.as_str()), ("j", "rad/s"));
     let limit = &robot.limits()?[0];

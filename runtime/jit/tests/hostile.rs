@@ -299,7 +299,7 @@ fn no_input_crashes() -> Result<(), Box<dyn std::error::Error>> {
                     Err(_) => wrong.push(format!("seed {seed}: a call panicked")),
                 }
             }
-            Err(Error::InternalFunction(message)) => wrong.push(format!("seed {seed}, {options}: {message}")),
+            Err(Error::Internal(message)) => wrong.push(format!("seed {seed}, {options}: {message}")),
             Err(_) => {}
         }
         if start.elapsed() > PATIENCE {

@@ -40,9 +40,9 @@ pub fn process_shares_in_parallel<P: Send>(
             .into_iter()
             .map(|(first, count, own)| scope.spawn(move || work(first, count, own)))
             .collect();
-        let ends = all.into_iter().map(|thread| {
-            thread.join().unwrap_or_else(|panic| Some((0, Error::InternalFunction(message(&*panic)))))
-        });
+        let ends = all
+            .into_iter()
+            .map(|thread| thread.join().unwrap_or_else(|panic| Some((0, Error::Internal(message(&*panic))))));
         ends.collect::<Vec<_>>().into_iter().flatten().min_by_key(|(state, _)| *state)
     })
 }

@@ -70,7 +70,7 @@ fn products<A: Arithmetic, T: Real, const K: usize, const M: usize>(
 /// Writes the columns of the links of block `b`. Rows are written in ascending order, eight at a time: zeros
 /// of unused lanes are overwritten by the next block, if the column has entries there.
 #[inline(always)]
-pub fn write_jacobian_columns<A: Arithmetic, T: Real, const N: usize, const B: usize>(
+pub fn write_columns_of_block<A: Arithmetic, T: Real, const N: usize, const B: usize>(
     (b, block): (usize, &Block<'_>),
     blocks: &[Block<'_>; B],
     links: &[LinkRows<T>; B],
@@ -86,8 +86,8 @@ pub fn write_jacobian_columns<A: Arithmetic, T: Real, const N: usize, const B: u
         for k in block.ancestors {
             let (Some(at), Some(link)) = (blocks.get(*k), links.get(*k)) else { continue };
             let [q, v] = factors.entries_of_ancestors::<A>(link);
-            write_registers_to_column(by_q, at.first, &q);
-            write_registers_to_column(by_v, at.first, &v);
+            write_eight_rows(by_q, at.first, &q);
+            write_eight_rows(by_v, at.first, &v);
         }
         let [mut q, mut v] = factors.entries_of_ancestors::<A>(link);
         if !free {
@@ -95,13 +95,13 @@ pub fn write_jacobian_columns<A: Arithmetic, T: Real, const N: usize, const B: u
             q = rows_above_then_below(&q, &below[0], lane);
             v = rows_above_then_below(&v, &below[1], lane);
         }
-        write_registers_to_column(by_q, block.first, &q);
-        write_registers_to_column(by_v, block.first, &v);
+        write_eight_rows(by_q, block.first, &q);
+        write_eight_rows(by_v, block.first, &v);
         for k in block.descendants {
             let (Some(at), Some(rows)) = (blocks.get(*k), work.links.get(*k)) else { continue };
             let [q, v] = factors.entries_of_descendants::<A>(rows);
-            write_registers_to_column(by_q, at.first, &q);
-            write_registers_to_column(by_v, at.first, &v);
+            write_eight_rows(by_q, at.first, &q);
+            write_eight_rows(by_v, at.first, &v);
         }
     }
 }
@@ -122,7 +122,7 @@ fn rows_above_then_below<A: Arithmetic, T: Real>(
 
 /// Writes eight rows of a column from row `first` on, or fewer at the end of the column.
 #[inline(always)]
-fn write_registers_to_column<A: Arithmetic, T: Real, const N: usize>(
+fn write_eight_rows<A: Arithmetic, T: Real, const N: usize>(
     column: &mut [T; N],
     first: usize,
     x: &Eight<A, T>,

@@ -56,7 +56,7 @@ pub fn write<A: Arithmetic, T: Real, const K: usize>(rows: &mut Rows<T, K>, k: u
 
 /// Writes three rows from `k` on.
 #[inline(always)]
-pub fn write_sine_cosine_vector_calls<A: Arithmetic, T: Real, const K: usize>(
+pub fn write_vectors<A: Arithmetic, T: Real, const K: usize>(
     rows: &mut Rows<T, K>,
     k: usize,
     x: &Vectors<A, T>,
@@ -220,8 +220,8 @@ impl<A: Arithmetic, T: Real> Spatials<A, T> {
     /// Writes six rows from `k` on: linear, then angular components.
     #[inline(always)]
     pub fn write<const K: usize>(&self, rows: &mut Rows<T, K>, k: usize) {
-        write_sine_cosine_vector_calls::<A, T, K>(rows, k, &self.linear);
-        write_sine_cosine_vector_calls::<A, T, K>(rows, k + 3, &self.angular);
+        write_vectors::<A, T, K>(rows, k, &self.linear);
+        write_vectors::<A, T, K>(rows, k + 3, &self.angular);
     }
 
     /// Returns the spatial vectors with the same components in every lane.

@@ -3,7 +3,7 @@
 use super::lanes::{
     Eight, Inertias, Matrices, Row, Rows, Spatials, Vectors, WIDTH, cross, cross_add, dot, read,
     read_vectors, scale, scale_add, suffix_sums, symmetric, transform, transform_add, transpose, write,
-    write_sine_cosine_vector_calls,
+    write_vectors,
 };
 use super::{Block, InertiaRows, LinkRows, POSITION, RATES, ROTATION};
 use crate::Real;
@@ -141,15 +141,15 @@ impl<T: Real, const B: usize> Work<T, B> {
             moment: read_vectors::<A, T, SUMS>(sums, MOMENT),
             tensor: symmetric(&six_rows(sums, TENSOR)),
         };
-        write_sine_cosine_vector_calls::<A, T, LINK_ROWS>(links, RATE_LINEAR, &rate.linear);
-        write_sine_cosine_vector_calls::<A, T, LINK_ROWS>(links, RATE_ANGULAR, &rate.angular);
+        write_vectors::<A, T, LINK_ROWS>(links, RATE_LINEAR, &rate.linear);
+        write_vectors::<A, T, LINK_ROWS>(links, RATE_ANGULAR, &rate.angular);
         let map = VelocityMaps::read(sums);
         let mut by_displacement = map.apply(&first.angular);
         if !free {
             by_displacement = s.cross_force_add(&Spatials::read(sums, WRENCH), &by_displacement);
         }
         inertia.momenta(&s).write(links, MOMENTUM);
-        write_sine_cosine_vector_calls::<A, T, LINK_ROWS>(links, MOMENTUM + 6, &map.apply_transposed(&s));
+        write_vectors::<A, T, LINK_ROWS>(links, MOMENTUM + 6, &map.apply_transposed(&s));
         inertia.momenta_add(&second, &by_displacement).write(links, WRENCHES);
         inertia.momenta_add(&rate, &map.apply(&s.angular)).write(links, WRENCHES + 6);
     }
@@ -240,20 +240,20 @@ fn write_body<A: Arithmetic, T: Real>(
         angular: cross_add(&twist.angular, &momentum.angular, &cross(&twist.linear, &momentum.linear)),
     };
     write::<A, T, SUMS>(sums, 0, inertia.mass);
-    write_sine_cosine_vector_calls::<A, T, SUMS>(sums, MOMENT, &inertia.moment);
+    write_vectors::<A, T, SUMS>(sums, MOMENT, &inertia.moment);
     for (k, entry) in six.iter().enumerate() {
         write::<A, T, SUMS>(sums, TENSOR + k, *entry);
     }
     inertia.momenta_add(acceleration, &turned).write(sums, WRENCH);
     // Twice the momentum, and twice K = v hᵀ + [w]× J with the second moments J = ½ tr(I) − I.
     let two = A::splat(T::one() + T::one());
-    write_sine_cosine_vector_calls::<A, T, SUMS>(sums, MAP_VECTOR, &scale(&momentum.linear, two));
+    write_vectors::<A, T, SUMS>(sums, MAP_VECTOR, &scale(&momentum.linear, two));
     let trace = six[0] + six[1] + six[2];
     let minus_two = -two;
     for (k, (row, h)) in inertia.tensor.iter().zip(&inertia.moment).enumerate() {
         let mut column = scale(row, minus_two);
         column[k] = column[k] + trace;
         let column = cross_add(&twist.angular, &column, &scale(&twist.linear, two * *h));
-        write_sine_cosine_vector_calls::<A, T, SUMS>(sums, MAP_MATRIX + 3 * k, &column);
+        write_vectors::<A, T, SUMS>(sums, MAP_MATRIX + 3 * k, &column);
     }
 }

@@ -212,7 +212,7 @@ fn write_features<T: Real>(pair: &PolytopePair<'_>, pose: &[T], is_bounded: bool
     let edge = best_edge_axis(&first, &second, face.distance, &bounds);
     let points = points.get(..count).unwrap_or(&[]);
     let features = choose_features((&first, &second), &face, edge, points, is_bounded, tolerance);
-    write_function_head(&features, (&first, &second), &face, into);
+    write_face_and_edges(&features, (&first, &second), &face, into);
     let opposite = opposite.and_then(|k| other.shape.faces.get(k));
     let slots = into.get_mut(HEAD..).unwrap_or(&mut []);
     write_points(points, pair.points, (own.shape, other.shape), (&face, opposite), slots);
@@ -266,7 +266,7 @@ fn choose_features<T: Real>(
 }
 
 /// Writes the features of the face and of the edges.
-fn write_function_head<T: Real>(
+fn write_face_and_edges<T: Real>(
     features: &DeterminingFeatures<T>,
     (first, second): (&Placed<'_, T>, &Placed<'_, T>),
     face: &FaceAxis<T>,

@@ -53,7 +53,7 @@ impl<T: Real, const NV: usize> AccelerationJacobian<T, NV> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum JacobianDirections {
     /// Displacements that the constraints allow: for methods whose order does not depend on the matrix.
-    AllowedQuantities,
+    Allowed,
     /// All displacements, including those that constraints forbid: for methods whose order requires the exact
     /// Jacobian. The stages of such methods violate the constraints, because of curvature and centripetal
     /// accelerations.
@@ -75,7 +75,7 @@ pub(super) fn derivatives_at_step_start<T: Real, D: Dynamics<T, NQ, NV>, const N
     }
     let mut out = AccelerationJacobian::<T, NV>::zero_jacobian();
     let known = system.acceleration_derivatives(*t, q, v);
-    let is_part = along == JacobianDirections::AllowedQuantities && system.is_constrained();
+    let is_part = along == JacobianDirections::Allowed && system.is_constrained();
     if let Some((by_q, by_v)) = known
         && !is_part
     {
@@ -190,10 +190,9 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
-        let mut slopes =
-            derivatives_at_step_start(system, start, &before, h, JacobianDirections::AllowedQuantities)
-                .or(*memory)
-                .unwrap_or(AccelerationJacobian::zero_jacobian());
+        let mut slopes = derivatives_at_step_start(system, start, &before, h, JacobianDirections::Allowed)
+            .or(*memory)
+            .unwrap_or(AccelerationJacobian::zero_jacobian());
         let later = sampling_delay(system, start.t, h);
         let passed = elapsed_time(system, start.t, later);
         if passed > T::zero() {

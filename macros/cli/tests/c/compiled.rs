@@ -174,10 +174,10 @@ pub fn check_exported_code(case: &Case, arguments: &[&str]) {
     let folder = test_folder(case.prefix);
     export_c_code(&folder, &[&["--prefix", case.prefix], arguments].concat());
     let source = folder.join(format!("{}.c", case.prefix));
-    let occupies_several_registers = std::fs::metadata(source).expect("it is written").len() > LONG;
+    let is_long_source = std::fs::metadata(source).expect("it is written").len() > LONG;
     let ways = [&["-O0"][..], &["-O1", "-march=native"]];
     for compiler in compilers {
-        for flags in ways.into_iter().take(if occupies_several_registers { 1 } else { 2 }) {
+        for flags in ways.into_iter().take(if is_long_source { 1 } else { 2 }) {
             let found = compile_and_run(compiler, &folder, case.prefix, &c_program(case, "double"), flags);
             compare_results(case, &found, case.tolerance);
         }

@@ -353,7 +353,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::PassiveDerivatives => {
                 self.lower_unstructured(&self.passive_outputs(|p| p.derivatives.clone()))
             }
-            // Functions that exist only for mechanisms with speeds, which `in_speeds` has already handled.
+            // Functions of mechanisms with speeds alone, which `outputs_in_speeds` has already handled.
             Id::RatesOfSpeeds
             | Id::SpeedsOfRates
             | Id::RateMatrix

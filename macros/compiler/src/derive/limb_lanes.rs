@@ -79,14 +79,15 @@ pub fn unbalanced_forces<'g>(limbs: &VectorisedMechanism<'g>) -> Vec<Expr<'g>> {
 /// the columns of the low-rank term.
 pub fn inverse<'g>(
     limbs: &VectorisedMechanism<'g>,
-    [matrix, beside]: &[crba::Matrix<'g>; 2],
+    [matrix, trunk_factors]: &[crba::Matrix<'g>; 2],
 ) -> [crba::Matrix<'g>; 2] {
-    let width = beside.iter().map(Vec::len).max().unwrap_or_default();
-    let column = |k: usize| limbs.scatter_to_velocities(&beside.iter().map(|row| row[k]).collect::<Vec<_>>());
+    let width = trunk_factors.iter().map(Vec::len).max().unwrap_or_default();
+    let column =
+        |k: usize| limbs.scatter_to_velocities(&trunk_factors.iter().map(|row| row[k]).collect::<Vec<_>>());
     let columns: Vec<Vec<Expr<'g>>> = (0..width).map(column).collect();
     let rows = matrix_rows_of_whole_mechanism(limbs, matrix);
-    let beside = (0..rows.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
-    [rows, beside]
+    let trunk_factors = (0..rows.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
+    [rows, trunk_factors]
 }
 
 fn matrix_rows_of_whole_mechanism<'g>(

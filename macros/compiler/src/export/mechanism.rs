@@ -25,7 +25,7 @@ pub struct Options {
 
 /// Reason why a mechanism cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum CExportObstacle {
+pub enum ExportObstacle {
     /// The results of this element or option differ from those in Rust by rounding.
     Irreproducible(&'static str),
     /// The mechanism declares generalized speeds, but CasADi's functions take joint velocities.
@@ -80,7 +80,7 @@ impl<'a> ExportedMechanism<'a> {
         output: &'a Output,
         tables: &[String],
         options: &Options,
-    ) -> Result<ExportedMechanism<'a>, CExportObstacle> {
+    ) -> Result<ExportedMechanism<'a>, ExportObstacle> {
         reject_vector_lanes(output)?;
         let prefix = match options.prefix.as_str() {
             "" => names::c_name_prefix(&names::snake_case_prefix(&model.name)),
@@ -258,9 +258,9 @@ pub fn is_zero(f: &Function, k: usize) -> bool {
 }
 
 /// Returns an error if a program contains vector lanes, which exported code cannot have.
-fn reject_vector_lanes(output: &Output) -> Result<(), CExportObstacle> {
+fn reject_vector_lanes(output: &Output) -> Result<(), ExportObstacle> {
     let is_lane = |op: &Op| matches!(op, Op::Sum(..) | Op::Lane(..) | Op::Join(..));
-    let is_batched_over_states = |program: &Program| {
+    let contains_vector_lanes = |program: &Program| {
         program.instructions.iter().any(is_lane) || !program.gathers.is_empty() || !program.tuples.is_empty()
     };
     let steps = output.links.iter().flat_map(|l| [&l.placement, &l.twist, &l.acceleration, &l.columns]);
@@ -268,9 +268,9 @@ fn reject_vector_lanes(output: &Output) -> Result<(), CExportObstacle> {
     let all = output.functions.iter().map(|f| (f.name.as_str(), &f.program));
     match all
         .chain(steps.map(|program| ("frames", program)))
-        .find(|(_, program)| is_batched_over_states(program))
+        .find(|(_, program)| contains_vector_lanes(program))
     {
-        Some((name, _)) => Err(CExportObstacle::Lanes(name.to_string())),
+        Some((name, _)) => Err(ExportObstacle::Lanes(name.to_string())),
         None => Ok(()),
     }
 }

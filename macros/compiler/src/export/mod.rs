@@ -16,5 +16,5 @@ mod tokens;
 pub mod wgsl;
 
 pub use comments::{comment_safe_text, without_doc_links, wrap_paragraph};
-pub use mechanism::{CExportObstacle, Options};
+pub use mechanism::{ExportObstacle, Options};
 pub use names::{c_name_prefix, identifier_from_name, preprocessor_names, snake_case_prefix};

@@ -261,9 +261,9 @@ fn reject_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>)
 
 /// Returns an expression that xacro would have replaced by a value, with its byte offset.
 fn unexpanded_xacro_expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t str)> {
-    let will_print_errors = READ.contains(&node.tag_name().name());
+    let has_known_tag = READ.contains(&node.tag_name().name());
     let is_expression = |value: &str| value.contains("${") || value.contains("$(");
-    let attributes = node.attributes().filter(|_| will_print_errors || format == FileFormat::Sdf);
+    let attributes = node.attributes().filter(|_| has_known_tag || format == FileFormat::Sdf);
     let mut said = attributes.filter(|attribute| is_expression(attribute.value()));
     if let Some(found) = said.next() {
         return Some((found.range_value().start, document_slice(node, found.range_value())?));

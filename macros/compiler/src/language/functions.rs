@@ -6,8 +6,8 @@ use super::dimension::{
 };
 use FunctionDependence::{Acceleration, Arguments, Motion, Power, Rate, Reaction};
 use UnitRule::{
-    Alike, Cable, Direction, Gradient, Inverse, LikeFirst, LikeLast, Moment, Of, OfHeight, Places, Product,
-    Quotient, TimeDerivative, Unknown,
+    Cable, Direction, EqualUnits, Gradient, Inverse, LikeFirst, LikeLast, Moment, Of, OfHeight, Places,
+    Product, Quotient, TimeDerivative, Unknown,
 };
 
 /// Row of the table of functions.
@@ -54,7 +54,7 @@ pub enum UnitRule {
     /// The value has the dimension of a direction: dimensionless.
     Direction,
     /// The value has the dimension of the arguments, which must be equal.
-    Alike,
+    EqualUnits,
     /// The value is dimensionless; the dimensions of the arguments must be equal.
     Quotient,
     /// The value has the dimension of the first argument.
@@ -114,9 +114,9 @@ table! {
         /// Power with a constant exponent.
         Pow = row("pow", "power powi powf powr", (TWO, "write `pow(a, n)`"), Arguments, UnitRule::Power);
         /// The smaller of two values.
-        Min = row("min", "minimum", (TWO, "write `min(a, b)`"), Arguments, Alike);
+        Min = row("min", "minimum", (TWO, "write `min(a, b)`"), Arguments, EqualUnits);
         /// The larger of two values.
-        Max = row("max", "maximum", (TWO, "write `max(a, b)`"), Arguments, Alike);
+        Max = row("max", "maximum", (TWO, "write `max(a, b)`"), Arguments, EqualUnits);
         /// The scalar product.
         Dot = row("dot", "inner scalarproduct inp",
             (TWO, "write `dot(a, b)`; the rate of a coordinate is `rate(coordinate)`"),

@@ -152,11 +152,11 @@ impl<'g> Scope<'_, 'g> {
         ) {
             return None;
         }
-        let resolve_body_with_mass = self.resolve_body_with_mass(body, cx)?;
+        let body_with_mass = self.resolve_body_with_mass(body, cx)?;
         let about = self.placement_of_moving_point(about, cx)?;
         let n = self.resolve_terms(axis, cx)?;
         let kinematics = &self.kinematics;
-        let (placed, (mass, com, central)) = &resolve_body_with_mass;
+        let (placed, (mass, com, central)) = &body_with_mass;
         if mass.is_zero() {
             cx.report_error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
                 .add_help("name a body with a `mass`");
@@ -189,7 +189,7 @@ impl<'g> Scope<'_, 'g> {
             .add_help("every impulse then loads the bearings: there is no centre of percussion");
             return None;
         }
-        let moment = self.inertia_about(&resolve_body_with_mass, &about, [&n, &n]);
+        let moment = self.inertia_about(&body_with_mass, &about, [&n, &n]);
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
         Some(vector_value(vec![(link, arm * share)]))
     }

@@ -33,7 +33,7 @@ pub struct Derivatives {
     pub by_velocity: DMatrix<f64>,
     /// Derivatives of forces and moments with respect to the time derivatives of the velocities, such as
     /// `∂Z/∂ẇ`: kg, kg·m, kg·m².
-    pub acceleration_derivative_matrix: DMatrix<f64>,
+    pub by_acceleration: DMatrix<f64>,
     /// Derivatives of forces and moments with respect to the inputs.
     pub by_input: DMatrix<f64>,
     /// Forces and moments on the aircraft at the reference state, N and N·m.
@@ -91,28 +91,17 @@ impl Derivatives {
                 twist_cross_momentum(&mass, &unit, &velocity) + twist_cross_momentum(&mass, &velocity, &unit);
             by_velocity.column_mut(k).zip_apply(&change, |x, y| *x += y);
         }
-        let acceleration_derivative_matrix = DMatrix::from_fn(6, 6, |i, j| mass[(i, j)] - all[(i, j)]);
+        let by_acceleration = DMatrix::from_fn(6, 6, |i, j| mass[(i, j)] - all[(i, j)]);
         let by_u = DMatrix::from_fn(NV, NU, |i, j| motion.by_u[(i, j)]);
         let by_input = (all * by_u).rows(0, 6).into_owned();
         let forces = &mass * acceleration + twist_cross_momentum(&mass, &velocity, &velocity)
             - weight_on_free_joint(m, q);
-        let parts = [
-            by_velocity.as_slice(),
-            acceleration_derivative_matrix.as_slice(),
-            by_input.as_slice(),
-            forces.as_slice(),
-        ];
+        let parts =
+            [by_velocity.as_slice(), by_acceleration.as_slice(), by_input.as_slice(), forces.as_slice()];
         if parts.iter().any(|part| part.iter().any(|x| !x.is_finite())) {
             return Err(Error::NotFinite { what: "a derivative" });
         }
-        Ok(Self {
-            by_velocity,
-            acceleration_derivative_matrix,
-            by_input,
-            forces,
-            velocity,
-            inputs: M::INPUTS.to_vec(),
-        })
+        Ok(Self { by_velocity, by_acceleration, by_input, forces, velocity, inputs: M::INPUTS.to_vec() })
     }
 
     /// Transforms the derivatives to stability axes: rotated about the right axis so that the forward axis is
@@ -126,9 +115,7 @@ impl Derivatives {
         let rotate_matrix_to_stability_axes = |m: &DMatrix<f64>| &turn * m * turn.transpose();
         Self {
             by_velocity: rotate_matrix_to_stability_axes(&self.by_velocity),
-            acceleration_derivative_matrix: rotate_matrix_to_stability_axes(
-                &self.acceleration_derivative_matrix,
-            ),
+            by_acceleration: rotate_matrix_to_stability_axes(&self.by_acceleration),
             by_input: &turn * &self.by_input,
             forces: &turn * &self.forces,
             velocity: &turn * &self.velocity,
@@ -145,8 +132,9 @@ impl Derivatives {
     pub fn of_force(&self, force: &str, by: &str) -> Result<f64, Error> {
         let row = index_of_name_or_error("force", &FORCES, force)?;
         if let Some(velocity) = by.strip_suffix('\'') {
-            return Ok(self.acceleration_derivative_matrix
-                [(row, index_of_name_or_error("velocity", &VELOCITIES, velocity)?)]);
+            return Ok(
+                self.by_acceleration[(row, index_of_name_or_error("velocity", &VELOCITIES, velocity)?)]
+            );
         }
         if let Some(column) = VELOCITIES.iter().position(|name| *name == by) {
             return Ok(self.by_velocity[(row, column)]);

@@ -87,7 +87,7 @@ fn c_text(text: &str) -> CString {
 /// Runs a function, stores the message of its failure and returns its error code. No panic leaves the C
 /// interface.
 fn run_guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
-    let internal_error = |_| Err(Failure::Linkwork(Error::InternalFunction("a panic".to_string())));
+    let internal_error = |_| Err(Failure::Linkwork(Error::Internal("a panic".to_string())));
     match catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(internal_error) {
         Ok(()) => 0,
         Err(failure) => {

@@ -103,7 +103,7 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
             Method::EventDriven(e) => {
                 driver.integrate_with_method(robot, start, EventDriven::new().tolerance(e, e))
             }
-            _ => Err(Error::InternalFunction("a method without contacts".to_string())),
+            _ => Err(Error::Internal("a method without contacts".to_string())),
         }
     }
 }

@@ -43,7 +43,7 @@ impl VectorJacobianComputation {
                     rest => (0.0, rest, 0),
                 };
                 let [q, v, u, h] = rest else {
-                    return Err(Error::InternalFunction("the arguments of a step".to_string()));
+                    return Err(Error::Internal("the arguments of a step".to_string()));
                 };
                 out.fill(0.0);
                 let (time, own) = out.split_at_mut(first);

@@ -104,7 +104,7 @@ fn write_constraint_satisfying_state(
         (ConstraintProjection::CompleteVelocity, [q, v, held]) => {
             robot.complete_velocity(q, v, &nonzero_indices(held))
         }
-        _ => Err(Error::InternalFunction("the arguments of a function of constraints".to_string())),
+        _ => Err(Error::Internal("the arguments of a function of constraints".to_string())),
     }?;
     out.copy_from_slice(found.as_slice());
     Ok(())
@@ -117,7 +117,7 @@ fn step(stepper: &mut Stepper, jacobians: bool, arguments: &[&[f64]], out: &mut 
         rest => (0.0, rest),
     };
     let [q, v, u, h] = rest else {
-        return Err(Error::InternalFunction("the arguments of a step".to_string()));
+        return Err(Error::Internal("the arguments of a step".to_string()));
     };
     let (end_q, rest) = out.split_at_mut(q.len());
     let (end_v, rest) = rest.split_at_mut(v.len());

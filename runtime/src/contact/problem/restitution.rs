@@ -34,7 +34,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let found = self.solve_impulses();
         self.free = self.given;
         self.compression = self.accept_best_if_relaxed(found)?;
-        self.is_contact_compressed = true;
+        self.is_compressed = true;
         Ok(())
     }
 
@@ -61,7 +61,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             };
             self.base[n] += self.floor[k];
         }
-        if self.is_contact_compressed {
+        if self.is_compressed {
             self.free = self.given;
             self.free = self.contact_velocities_after(&self.base);
         }

@@ -8,7 +8,7 @@
 
 use super::super::comments::wrap_paragraph;
 use super::super::handwritten::METHODS;
-use super::super::mechanism::{CExportObstacle, ExportedMechanism};
+use super::super::mechanism::{ExportObstacle, ExportedMechanism};
 use super::super::names::replace_invalid_characters;
 use super::super::signatures::{Array, ExportedSignature};
 use super::super::template::Template;
@@ -66,11 +66,11 @@ struct CasadiWriter<'a> {
 ///
 /// # Errors
 /// A fixed parameter does not exist.
-pub fn casadi_source(i: &ExportedMechanism<'_>, given: &[(String, f64)]) -> Result<String, CExportObstacle> {
+pub fn casadi_source(i: &ExportedMechanism<'_>, given: &[(String, f64)]) -> Result<String, ExportObstacle> {
     let mut fixed = vec![None; i.model.parameters.len()];
     for (name, value) in given {
         let at = i.model.parameters.iter().position(|known| known == name);
-        fixed[at.ok_or_else(|| CExportObstacle::NoParameter(name.clone()))?] = Some(*value);
+        fixed[at.ok_or_else(|| ExportObstacle::NoParameter(name.clone()))?] = Some(*value);
     }
     let mut w = CasadiWriter { i, fixed, template: Template::default() };
     w.define_placeholders();

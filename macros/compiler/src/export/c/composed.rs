@@ -24,7 +24,7 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             if let InverseForm::BlockArrow { trunk, .. } = inverse.form {
                 let _ = writeln!(
                     body,
-                    "    lw_solve({n}, {}, inverse, trunk, limb, beside, result);",
+                    "    lw_solve({n}, {}, inverse, trunk, limb, trunk_factors, result);",
                     trunk.len()
                 );
             }
@@ -53,14 +53,14 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             inverse.complete(body);
             write_inverse_products(body, n, "inverse", "by_q", n);
             write_inverse_products(body, n, "inverse", "by_v", n);
-            write_kinematic_assembly(body, n, m);
+            write_system_matrices(body, n, m);
         }
         Shape::CalledLinear(n, m) => write_linear_system_by_calls(body, f, (n, m), scope, i),
         _ => {}
     }
 }
 
-/// InverseOutputs mass matrix that the outputs of a program determine, after the outputs of other arrays.
+/// Inverse mass matrix that the outputs of a program determine, after the outputs of other arrays.
 struct InverseOutputs<'a> {
     form: &'a InverseForm,
     name: &'static str,
@@ -97,7 +97,7 @@ impl<'a> InverseOutputs<'a> {
                 (0..n).map(|k| limb_of(k).map_or("-1".to_string(), |limb| limb.to_string())).collect();
             let _ = writeln!(body, "    static const int limb[{n}] = {{{}}};", all.join(", "));
         }
-        let _ = writeln!(body, "    double beside[{}];", n * trunk.len());
+        let _ = writeln!(body, "    double trunk_factors[{}];", n * trunk.len());
         inverse
     }
 
@@ -115,7 +115,7 @@ impl<'a> InverseOutputs<'a> {
             }
             k -= length;
         }
-        format!("beside[{k}]")
+        format!("trunk_factors[{k}]")
     }
 
     /// Writes the statements that complete the inverse mass matrix from its factored form.
@@ -123,10 +123,10 @@ impl<'a> InverseOutputs<'a> {
         let (n, width, name) = (self.n, self.trunk.len(), self.name);
         let _ = match self.form {
             InverseForm::LowRankUpdate(_) if width > 0 => {
-                writeln!(body, "    lw_complete({n}, {width}, {name}, trunk, beside);")
+                writeln!(body, "    lw_complete({n}, {width}, {name}, trunk, trunk_factors);")
             }
             InverseForm::BlockArrow { .. } => {
-                writeln!(body, "    lw_invert({n}, {width}, {name}, trunk, limb, beside);")
+                writeln!(body, "    lw_invert({n}, {width}, {name}, trunk, limb, trunk_factors);")
             }
             _ => Ok(()),
         };
@@ -187,7 +187,7 @@ fn assembled_array_element(n: usize, m: usize, k: usize) -> String {
 }
 
 /// Writes the composition of the system matrices.
-fn write_kinematic_assembly(body: &mut String, n: usize, m: usize) {
+fn write_system_matrices(body: &mut String, n: usize, m: usize) {
     if n > 0 {
         let _ = writeln!(body, "    lw_assemble({n}, {m}, by_q, by_v, inverse, by_state, by_input);");
     }
@@ -226,5 +226,5 @@ fn write_linear_system_by_calls(
     } else {
         body.push_str("    (void)(more);\n");
     }
-    write_kinematic_assembly(body, n, m);
+    write_system_matrices(body, n, m);
 }

@@ -112,9 +112,8 @@ pub fn kinematic_definitions(i: &ExportedMechanism<'_>, is_late: bool) -> String
     let joints = joint_signatures(i);
     let (functions, hidden) = if i.has_speeds() { (&joints, "static ") } else { (&i.functions, "") };
     for name in ["integrate", "difference", "tangent_rate"] {
-        let has_nonzero_coefficient =
-            |f: &&ExportedSignature| f.name.strip_prefix("joints_").unwrap_or(&f.name) == name;
-        if let Some(f) = functions.iter().rev().find(has_nonzero_coefficient) {
+        let has_name = |f: &&ExportedSignature| f.name.strip_prefix("joints_").unwrap_or(&f.name) == name;
+        if let Some(f) = functions.iter().rev().find(has_name) {
             let _ = writeln!(text, "{hidden}{}", definition(i, f, &chart_statements(i, name)));
         }
     }

@@ -3,7 +3,7 @@
 use super::super::body::MISSING;
 use super::super::comments::comment_safe_text;
 use super::super::handwritten::LIMITS;
-use super::super::mechanism::{CExportObstacle, ExportedMechanism, Options};
+use super::super::mechanism::{ExportObstacle, ExportedMechanism, Options};
 use super::super::signatures::reaction_name;
 use super::super::tokens::in_single_precision;
 use super::casadi::casadi_source;
@@ -42,13 +42,13 @@ const HEADERS: [(&str, &str); 5] = [
 /// Exports a mechanism whose programs have no vector lanes; `tables` are the names of its tables.
 ///
 /// # Errors
-/// The mechanism or the options are not supported in C, for the reason in [`CExportObstacle`].
+/// The mechanism or the options are not supported in C, for the reason in [`ExportObstacle`].
 pub fn export_c_source(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &Options,
-) -> Result<CSourceFiles, CExportObstacle> {
+) -> Result<CSourceFiles, ExportObstacle> {
     let mut i = ExportedMechanism::new(model, output, tables, options)?;
     if options.casadi.is_some() {
         check_casadi(&i, options)?;
@@ -57,7 +57,7 @@ pub fn export_c_source(
         i.left_out.extend(lines);
     }
     let arithmetic = match (options.reproducible, options.single) {
-        (true, true) => return Err(CExportObstacle::Irreproducible("single precision")),
+        (true, true) => return Err(ExportObstacle::Irreproducible("single precision")),
         (true, false) => Arithmetic::Reproducible,
         (false, true) => Arithmetic::Single,
         (false, false) => Arithmetic::Double,
@@ -88,11 +88,11 @@ pub fn export_c_source(
 }
 
 /// Returns an error if CasADi's functions do not support the mechanism or the options.
-fn check_casadi(i: &ExportedMechanism<'_>, options: &Options) -> Result<(), CExportObstacle> {
+fn check_casadi(i: &ExportedMechanism<'_>, options: &Options) -> Result<(), ExportObstacle> {
     match (i.has_speeds(), options.single, options.reproducible) {
-        (true, ..) => Err(CExportObstacle::CasadiSpeeds),
-        (_, true, _) => Err(CExportObstacle::SingleCasadi),
-        (_, _, true) => Err(CExportObstacle::Irreproducible("CasADi")),
+        (true, ..) => Err(ExportObstacle::CasadiSpeeds),
+        (_, true, _) => Err(ExportObstacle::SingleCasadi),
+        (_, _, true) => Err(ExportObstacle::Irreproducible("CasADi")),
         _ => Ok(()),
     }
 }
@@ -102,21 +102,21 @@ fn check_casadi(i: &ExportedMechanism<'_>, options: &Options) -> Result<(), CExp
 ///
 /// # Errors
 /// A program reads a value that does not exist.
-pub fn kernel_definitions(i: &ExportedMechanism<'_>) -> Result<String, CExportObstacle> {
+pub fn kernel_definitions(i: &ExportedMechanism<'_>) -> Result<String, ExportObstacle> {
     definitions(i, Arithmetic::Kernel)
 }
 
 /// Returns the definitions of helper functions, followed by those of all exported functions.
-fn definitions(i: &ExportedMechanism<'_>, arithmetic: Arithmetic) -> Result<String, CExportObstacle> {
+fn definitions(i: &ExportedMechanism<'_>, arithmetic: Arithmetic) -> Result<String, ExportObstacle> {
     let is_late = arithmetic == Arithmetic::Kernel;
     let code = derived_definitions(i, is_late) + &kinematic_definitions(i, is_late);
     if code.contains(MISSING) {
-        return Err(CExportObstacle::Missing);
+        return Err(ExportObstacle::Missing);
     }
     let reasons = [("lw_isa_", "the standard atmosphere"), ("lw_tabulated", "a table")];
     let reason = reasons.into_iter().find(|(helper, _)| code.contains(helper));
     match reason.filter(|_| arithmetic == Arithmetic::Reproducible) {
-        Some((_, what)) => Err(CExportObstacle::Irreproducible(what)),
+        Some((_, what)) => Err(ExportObstacle::Irreproducible(what)),
         None => Ok(with_helpers(&code, i, arithmetic)),
     }
 }

@@ -10,7 +10,7 @@ mod kernels;
 mod python;
 
 use super::c;
-use super::mechanism::{CExportObstacle, ExportedMechanism, Options};
+use super::mechanism::{ExportObstacle, ExportedMechanism, Options};
 use super::signatures::{Array, ExportedSignature};
 use super::tokens::in_single_precision;
 use crate::derive::Output;
@@ -43,13 +43,13 @@ struct Kernels<'a> {
 /// Exports a tree mechanism whose programs have no vector lanes; `tables` are the names of its tables.
 ///
 /// # Errors
-/// The mechanism is not supported, for the reason in [`CExportObstacle`].
+/// The mechanism is not supported, for the reason in [`ExportObstacle`].
 pub fn export_cuda_kernels(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &Options,
-) -> Result<KernelFiles, CExportObstacle> {
+) -> Result<KernelFiles, ExportObstacle> {
     let i = ExportedMechanism::new(model, output, tables, options)?;
     let products = kernels::JacobianProducts::from_interface(&i);
     let functions = i.functions.iter().cloned().chain(products.product_signatures()).collect();

@@ -11,7 +11,7 @@ mod values;
 mod variables;
 
 use super::c;
-use super::mechanism::{CExportObstacle, ExportedMechanism, Options};
+use super::mechanism::{ExportObstacle, ExportedMechanism, Options};
 use crate::derive::Output;
 use crate::mechanism::Model;
 pub use library::export_fmu_for_runtime_library;
@@ -86,7 +86,7 @@ pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'
 /// `has_derivatives` the FMU provides directional and adjoint derivatives.
 ///
 /// # Errors
-/// The mechanism is not supported, for the reason in [`CExportObstacle`].
+/// The mechanism is not supported, for the reason in [`ExportObstacle`].
 pub fn export_fmu(
     model: &Model<'_>,
     output: &Output,
@@ -94,7 +94,7 @@ pub fn export_fmu(
     options: &Options,
     start: &StartValues,
     has_derivatives: bool,
-) -> Result<FmuFiles, CExportObstacle> {
+) -> Result<FmuFiles, ExportObstacle> {
     let code = c::export_c_source(model, output, tables, options)?;
     let signatures = ExportedMechanism::new(model, output, tables, options)?;
     let variables = FmuVariables::new(model, &signatures, start, has_derivatives);

@@ -5,7 +5,7 @@
 
 use super::body::{MISSING, Scope, write_program};
 use super::c::{self, result_program};
-use super::mechanism::{CExportObstacle, ExportedMechanism, Options};
+use super::mechanism::{ExportObstacle, ExportedMechanism, Options};
 use super::signatures::{Array, ExportedSignature, array_list};
 use super::tokens::leading_number_length;
 use crate::catalogue::{Called, InverseForm, Shape};
@@ -40,13 +40,13 @@ const FUNCTIONS: [(&str, &str); 6] = [
 /// Exports a tree mechanism whose programs have no vector lanes; `tables` are the names of its tables.
 ///
 /// # Errors
-/// The mechanism is not supported, for the reason in [`CExportObstacle`].
+/// The mechanism is not supported, for the reason in [`ExportObstacle`].
 pub fn export_wgsl_shaders(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &Options,
-) -> Result<ShaderFiles, CExportObstacle> {
+) -> Result<ShaderFiles, ExportObstacle> {
     let i = &ExportedMechanism::new(model, output, tables, options)?;
     let mut left_out = i.left_out.clone();
     let functions = functions_without_calls(i, &mut left_out)?;
@@ -79,12 +79,12 @@ pub fn export_wgsl_shaders(
 fn functions_without_calls(
     i: &ExportedMechanism<'_>,
     left_out: &mut Vec<String>,
-) -> Result<Vec<(ExportedSignature, String)>, CExportObstacle> {
+) -> Result<Vec<(ExportedSignature, String)>, ExportObstacle> {
     let mut functions = Vec::new();
     let calling = "it calls other functions";
     for (f, signature) in i.public.iter().zip(&i.functions) {
         match body_without_calls(f, i) {
-            Some(body) if body.contains(MISSING) => return Err(CExportObstacle::Missing),
+            Some(body) if body.contains(MISSING) => return Err(ExportObstacle::Missing),
             Some(body) => functions.push((signature.clone(), body)),
             None => left_out.push(format!("{}: {calling}", signature.name)),
         }

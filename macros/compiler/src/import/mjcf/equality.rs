@@ -88,13 +88,9 @@ impl<'a> MjcfReader<'a> {
     /// joint follows the first.
     fn couple_tendons(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let Some(first) = terms_of_tendon("tendon1", element, tendons, cx) else { return };
-        let has_dynamics_second_derivatives = element.node.has_attribute("tendon2");
-        let second = if has_dynamics_second_derivatives {
-            terms_of_tendon("tendon2", element, tendons, cx)
-        } else {
-            None
-        };
-        if has_dynamics_second_derivatives && second.is_none() {
+        let has_second_tendon = element.node.has_attribute("tendon2");
+        let second = if has_second_tendon { terms_of_tendon("tendon2", element, tendons, cx) } else { None };
+        if has_second_tendon && second.is_none() {
             return;
         }
         let polynomial = coupling_coefficients(element, cx);

@@ -160,9 +160,9 @@ fn write_pid_law(
     named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<()> {
-    let has_vector_state = record.dynamics == "pid";
-    let integral = if has_vector_state { record.gain[0] } else { 0.0 };
-    if has_vector_state {
+    let has_integral_state = record.dynamics == "pid";
+    let integral = if has_integral_state { record.gain[0] } else { 0.0 };
+    if has_integral_state {
         report_controller_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
     }
     if integral > 0.0 {

@@ -99,12 +99,12 @@ impl<'g> SurfacePair<'_, 'g> {
         let axes: [Vec3<'g>; 3] =
             std::array::from_fn(|k| second_surface_to_common_axes(Vec3::coordinate_axis(g, k)));
         let touches = places.into_iter().map(|place| {
-            let contact_at_point = terrain.contact(
+            let contact = terrain.contact(
                 radius,
                 Vec3(axes.map(|axis| axis.dot(c + place))),
                 second_surface_to_common_axes,
             );
-            PointContact { point: contact_at_point.point + place, ..contact_at_point }
+            PointContact { point: contact.point + place, ..contact }
         });
         touches.collect()
     }
@@ -141,13 +141,13 @@ impl<'g> SurfacePair<'_, 'g> {
                 let other_ends = [-reach, reach].map(|far| (clamp(own.dot(axis * far - c), own_reach), far));
                 let places = [nearest(c, (own, own_reach), (axis, reach))].into_iter();
                 let touches = places.chain(own_ends).chain(other_ends).filter_map(|(near, far)| {
-                    let contact_at_point = sphere_contact(
+                    let contact = sphere_contact(
                         radius,
                         &sphere,
                         c + own * near - axis * far,
                         second_surface_to_common_axes,
                     )?;
-                    Some(PointContact { point: contact_at_point.point + own * near, ..contact_at_point })
+                    Some(PointContact { point: contact.point + own * near, ..contact })
                 });
                 return touches.collect();
             }

@@ -79,11 +79,11 @@ impl<'g> Drum<'g> {
             (side.minimum_or_maximum(Extreme::Max, zero), end.minimum_or_maximum(Extreme::Max, zero));
         let distance =
             (over.square() + beyond.square()).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
-        let positive_part = (radial * over + axial * beyond).map(|x| x / distance);
+        let outside = (radial * over + axial * beyond).map(|x| x / distance);
         let inside = radial + (axial - radial) * is_positive(end - side);
         let (depth, is_outside) =
             (side.minimum_or_maximum(Extreme::Max, end), is_positive(distance - least * 1.5));
-        (depth + (distance - depth) * is_outside, inside + (positive_part - inside) * is_outside)
+        (depth + (distance - depth) * is_outside, inside + (outside - inside) * is_outside)
     }
 
     /// Returns the position of the nearest point of a segment, which extends from `c` by `reach` in both
@@ -129,9 +129,8 @@ impl<'g> Drum<'g> {
     /// the segment are replaced by its ends.
     fn end_plane_crossings_of_segment(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
         let (height, rise) = (self.axis.dot(c), self.axis.dot(own));
-        let distance_slope_along_line =
-            rise.apply_function(Function::Abs).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
-        let inverse = rise.apply_function(Function::Signum) / distance_slope_along_line;
+        let slope = rise.apply_function(Function::Abs).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+        let inverse = rise.apply_function(Function::Signum) / slope;
         [-self.half, self.half].map(|end| clamp((end - height) * inverse, reach))
     }
 
@@ -180,11 +179,11 @@ impl<'g> Drum<'g> {
         let face = Face::facing(block, &facing, c, self.half);
         let [_, first, second] = face.axes;
         let middle = face.axes[0] * face.half[0];
-        for (along, normal_to_axis, reach, offset) in
+        for (along, across, reach, offset) in
             [(first, second, face.half[1], face.half[2]), (second, first, face.half[2], face.half[1])]
         {
             for side in [-1.0, 1.0] {
-                let middle = middle + normal_to_axis * (offset * side);
+                let middle = middle + across * (offset * side);
                 let crossings = self.crossings_of_cylinder_side(middle - c, along, reach);
                 points.extend(crossings.map(|t| contact_of_cylinder_point(middle + along * t)));
             }
@@ -222,20 +221,20 @@ impl<'g> Drum<'g> {
         let (down, along) = (directions[0] * self.radius, self.axis * self.half);
         let (start, direction) = (face.components(c + down), face.components(along));
         let [from, to] = face.clip_line_to_face_sides(&start, &direction);
-        let positive_part = ((from - to) * self.half).minimum_or_maximum(Extreme::Min, self.half);
+        let outside = ((from - to) * self.half).minimum_or_maximum(Extreme::Min, self.half);
         let line = [from.minimum_or_maximum(Extreme::Min, one), to.minimum_or_maximum(Extreme::Max, -one)]
             .map(|t| {
                 let height = start[0] + direction[0] * t - face.half[0];
-                face.contact(height.minimum_or_maximum(Extreme::Max, positive_part), down + along * t)
+                face.contact(height.minimum_or_maximum(Extreme::Max, outside), down + along * t)
             });
         let lower = along * -(self.axis.dot(normal).apply_function(Function::Signum));
         let rim = directions[1..].iter().map(|direction| {
             let point = lower + *direction * self.radius;
             let at = face.components(c + point);
             let distance_beyond_half_width = |k: usize| at[k].apply_function(Function::Abs) - face.half[k];
-            let positive_part =
+            let outside =
                 distance_beyond_half_width(1).minimum_or_maximum(Extreme::Max, distance_beyond_half_width(2));
-            face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, positive_part), point)
+            face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, outside), point)
         });
         line.into_iter().chain(rim).collect()
     }
@@ -285,9 +284,9 @@ pub(super) fn capsule_on_pipe<'g>(
     c: Vec3<'g>,
     rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Vec<PointContact<'g>> {
-    let normal_to_axis = own - axis * axis.dot(own);
-    let square = normal_to_axis.dot(normal_to_axis).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
-    let near = clamp(-(c.dot(normal_to_axis) / square), reach);
+    let across = own - axis * axis.dot(own);
+    let square = across.dot(across).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+    let near = clamp(-(c.dot(across) / square), reach);
     let touches = [-reach, near, reach].into_iter().filter_map(|t| {
         let touch = sphere_contact(radius, pipe, c + own * t, rotate)?;
         Some(PointContact { point: touch.point + own * t, ..touch })

@@ -228,7 +228,9 @@ impl<'a> Inference<'a> {
                 self.infer_dimensions_of_unused_values(arguments);
                 InferredUnit::Direction
             }
-            UnitRule::Alike => self.equate_to_common_unit(arguments, DimensionEqualityReason::Compared(name)),
+            UnitRule::EqualUnits => {
+                self.equate_to_common_unit(arguments, DimensionEqualityReason::Compared(name))
+            }
             UnitRule::Quotient => {
                 match self.equate_to_common_unit(arguments, DimensionEqualityReason::Compared(name)) {
                     InferredUnit::Quantity { .. } => InferredUnit::motion_quantity_of_dimension(PLAIN),
