@@ -18,6 +18,11 @@ use super::surface::SurfaceForm;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::mechanism::{PAIR_FEATURES, POINT_FEATURES, Polytope, PolytopePair, Quantity};
 
+/// Error for surfaces whose shapes depend on parameters.
+const NOT_CONSTANT: &str = "points, lengths and axes of surfaces on a hull must be numbers";
+/// Error for polytopes whose faces are not a closed surface.
+const NOT_CLOSED: &str = "rounding errors decide which points of this surface are in one plane";
+
 /// Maximum number of contact points of a face.
 const MAX_FACE_POINTS: usize = 12;
 
@@ -86,12 +91,16 @@ struct PlacedPair<'g> {
 }
 
 impl<'g> SurfacePair<'_, 'g> {
-    /// Returns a pair with a hull as polytopes, and its contact points; `None` if the shape of a surface
-    /// depends on parameters. `first_feature` is the index of the first feature of the pair.
+    /// Returns a pair with a hull as polytopes, and its contact points. `first_feature` is the index of the
+    /// first feature of the pair.
+    ///
+    /// # Errors
+    ///
+    /// A surface is no polytope of numbers, for the reason that is returned.
     pub(super) fn polytope_contacts(
         &self,
         first_feature: usize,
-    ) -> Option<(PolytopePair<'g>, Vec<PointContact<'g>>)> {
+    ) -> Result<(PolytopePair<'g>, Vec<PointContact<'g>>), &'static str> {
         let g = self.graph();
         let axes_of = |rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| {
             std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k)))
@@ -128,28 +137,41 @@ impl<'g> SurfacePair<'_, 'g> {
             unused: (c + shift).norm() + reach,
         };
         let contacts = placed.contacts(points);
-        Some((pair, contacts))
+        Ok((pair, contacts))
     }
 
-    /// Returns the polytope of a surface; `None` if its shape depends on parameters. An unbounded cylinder
-    /// extends beyond `reach` on both sides.
-    fn rounded_polytope(&self, form: &SurfaceForm<'g>, reach: f64) -> Option<RoundedPolytope<'g>> {
+    /// Returns the polytope of a surface. An unbounded cylinder extends beyond `reach` on both sides.
+    ///
+    /// # Errors
+    ///
+    /// [`NOT_CONSTANT`] or [`NOT_CLOSED`].
+    fn rounded_polytope(
+        &self,
+        form: &SurfaceForm<'g>,
+        reach: f64,
+    ) -> Result<RoundedPolytope<'g>, &'static str> {
         let zero = self.graph().zero();
         let (polytope, radius) = match form {
-            SurfaceForm::Hull(hull) => (hull_polytope(hull.shape.as_ref()?)?, zero),
+            SurfaceForm::Hull(hull) => {
+                let shape = hull.shape.as_ref().ok_or(NOT_CONSTANT)?;
+                (hull_polytope(shape).ok_or(NOT_CLOSED)?, zero)
+            }
             SurfaceForm::Cuboid(lengths) => {
-                let [a, b, c] = lengths.map(|length| length.constant_value());
-                (box_polytope([a?, b?, c?])?, zero)
+                let [Some(a), Some(b), Some(c)] = lengths.map(|length| length.constant_value()) else {
+                    return Err(NOT_CONSTANT);
+                };
+                (box_polytope([a, b, c]).ok_or(NOT_CLOSED)?, zero)
             }
             SurfaceForm::Capsule(radius, length, axis) => {
-                (segment_polytope(axis.constant_components()?, length.constant_value()?), *radius)
+                let length = length.constant_value().ok_or(NOT_CONSTANT)?;
+                (segment_polytope(axis.constant_components().ok_or(NOT_CONSTANT)?, length), *radius)
             }
             SurfaceForm::Cylinder(radius, axis) => {
-                (segment_polytope(axis.constant_components()?, 4.0 * reach), *radius)
+                (segment_polytope(axis.constant_components().ok_or(NOT_CONSTANT)?, 4.0 * reach), *radius)
             }
-            _ => return None,
+            _ => return Err(NOT_CONSTANT),
         };
-        Some(RoundedPolytope { polytope, radius })
+        Ok(RoundedPolytope { polytope, radius })
     }
 }
 

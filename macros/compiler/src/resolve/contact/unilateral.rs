@@ -28,6 +28,8 @@ const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ell
                                of hulls and the lengths of capsules and cuboids are numbers; points, \
                                spheres, capsules, cuboids and hulls on a terrain";
 
+/// Help text for surfaces that cannot be in contact with a hull.
+const POLYTOPE_HELP: &str = "write numbers in place of parameters, or approximate the hull by spheres";
 /// Help text for unsupported contacts of cylinders.
 const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, can approximate a cylinder";
 
@@ -240,11 +242,16 @@ fn contact_candidate_points<'g>(
         _ if !is_listed => Vec::new(),
         SurfaceForm::Hull(_) if !matches!(pair.a.form, SurfaceForm::Sphere(_)) => {
             let known = polytopes.iter().map(PolytopePair::feature_count).sum::<usize>();
-            let found = pair.polytope_contacts(model.polytope_feature_count() + known);
-            found.map_or_else(Vec::new, |(polytope_pair, contacts)| {
-                polytopes.push(polytope_pair);
-                contacts
-            })
+            match pair.polytope_contacts(model.polytope_feature_count() + known) {
+                Ok((polytope_pair, contacts)) => {
+                    polytopes.push(polytope_pair);
+                    contacts
+                }
+                Err(message) => {
+                    cx.report_error(place.clone(), message).add_help(POLYTOPE_HELP);
+                    return None;
+                }
+            }
         }
         _ => pair.candidate_contacts(),
     };
