@@ -25,7 +25,7 @@ fn main() -> std::io::Result<()> {
             );
             if symbolic {
                 text += &format!(
-                    "impl {name} {{ fn numbers() -> Self {{ {} }} }}\n",
+                    "impl {name} {{ fn with_link_values() -> Self {{ {} }} }}\n",
                     chains::chain_value_expression("Self", n)
                 );
             }

@@ -1,10 +1,10 @@
 //! Every generated function and the generic implementation, on 256 random states in turn.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use linkwork_benches::pairs::benchmark_robots;
+use linkwork_benches::pairs::compared_robots;
 
 fn benchmark_dynamics(criterion: &mut Criterion) {
-    for robot in benchmark_robots() {
+    for robot in compared_robots() {
         let mut group = criterion.benchmark_group(robot.name);
         for mut pair in robot.pairs {
             for (which, run) in [("generated", &mut pair.generated), ("generic", &mut pair.generic)] {

@@ -125,7 +125,7 @@ macro_rules! check {
         let mut expected = [Vec::new(), Vec::new(), Vec::new()];
         for k in 0..mechanisms::$name::NV {
             let step = C::new(0.0, STEP);
-            let q = kane::imaginary_step(&spec, &state.q, k, STEP);
+            let q = kane::configuration_after_imaginary_step(&spec, &state.q, k, STEP);
             let (mut v, mut tau) = (state.v.clone(), state.a.clone());
             (v[k], tau[k]) = (v[k] + step, tau[k] + step);
             let moved = kane::mass_and_bias(&spec, &q, &state.v);

@@ -156,7 +156,7 @@ fn check_inverse_derivatives<'g>(model: &Model<'g>, seed: u64) {
     let forces = matrix_times_vector(&mass, &a);
     assert_same_expressions("inverse", model, seed, &matrix_times_vector(&factor.inverse(), &forces), &a);
     assert_same_expressions("solution", model, seed, &factor.solve_factored(forces.clone()), &a);
-    let trunk = Trunk::new(&joints, &mass, &Trunk::has_branching_descendant(&joints, model.nv()));
+    let trunk = Trunk::new(&joints, &mass, &Trunk::branching_descendant_flags(&joints, model.nv()));
     let Some(trunk) = trunk else { return };
     let parts = derivatives::Inverse::new(&mass, &trunk);
     assert_same_expressions("solution in parts", model, seed, &parts.solve_by_trunk_and_limbs(&forces), &a);

@@ -8,7 +8,11 @@ use std::slice::{from_raw_parts, from_raw_parts_mut};
 /// Returns the number of entries of a problem's state; zero for a problem that does not exist.
 #[unsafe(no_mangle)]
 pub extern "C" fn dimension(problem: usize) -> usize {
-    if problem < precision::PROBLEMS.len() { precision::initial_state_of_problem(problem).0.len() } else { 0 }
+    if problem < precision::PROBLEMS.len() {
+        precision::initial_state_and_final_time(problem).0.len()
+    } else {
+        0
+    }
 }
 
 /// Writes the initial state, and returns the final time in seconds.
@@ -18,7 +22,7 @@ pub extern "C" fn dimension(problem: usize) -> usize {
 /// `y` must have room for [`dimension`] numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn begin(problem: usize, y: *mut f64) -> f64 {
-    let (state, end) = precision::initial_state_of_problem(problem);
+    let (state, end) = precision::initial_state_and_final_time(problem);
     // SAFETY: the caller guarantees the size of `y`.
     unsafe { from_raw_parts_mut(y, state.len()) }.copy_from_slice(&state);
     end
@@ -33,5 +37,5 @@ pub unsafe extern "C" fn begin(problem: usize, y: *mut f64) -> f64 {
 pub unsafe extern "C" fn rate(problem: usize, t: f64, y: *const f64, rate: *mut f64, n: usize) {
     // SAFETY: the caller guarantees the sizes of `y` and `rate`.
     let (y, rate) = unsafe { (from_raw_parts(y, n), from_raw_parts_mut(rate, n)) };
-    precision::rate_of_state(problem, t, y, rate);
+    precision::write_rate_of_state(problem, t, y, rate);
 }

@@ -64,7 +64,7 @@ impl RoutineReader {
             "pushq" => self.routine.stack += 8,
             "subq" => self.record_stack_bytes(operands),
             "leaq" if operands.ends_with("(%rsp), %r11") && operands.starts_with('-') => {
-                self.routine.stack += parse_integer(&operands[1..]);
+                self.routine.stack += leading_integer(&operands[1..]);
                 self.probing = true;
             }
             "jne" => self.probing = false,
@@ -90,7 +90,7 @@ impl RoutineReader {
         if let Some(bytes) = operands.strip_suffix(", %rsp").and_then(|bytes| bytes.strip_prefix('$'))
             && !self.probing
         {
-            self.routine.stack += parse_integer(bytes);
+            self.routine.stack += leading_integer(bytes);
         }
     }
 
@@ -108,7 +108,7 @@ impl RoutineReader {
     }
 }
 
-fn parse_integer(text: &str) -> usize {
+fn leading_integer(text: &str) -> usize {
     let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     text[..end].parse().unwrap_or(0)
 }

@@ -44,7 +44,7 @@ impl CompiledRuntime {
 }
 
 /// Runs rustc on a library of this text, with the options of the dev profile, up to its metadata.
-pub fn check_with_rustc(library: &CompiledRuntime, text: &str) -> Result<Cost, Box<dyn Error>> {
+pub fn measure_rustc_check(library: &CompiledRuntime, text: &str) -> Result<Cost, Box<dyn Error>> {
     let folder = std::env::temp_dir().join(format!("linkwork-expansion-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     let file = folder.join("expanded.rs");

@@ -377,7 +377,7 @@ mod tests {
     /// Generated and generic code are independent implementations of the same robots, and agree.
     #[test]
     fn generated_and_generic_dynamics_agree() {
-        for robot in pairs::benchmark_robots() {
+        for robot in pairs::compared_robots() {
             for mut pair in robot.pairs {
                 let error = (0..crate::states::STATES).map(|k| (pair.difference)(k)).fold(0.0, f64::max);
                 println!("{}, {}: {error:.1e}", robot.name, pair.function);

@@ -33,7 +33,7 @@ pub struct Robot {
 }
 
 /// Returns all robots of the comparison of generated and generic code.
-pub fn benchmark_robots() -> Vec<Robot> {
+pub fn compared_robots() -> Vec<Robot> {
     macro_rules! robot {
         ($name:literal, $robot:ident, $file:literal, $arguments:literal, $options:expr, $frame:literal) => {{
             let source = Source {

@@ -179,7 +179,7 @@ impl ProblemVisitor for StartStateVisitor {
 }
 
 /// Returns the initial state, configuration and velocity, and the final time of a problem, s.
-pub fn initial_state_of_problem(problem: usize) -> (Vec<f64>, f64) {
+pub fn initial_state_and_final_time(problem: usize) -> (Vec<f64>, f64) {
     visit_problem(problem, StartStateVisitor)
 }
 
@@ -207,6 +207,6 @@ impl ProblemVisitor for RateVisitor<'_> {
 
 /// Writes the time derivative of a state, with accelerations that satisfy the constraints, as the right-hand
 /// side for other libraries.
-pub fn rate_of_state(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
+pub fn write_rate_of_state(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
     visit_problem(problem, RateVisitor { t, y, rate });
 }

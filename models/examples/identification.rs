@@ -59,7 +59,7 @@ const SMOOTH: f64 = 0.01;
 
 impl IdentifiedArm {
     /// Returns the coefficients of damping and friction, and the rotor inertias, of all joints.
-    fn joint_parameters(&self) -> [JointVector; 3] {
+    fn friction_and_rotor_parameters(&self) -> [JointVector; 3] {
         let damping = [
             self.panda_joint1_damping,
             self.panda_joint2_damping,
@@ -83,7 +83,10 @@ impl IdentifiedArm {
         [damping, friction, rotors].map(JointVector::from)
     }
 
-    fn with_joint_parameters(self, [damping, friction, rotors]: [JointVector; 3]) -> IdentifiedArm {
+    fn with_friction_and_rotor_parameters(
+        self,
+        [damping, friction, rotors]: [JointVector; 3],
+    ) -> IdentifiedArm {
         IdentifiedArm {
             panda_joint1_damping: damping[0],
             panda_joint2_damping: damping[1],
@@ -165,7 +168,7 @@ fn perturbed_robot() -> IdentifiedArm {
     };
     arm.set_inertials(&arm.inertials().map(perturbed_inertial));
     arm.panda_hand = arm.panda_hand.plus(&Inertial::point(1.2, [0.01, 0.02, 0.12]));
-    arm.with_joint_parameters([
+    arm.with_friction_and_rotor_parameters([
         [0.8, 0.7, 0.6, 0.5, 0.3, 0.25, 0.2].into(),
         [0.9, 0.8, 0.5, 0.6, 0.3, 0.3, 0.2].into(),
         [0.6, 0.5, 0.4, 0.4, 0.15, 0.12, 0.1].into(),
@@ -174,7 +177,7 @@ fn perturbed_robot() -> IdentifiedArm {
 
 /// Returns the regressor matrix of the arm: its product with the vector of parameters is the vector of
 /// torques.
-fn regressor_columns(arm: &IdentifiedArm, [q, v, a]: &[JointVector; 3]) -> SMatrix<f64, 7, COLUMNS> {
+fn torque_regressor(arm: &IdentifiedArm, [q, v, a]: &[JointVector; 3]) -> SMatrix<f64, 7, COLUMNS> {
     let mut all = SMatrix::<f64, 7, COLUMNS>::zeros();
     all.fixed_view_mut::<7, BASE>(0, 0).copy_from(&arm.base_regressor(q, v, a));
     for j in 0..7 {
@@ -211,7 +214,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let [q, v, a] = &state;
             let torque =
                 truth.inverse_dynamics(q, v, a) + JointVector::from_fn(|_, _| 0.05 * random.next_number());
-            let y = regressor_columns(&arm, &state);
+            let y = torque_regressor(&arm, &state);
             normal += y.transpose() * y;
             right += y.transpose() * torque;
         }
@@ -222,7 +225,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // measurements. Because of the noise, no consistent bodies may reproduce them exactly.
     let joint_parameters_from_index = |first: usize| JointVector::from_fn(|j, _| found[first + j]);
     let rotors = JointVector::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
-    arm = arm.with_joint_parameters([
+    arm = arm.with_friction_and_rotor_parameters([
         joint_parameters_from_index(BASE),
         joint_parameters_from_index(BASE + 7),
         rotors,
@@ -232,7 +235,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     arm.validate()?;
 
     println!("joint   damping       friction      rotor");
-    let ([d, f, r], [td, tf, tr]) = (arm.joint_parameters(), truth.joint_parameters());
+    let ([d, f, r], [td, tf, tr]) =
+        (arm.friction_and_rotor_parameters(), truth.friction_and_rotor_parameters());
     for j in 0..7 {
         println!(
             "{}  {:6.3} {:6.3} {:6.3} {:6.3} {:6.3} {:6.3}",

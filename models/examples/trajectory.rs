@@ -27,7 +27,7 @@ struct HangingCartPole {
 }
 
 /// Position of the cart, m, and angle of the pole, rad; or the rates of these two.
-type State = SVector<f64, 2>;
+type CartPoleVector = SVector<f64, 2>;
 type PushForce = SVector<f64, 1>;
 /// Feedback policies of all steps of the trajectory.
 type Policies = [Policy<f64, 2, 1>; STEPS];
@@ -35,18 +35,18 @@ type Policies = [Policy<f64, 2, 1>; STEPS];
 /// Number of steps of the trajectory, and the period of each, s.
 const STEPS: usize = 60;
 const PERIOD: f64 = 0.03;
-/// Integration method for a step of the trajectory.
+/// Runge–Kutta method that integrates one period of the trajectory.
 const METHOD: Rk4<f64> = Rk4::step(PERIOD);
 
 /// Trajectory: all states including the initial one, and the inputs between them.
 #[derive(Clone)]
 struct PlannedTrajectory {
-    states: [(State, State); STEPS + 1],
+    states: [(CartPoleVector, CartPoleVector); STEPS + 1],
     inputs: [PushForce; STEPS],
 }
 
 /// Returns the final configuration: the cart at its initial position, the pole upright.
-fn goal_state() -> State {
+fn goal_configuration() -> CartPoleVector {
     [0.0, PI].into()
 }
 
@@ -57,16 +57,16 @@ fn step_costs(u: &PushForce) -> Quadratic<f64, 2, 1> {
 }
 
 /// Returns the cost of the final state to second order.
-fn terminal_cost_to_go(q: &State, v: &State) -> Value<f64, 2> {
+fn terminal_cost_to_go(q: &CartPoleVector, v: &CartPoleVector) -> Value<f64, 2> {
     let weight = SMatrix::from_diagonal_element(100.0);
-    Value { q: (q - goal_state()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
+    Value { q: (q - goal_configuration()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
 }
 
 impl PlannedTrajectory {
     fn total_costs(&self) -> f64 {
         let pushes: f64 = self.inputs.iter().map(|u| step_costs(u).u.dot(u) / 2.0).sum();
         let (q, v) = self.states[STEPS];
-        pushes + 50.0 * ((q - goal_state()).norm_squared() + v.norm_squared())
+        pushes + 50.0 * ((q - goal_configuration()).norm_squared() + v.norm_squared())
     }
 
     /// Returns the trajectory from the same initial state under feedback policies about this one, with the
@@ -154,7 +154,7 @@ fn optimise_trajectory(start: &PlannedTrajectory, ddp: bool) -> Result<Optimised
 fn main() -> Result<(), Error> {
     // Initial guess: the pole hangs, and the cart is pushed back and forth slightly.
     let mut start = PlannedTrajectory {
-        states: [(State::zeros(), State::zeros()); STEPS + 1],
+        states: [(CartPoleVector::zeros(), CartPoleVector::zeros()); STEPS + 1],
         inputs: [PushForce::zeros(); STEPS],
     };
     for (k, u) in start.inputs.iter_mut().enumerate() {
@@ -178,7 +178,7 @@ fn main() -> Result<(), Error> {
 
     // Both methods have the same final state, with the pole upright.
     let (end, _) = ddp.best.states[STEPS];
-    assert!((end - goal_state()).amax() < 0.05, "it is swung up");
+    assert!((end - goal_configuration()).amax() < 0.05, "it is swung up");
     for (a, b) in ilqr.best.inputs.iter().zip(&ddp.best.inputs) {
         assert!((a - b).amax() < 1e-5, "one trajectory is the best");
     }

@@ -4,11 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-fn files(folder: &Path, end: &str, found: &mut Vec<PathBuf>) -> io::Result<()> {
+fn collect_files(folder: &Path, end: &str, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         if path.is_dir() {
-            files(&path, end, found)?;
+            collect_files(&path, end, found)?;
         } else if path.extension().is_some_and(|known| known == end) {
             found.push(path);
         }
@@ -22,7 +22,7 @@ fn main() -> io::Result<()> {
     let mut text = String::new();
     for (name, folder, end) in [("DECLARATIONS", "src", "rs"), ("ROBOTS", "urdf", "urdf")] {
         let mut found = Vec::new();
-        files(&models.join(folder), end, &mut found)?;
+        collect_files(&models.join(folder), end, &mut found)?;
         found.sort();
         text += &format!("pub const {name}: &[(&str, &str)] = &[\n");
         for path in found {

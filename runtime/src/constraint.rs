@@ -298,7 +298,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         let mut last = None;
         for _ in 0..MOST_STEPS {
             let residuals = self.constraint_residuals(t, &q);
-            let (worst, size) = index_of_largest_entry(&residuals)?;
+            let (worst, size) = largest_entry(&residuals)?;
             // The first check is strict: a configuration with uncorrected drift belongs to a slightly
             // different linkage, which may have no singular configuration near that of the mechanism.
             let enough = if last.is_none() { rounding_of_coordinates(&q) } else { acceptable_residual(&q) };
@@ -315,7 +315,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(nalgebra::zero()));
             q = self.integrate(&q, &self.constraint_correction(t, &q, &gap));
         }
-        let (worst, size) = index_of_largest_entry(&self.constraint_residuals(t, &q))?;
+        let (worst, size) = largest_entry(&self.constraint_residuals(t, &q))?;
         is_residual_acceptable(size, &q)
             .then_some(q)
             .ok_or_else(|| unsatisfied_configuration_error(Self::CONSTRAINTS, worst, size))
@@ -338,14 +338,14 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         // nearly dependent.
         for enough in [epsilon::<Self::Scalar>() * largest_magnitude_or_one(&v), acceptable_residual(&v)] {
             let rates = self.constraint_rates(t, q, &v);
-            if index_of_largest_entry(&rates)?.1 <= enough {
+            if largest_entry(&rates)?.1 <= enough {
                 return Ok(v);
             }
             // Relative to the speed, so that rounding errors can be distinguished from velocities.
             let unit = largest_magnitude_or_one(&v);
             v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
-        let (worst, size) = index_of_largest_entry(&self.constraint_rates(t, q, &v))?;
+        let (worst, size) = largest_entry(&self.constraint_rates(t, q, &v))?;
         if is_residual_acceptable(size, &v) {
             return Ok(v);
         }
@@ -353,8 +353,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         // branch.
         let left = self.constraint_residuals(t, q);
         let farthest = largest_jacobian_entry(&self.constraint_jacobian(t, q));
-        if is_residual_acceptable(index_of_largest_entry(&left)?.1, q)
-            && size <= careful::minimum_magnitude(&left) * farthest * largest_magnitude_or_one(&v)
+        if is_residual_acceptable(largest_entry(&left)?.1, q)
+            && size
+                <= careful::minimum_reliable_row_magnitude(&left) * farthest * largest_magnitude_or_one(&v)
         {
             return Ok(v);
         }
@@ -443,9 +444,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         let q = self.project_configuration(t, q)?;
         let found = self.project_velocity(t, &q, v)?;
-        let speed = index_of_largest_entry(v)?.1;
-        if index_of_largest_entry(&(found - v))?.1 > speed * constant(TURN) {
-            let rate = index_of_largest_entry(&self.constraint_rates(t, &q, v))?.1;
+        let speed = largest_entry(v)?.1;
+        if largest_entry(&(found - v))?.1 > speed * constant(TURN) {
+            let rate = largest_entry(&self.constraint_rates(t, &q, v))?.1;
             if is_near_branch_crossing(rate, v) && self.is_nearly_singular(t, &q, &SVector::zeros()) {
                 return Ok((q, *v));
             }
@@ -455,7 +456,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 }
 
 /// Returns the index and the magnitude of the largest entry of a vector.
-fn index_of_largest_entry<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), ConstraintError> {
+fn largest_entry<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), ConstraintError> {
     let mut found = (0, T::zero());
     for (k, x) in x.iter().enumerate() {
         if !x.is_finite() {

@@ -276,7 +276,7 @@ where
     if mechanism.features().constrained {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
         *into = mechanism
-            .visit_constraints(ContactStepVisitor { method, t, q, v, u })
+            .visit_constraints(ConstrainedStepVisitor { method, t, q, v, u })
             .unwrap_or(Err(undetermined))?;
     } else {
         method.differentiate_into(mechanism, t, q, v, u, into)?;
@@ -300,7 +300,7 @@ impl<T: Real> FixedStep<T> for crate::integrate::ImplicitMidpoint<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::Rosenbrock<T> {}
 
 /// Arguments of a step of a mechanism with contacts: method, time, state and inputs.
-struct ContactStepVisitor<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
+struct ConstrainedStepVisitor<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
     method: &'a S,
     t: T,
     q: &'a SVector<T, NQ>,
@@ -309,7 +309,7 @@ struct ContactStepVisitor<'a, S, T, const NQ: usize, const NV: usize, const NU: 
 }
 
 impl<S, T, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
-    for ContactStepVisitor<'_, S, T, NQ, NV, NU>
+    for ConstrainedStepVisitor<'_, S, T, NQ, NV, NU>
 where
     T: Real,
     S: DifferentiableStep<T>,

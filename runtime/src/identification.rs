@@ -133,7 +133,7 @@ where
     }
     let map = base_parameter_map(mechanism);
     mechanism.set_inertials(&before);
-    let found = least_change_of_inertias(&map, &prior, base, softness)?;
+    let found = least_changed_pseudo_inertias(&map, &prior, base, softness)?;
     mechanism.set_inertials(&found.map(|p| inertial_from_pseudo_inertia(&p)));
     Ok(())
 }
@@ -208,7 +208,7 @@ fn inner_product<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; 
 /// Returns the pseudo-inertias that have the base parameters and change least, by Newton's method. A step
 /// shorter than one in the norm of the Hessian keeps pseudo-inertias positive definite (Boyd and
 /// Vandenberghe, *Convex Optimization*, 2004, ch. 9.6).
-fn least_change_of_inertias<T: Real, const N: usize, const B: usize>(
+fn least_changed_pseudo_inertias<T: Real, const N: usize, const B: usize>(
     map: &AffineParameterMap<T, N, B>,
     prior: &[Matrix4<T>; N],
     base: &SVector<T, B>,

@@ -185,7 +185,7 @@ impl<T: Real> InverseKinematics<T> {
         M: Mechanism<NQ, NV, NU, Scalar = T> + Frames<NQ, NV, Scalar = T> + Limits<NQ, NV, Scalar = T>,
     {
         let mut q = mechanism.clamp_configuration(start);
-        let mut left = self.residuals_of_targets(mechanism, t, targets, &q)?;
+        let mut left = self.pose_errors_of_targets(mechanism, t, targets, &q)?;
         let (mut damping, mut pull) = (constant::<T>(1e-3), constant::<T>(PULL));
         for iterations in 0..=self.iterations {
             if left.position <= self.position && left.orientation <= self.orientation {
@@ -197,7 +197,7 @@ impl<T: Real> InverseKinematics<T> {
             let posture = mechanism.difference(&q, start) * (pull * left.cost);
             let step = levenberg_marquardt_step(mechanism, &q, &left, (damping + pull) * left.cost, &posture);
             let tried = mechanism.clamp_configuration(&mechanism.integrate(&q, &step));
-            let next = self.residuals_of_targets(mechanism, t, targets, &tried)?;
+            let next = self.pose_errors_of_targets(mechanism, t, targets, &tried)?;
             if next.cost < left.cost {
                 (q, left) = (tried, next);
                 damping = at_least(damping * constant(0.3), constant(1e-9));
@@ -212,7 +212,7 @@ impl<T: Real> InverseKinematics<T> {
         Err(Unreached::OutOfReach { q, position, orientation, iterations: self.iterations })
     }
 
-    fn residuals_of_targets<M, const NQ: usize, const NV: usize>(
+    fn pose_errors_of_targets<M, const NQ: usize, const NV: usize>(
         &self,
         mechanism: &M,
         t: T,

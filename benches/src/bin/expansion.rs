@@ -6,7 +6,7 @@
 //! processor time, and peak memory. `expansion FIRST [LAST]` prints the lines of some mechanisms, by number.
 
 use linkwork_benches::chains::{Source, chain_source};
-use linkwork_benches::checked::{CompiledRuntime, check_with_rustc};
+use linkwork_benches::checked::{CompiledRuntime, measure_rustc_check};
 use linkwork_benches::elements::{arm_with_springs_source, particle_chain_source};
 use linkwork_benches::operations::Operations;
 use linkwork_compiler::expand;
@@ -50,14 +50,14 @@ const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
 /// Returns the name, the target time and the source text of every measured mechanism.
 fn mechanism_sources() -> Vec<(String, &'static str, Source)> {
-    let named_mechanism_source = |name: &str, goal, item: &str| {
+    let mechanism_entry_with_gravity = |name: &str, goal, item: &str| {
         let arguments = "gravity = -g * y".to_string();
         let item = item.to_string();
         (name.to_string(), goal, Source { arguments, item })
     };
     let mut list = vec![
-        named_mechanism_source("CartPole", "20 ms", CART_POLE),
-        named_mechanism_source("DoublePendulum", "", DOUBLE_PENDULUM),
+        mechanism_entry_with_gravity("CartPole", "20 ms", CART_POLE),
+        mechanism_entry_with_gravity("DoublePendulum", "", DOUBLE_PENDULUM),
     ];
     for (name, options, goal) in ROBOTS {
         let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
@@ -147,7 +147,7 @@ fn format_mechanism_line(
     let emitted = expand(arguments.clone(), item.clone(), folder);
     let memory = peak_memory().map_or("–".to_string(), |kb| format!("{:.0}", kb / 1e3));
     let output = format!("{}\n{}", emitted.tokens, emitted.text);
-    let rustc = check_with_rustc(library, &output)?;
+    let rustc = measure_rustc_check(library, &output)?;
 
     let (mut whole, mut derivation) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();

@@ -81,11 +81,13 @@ where
         |(q, v, a)| own.inverse_dynamics_derivatives(0.0, q, v, a),
         |(by_q, by_v)| vec![by_q.as_slice(), by_v.as_slice()],
     )?;
-    type ThreeMatrices<const N: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>);
+    type DerivativeMatrices<const N: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>);
     comparison.print_function_row(
         "forward_dynamics_derivatives",
         |(q, v, tau)| own.forward_dynamics_derivatives(0.0, q, v, tau),
-        |(by_q, by_v, by_tau): &ThreeMatrices<NV>| vec![by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()],
+        |(by_q, by_v, by_tau): &DerivativeMatrices<NV>| {
+            vec![by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()]
+        },
     )
 }
 

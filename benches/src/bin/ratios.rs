@@ -5,7 +5,7 @@
 //! flag for the default target. The values are nanoseconds per call: the minimum over many batches, in which
 //! both take turns.
 
-use linkwork_benches::pairs::{ImplementationPair, benchmark_robots};
+use linkwork_benches::pairs::{ImplementationPair, compared_robots};
 use linkwork_benches::states::STATES;
 use std::time::{Duration, Instant};
 
@@ -23,7 +23,7 @@ fn main() {
     );
     println!("| robot | function | generated, ns | generic, ns | ratio | operations |");
     println!("| --- | --- | ---: | ---: | ---: | ---: |");
-    for robot in benchmark_robots() {
+    for robot in compared_robots() {
         for mut pair in robot.pairs {
             let (generated, generic) = measure_pair(&mut pair);
             let size = pair.size;

@@ -7,7 +7,7 @@ use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::library::{self, StateRows};
-use linkwork_benches::peers::own::{Flat, GeneratedContender, MechanismCall};
+use linkwork_benches::peers::own::{GeneratedContender, MechanismCall, ToNumberList};
 use linkwork_benches::peers::turns::{TOLERANCE, measure_in_turns, remove_disagreeing_contenders};
 use linkwork_benches::states::{STATES, State, random_states};
 use std::path::Path;
@@ -41,17 +41,17 @@ where
 }
 
 /// Blocks in a column, as a list of matrix columns.
-struct StackedBlocks<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
+struct MatrixBlocks<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
 
-impl<const N: usize> Flat for StackedBlocks<N> {
-    fn to_number_list(&self) -> Vec<f64> {
+impl<const N: usize> ToNumberList for MatrixBlocks<N> {
+    fn flatten(&self) -> Vec<f64> {
         let columns = self.0.iter().flat_map(|[q, v]| q.column_iter().zip(v.column_iter()));
         columns.flat_map(|(q, v)| q.iter().chain(v.iter()).copied().collect::<Vec<f64>>()).collect()
     }
 }
 
 /// Returns an integration step of Linkwork as a contender of the comparison.
-fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
+fn linkwork_contender<M: Copy + 'static, R: ToNumberList + 'static, const N: usize>(
     mechanism: M,
     states: &Rc<Vec<State<N, N>>>,
     call: MechanismCall<M, R, N, N>,
@@ -63,8 +63,8 @@ fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
 /// Result of a contender whose values are not compared with those of the others.
 struct UnreadResult<R>(R);
 
-impl<R> Flat for UnreadResult<R> {
-    fn to_number_list(&self) -> Vec<f64> {
+impl<R> ToNumberList for UnreadResult<R> {
+    fn flatten(&self) -> Vec<f64> {
         Vec::new()
     }
 }
@@ -92,7 +92,7 @@ where
             let path = folder.join(name).join(format!("step_{file}.so"));
             all.extend(library::load_casadi_function(&path, Function::Step, rows));
         }
-        all.push(linkwork_contender(m, &states, |m, s| StackedBlocks(step_jacobian(m, s))));
+        all.push(linkwork_contender(m, &states, |m, s| MatrixBlocks(step_jacobian(m, s))));
         let wrong = remove_disagreeing_contenders(&mut all, name, (2 * N, STATES), TOLERANCE);
         if !wrong.is_empty() {
             return Err(wrong.join("\n"));

@@ -5,7 +5,7 @@
 //! - `void *peer_open(const char *folder, const double *states, size_t length, size_t count)`: opens a robot
 //!   with `count` states. Together the states have `length` numbers, those of `q`, `v`, `a` and `τ` of each
 //!   in Linkwork's order. Returns null if the robot is not available.
-//! - `void (*peer_step(void *robot, size_t function, size_t variant))(void *robot, size_t state)`: returns
+//! - `void (*peer_step_fn(void *robot, size_t function, size_t variant))(void *robot, size_t state)`: returns
 //!   the function that evaluates one state, or null.
 //! - `void peer_result(void *robot, size_t function, size_t state, double *out)`: writes the result of the
 //!   last step in Linkwork's order. Values that the peer stores in another form are converted here and in
@@ -30,17 +30,17 @@ pub struct StateRows<'a> {
     pub nq: usize,
     /// Number of velocities of the robot.
     pub nv: usize,
-    /// Numbers of all states: rows of `q`, `v`, `a` and `τ`.
+    /// Values of all states; each row consists of `q`, `v`, `a` and `τ`.
     pub numbers: &'a [f64],
 }
 
 impl StateRows<'_> {
-    fn length(&self) -> usize {
+    fn row_length(&self) -> usize {
         self.nq + 3 * self.nv
     }
 
     fn row_count(&self) -> usize {
-        self.numbers.len() / self.length()
+        self.numbers.len() / self.row_length()
     }
 }
 
@@ -70,7 +70,7 @@ pub fn peers_of_library(
         // have them.
         unsafe {
             let open: OpenPeerFunction = *library.get(b"peer_open\0").ok()?;
-            let find: StepFunctionLookup = *library.get(b"peer_step\0").ok()?;
+            let find: StepFunctionLookup = *library.get(b"peer_step_fn\0").ok()?;
             let take: ReadResultFunction = *library.get(b"peer_result\0").ok()?;
             let robot = open(folder.as_ptr(), rows.numbers.as_ptr(), rows.numbers.len(), rows.row_count());
             let (states, size) = (rows.row_count(), function.column_count(rows.nv) * rows.nv);
@@ -90,7 +90,7 @@ impl Contender for Peer {
         self.owner
     }
 
-    fn variant(&self) -> String {
+    fn variant_name(&self) -> String {
         self.variant.to_string()
     }
 
@@ -182,7 +182,7 @@ impl Contender for Casadi {
         Owner::Casadi
     }
 
-    fn variant(&self) -> String {
+    fn variant_name(&self) -> String {
         self.variant.clone()
     }
 

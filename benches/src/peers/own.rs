@@ -24,12 +24,12 @@ pub struct GeneratedContender<M, R, const NQ: usize, const NV: usize> {
     pub call: MechanismCall<M, R, NQ, NV>,
 }
 
-impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for GeneratedContender<M, R, NQ, NV> {
+impl<M, R: ToNumberList, const NQ: usize, const NV: usize> Contender for GeneratedContender<M, R, NQ, NV> {
     fn owner(&self) -> Owner {
         self.owner
     }
 
-    fn variant(&self) -> String {
+    fn variant_name(&self) -> String {
         String::new()
     }
 
@@ -41,7 +41,7 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for GeneratedConten
     }
 
     fn result(&mut self, state: usize) -> Vec<f64> {
-        (self.call)(&self.mechanism, &self.states[state]).to_number_list()
+        (self.call)(&self.mechanism, &self.states[state]).flatten()
     }
 
     fn bytes(&self) -> Option<u64> {
@@ -68,7 +68,7 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixCo
         Owner::Kept
     }
 
-    fn variant(&self) -> String {
+    fn variant_name(&self) -> String {
         String::new()
     }
 
@@ -81,7 +81,7 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixCo
 
     fn result(&mut self, state: usize) -> Vec<f64> {
         (self.call)(&self.mechanism, &self.states[state], &mut self.matrices);
-        self.matrices.iter().flat_map(Flat::to_number_list).collect()
+        self.matrices.iter().flat_map(ToNumberList::flatten).collect()
     }
 
     fn bytes(&self) -> Option<u64> {
@@ -90,25 +90,25 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixCo
 }
 
 /// Conversion of results to lists of numbers.
-pub trait Flat {
+pub trait ToNumberList {
     /// Returns all numbers in column-major order.
-    fn to_number_list(&self) -> Vec<f64>;
+    fn flatten(&self) -> Vec<f64>;
 }
 
-impl<const R: usize, const C: usize> Flat for SMatrix<f64, R, C> {
-    fn to_number_list(&self) -> Vec<f64> {
+impl<const R: usize, const C: usize> ToNumberList for SMatrix<f64, R, C> {
+    fn flatten(&self) -> Vec<f64> {
         self.as_slice().to_vec()
     }
 }
 
-impl<A: Flat, B: Flat> Flat for (A, B) {
-    fn to_number_list(&self) -> Vec<f64> {
-        [self.0.to_number_list(), self.1.to_number_list()].concat()
+impl<A: ToNumberList, B: ToNumberList> ToNumberList for (A, B) {
+    fn flatten(&self) -> Vec<f64> {
+        [self.0.flatten(), self.1.flatten()].concat()
     }
 }
 
-impl<A: Flat, B: Flat, C: Flat> Flat for (A, B, C) {
-    fn to_number_list(&self) -> Vec<f64> {
-        [self.0.to_number_list(), self.1.to_number_list(), self.2.to_number_list()].concat()
+impl<A: ToNumberList, B: ToNumberList, C: ToNumberList> ToNumberList for (A, B, C) {
+    fn flatten(&self) -> Vec<f64> {
+        [self.0.flatten(), self.1.flatten(), self.2.flatten()].concat()
     }
 }

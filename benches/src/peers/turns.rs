@@ -38,7 +38,7 @@ pub fn remove_disagreeing_contenders(
         let good = error <= tolerance;
         if !good {
             let message =
-                format!("{what}: {:?} {} is off by {error:e}", contender.owner(), contender.variant());
+                format!("{what}: {:?} {} is off by {error:e}", contender.owner(), contender.variant_name());
             eprintln!("{message}");
             if matches!(
                 contender.owner(),
@@ -94,7 +94,7 @@ pub fn measure_in_turns(
     }
     let measured = contenders.iter().zip(least).map(|(contender, least)| ContenderMeasurement {
         owner: contender.owner(),
-        variant: contender.variant(),
+        variant: contender.variant_name(),
         time: least * 1e9 / states as f64,
         bytes: contender.bytes(),
     });

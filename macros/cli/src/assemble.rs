@@ -72,11 +72,11 @@ impl MechanismAssembler<'_, '_> {
     fn evaluate_function(&self, name: &str, arguments: &[(&str, &[f64])]) -> Option<Vec<f64>> {
         let f = self.robot.function(name).ok()?;
         let time = [0.0];
-        let values_by_argument_name = |(name, _): &(&str, usize)| match *name {
+        let values_of_argument = |(name, _): &(&str, usize)| match *name {
             "t" => Some(&time[..]),
             name => arguments.iter().find(|(known, _)| *known == name).map(|(_, values)| *values),
         };
-        let arguments: Option<Vec<&[f64]>> = f.arguments().iter().map(values_by_argument_name).collect();
+        let arguments: Option<Vec<&[f64]>> = f.arguments().iter().map(values_of_argument).collect();
         self.robot.evaluate(&f, &arguments?).ok()
     }
 
@@ -86,7 +86,7 @@ impl MechanismAssembler<'_, '_> {
     /// # Errors
     ///
     /// The mass matrix cannot be evaluated.
-    pub fn has_inertia(&self, q: &[f64]) -> Result<bool, Stop> {
+    pub fn has_positive_definite_inertia(&self, q: &[f64]) -> Result<bool, Stop> {
         let matrix = self.robot.mass_matrix(q)?;
         let (rows, columns) = (self.model.constraints.len(), matrix.ncols());
         if matrix.clone().cholesky().is_some() {

@@ -147,7 +147,7 @@ fn export_command() -> Command {
 
 fn c_export_command() -> Command {
     let command = Command::new("c").about("C99: a source file and a header that need only libm");
-    add_source_options(command, "Output folder of the two files")
+    add_code_export_options(command, "Output folder of the two files")
         .arg(switch_argument(
             "casadi",
             "Writes a third file: the functions in the form that CasADi and acados call",
@@ -160,11 +160,11 @@ fn c_export_command() -> Command {
 }
 
 fn kernel_export_command(name: &'static str, about: &'static str) -> Command {
-    add_source_options(Command::new(name).about(about), "Output folder of the files")
+    add_code_export_options(Command::new(name).about(about), "Output folder of the files")
 }
 
 /// Adds the options that all exports of source code share.
-fn add_source_options(command: Command, folder: &'static str) -> Command {
+fn add_code_export_options(command: Command, folder: &'static str) -> Command {
     add_input_file_arguments(command)
         .arg(
             text_argument("out", "FOLDER", folder)

@@ -304,7 +304,7 @@ impl<'a> ConvertedStruct<'a> {
                 let on = self.joints.field_name_or_original(&joint.text);
                 let kind = motor_type(self.kind_of_joint(&joint.text));
                 self.declare_named_element(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
-            } else if let Some(on) = self.length(drive) {
+            } else if let Some(on) = self.drive_length_text(drive) {
                 self.declare_named_element(
                     &format!("#[acts(on = {on})]"),
                     ("input", &drive.name.text),
@@ -323,7 +323,7 @@ impl<'a> ConvertedStruct<'a> {
 
     /// Returns the length or the weighted sum of coordinates that a drive acts on; `None` if it does not
     /// change with the motion, and for a drive at a point of a body.
-    fn length(&self, drive: &Drive) -> Option<String> {
+    fn drive_length_text(&self, drive: &Drive) -> Option<String> {
         match &drive.on {
             DriveTarget::Length(length) => {
                 (!self.constant.contains(&drive.name.text)).then(|| self.format_expression(length))
@@ -350,7 +350,7 @@ impl<'a> ConvertedStruct<'a> {
         let Some((point, body)) = self.point_and_body_of_wrench(wrench, name) else { return };
         for (kind, on, vector) in [("Force", &point, wrench.force), ("Torque", &body, wrench.torque)] {
             if vector != [0.0; 3] {
-                let value = vector_in_axes(vector, &body);
+                let value = format_vector_in_axes(vector, &body);
                 let attribute = format!("#[acts(on = {on}, value = {factor} * ({value}))]");
                 self.add_unique_field(&attribute, &format!("{name}_{}", kind.to_ascii_lowercase()), kind);
             }
@@ -362,10 +362,16 @@ impl<'a> ConvertedStruct<'a> {
         let Some((point, body)) = self.point_and_body_of_wrench(wrench, name) else { return };
         let mut rates = Vec::new();
         if wrench.force != [0.0; 3] {
-            rates.push(format!("dot(v({point} / ground / ground), {})", vector_in_axes(wrench.force, &body)));
+            rates.push(format!(
+                "dot(v({point} / ground / ground), {})",
+                format_vector_in_axes(wrench.force, &body)
+            ));
         }
         if wrench.torque != [0.0; 3] {
-            rates.push(format!("dot(omega({body} / ground), {})", vector_in_axes(wrench.torque, &body)));
+            rates.push(format!(
+                "dot(omega({body} / ground), {})",
+                format_vector_in_axes(wrench.torque, &body)
+            ));
         }
         if !rates.is_empty() {
             let rate = rates.join(" + ");
@@ -432,7 +438,7 @@ impl<'a> ConvertedStruct<'a> {
             }
             return;
         }
-        let Some(on) = self.length(drive) else {
+        let Some(on) = self.drive_length_text(drive) else {
             return self.notes.push(format!("`{name}`, which acts on a constant length, is omitted"));
         };
         // The friction law is regularised in the velocity of the weighted sum, and polynomials have several
@@ -537,7 +543,7 @@ fn motor_type(kind: JointKind) -> &'static str {
 }
 
 /// Returns a constant vector in the axes of a body as source text.
-fn vector_in_axes(vector: [f64; 3], body: &str) -> String {
+fn format_vector_in_axes(vector: [f64; 3], body: &str) -> String {
     let parts = vector.into_iter().zip(["x", "y", "z"]).filter(|(x, _)| *x != 0.0);
     parts.map(|(x, axis)| format!("{} * {body}.{axis}", format_number(x))).collect::<Vec<_>>().join(" + ")
 }

@@ -19,7 +19,7 @@ pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
-    let single = request_export_derivatives(&mut source, matches);
+    let single = apply_code_export_options(&mut source, matches);
     let prefix = checked_prefix(matches, "C")?;
     let fixed = named_option_values("set", matches)?;
     let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
@@ -41,7 +41,7 @@ pub fn export_cuda_files(matches: &ArgMatches) -> Result<(), Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
-    let single = request_export_derivatives(&mut source, matches);
+    let single = apply_code_export_options(&mut source, matches);
     let prefix = checked_prefix(matches, "CUDA")?;
     let files = export_cuda(&source, &Options { prefix, single, ..Options::default() }, cx);
     let files = input.result_without_errors(files, cx)?;
@@ -63,7 +63,7 @@ pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
     let cx = &mut Diagnostics::new();
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
-    request_export_derivatives(&mut source, matches);
+    apply_code_export_options(&mut source, matches);
     let prefix = checked_prefix(matches, "WGSL")?;
     let files = export_wgsl(&source, &prefix, cx);
     let files = input.result_without_errors(files, cx)?;
@@ -79,7 +79,7 @@ pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Requests the derivatives unless an option excludes them. Returns true for single precision.
-fn request_export_derivatives(source: &mut Source, matches: &ArgMatches) -> bool {
+fn apply_code_export_options(source: &mut Source, matches: &ArgMatches) -> bool {
     let description = &source.mechanism.description;
     let single = match text_option_value(matches, "scalar") {
         Some(scalar) => scalar == "float",

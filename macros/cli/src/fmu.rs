@@ -24,7 +24,7 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
     let source = input.parse_source(cx);
     let mut source = input.result_without_errors(source, cx)?;
     let graph = Graph::new();
-    let values = fmu_start_values(&input, &graph, matches)?;
+    let values = fmu_variable_data(&input, &graph, matches)?;
     let requests = &mut source.mechanism.requests;
     let is_kinematic = source.mechanism.description.inertias == InertiaOption::None;
     let has_derivatives = !is_kinematic && !matches.get_flag("no-derivatives");
@@ -36,7 +36,7 @@ pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
     let files = match library {
         None => export_fmu(&source, &prefix, &values.start, has_derivatives, cx),
         Some(_) => {
-            let declaration = declaration_text(&input);
+            let declaration = mechanism_declaration_text(&input);
             let made = export_fmu_for_runtime_library(&source, &declaration, &prefix, &values.start, cx);
             made.map(|(files, left_out)| {
                 for name in left_out {
@@ -85,7 +85,7 @@ fn compile_and_add_binary(
     let folder = binary_folder();
     let name = format!("{}{}", files.identifier, std::env::consts::DLL_SUFFIX);
     archive.add(&format!("{folder}/{name}"), &binary)?;
-    if let Some(library) = library.filter(|library| !is_static(library)) {
+    if let Some(library) = library.filter(|library| !is_static_library(library)) {
         archive.add(&format!("{folder}/{LIBRARY_FILE}"), &std::fs::read(library)?)?;
     }
     Ok(())
@@ -101,7 +101,7 @@ struct FmuVariableData {
 }
 
 /// Returns the start values of all variables; the initial state satisfies the constraints.
-fn fmu_start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<FmuVariableData, Stop> {
+fn fmu_variable_data(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<FmuVariableData, Stop> {
     let loaded = input.load_mechanism(graph)?;
     let start = Start::new(&loaded, matches)?;
     if let Some(why) = start.reason_without_motion() {
@@ -135,7 +135,7 @@ fn fmu_start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Resul
 }
 
 /// Returns the declaration of a mechanism in Rust, with the options of the command.
-fn declaration_text(input: &Input) -> String {
+fn mechanism_declaration_text(input: &Input) -> String {
     format!("#[mechanism({})]\n{}", input.declaration.arguments, input.declaration.item)
 }
 
@@ -143,7 +143,7 @@ fn declaration_text(input: &Input) -> String {
 const LIBRARY_FILE: &str = if cfg!(target_os = "macos") { "liblinkwork_c.dylib" } else { "liblinkwork_c.so" };
 
 /// Returns true for a static library, which becomes a part of the binary.
-fn is_static(library: &Path) -> bool {
+fn is_static_library(library: &Path) -> bool {
     library.extension().is_some_and(|end| end == "a")
 }
 
@@ -178,11 +178,11 @@ fn compile_in_folder(
     std::fs::create_dir_all(folder.join("sources"))?;
     let mut further: Vec<&str> = Vec::new();
     if let Some(from) = library {
-        let name = if is_static(from) { "liblinkwork_c.a" } else { LIBRARY_FILE };
+        let name = if is_static_library(from) { "liblinkwork_c.a" } else { LIBRARY_FILE };
         std::fs::copy(from, folder.join(name))
             .map_err(|error| Stop::Failure(format!("cannot read {}: {error}", from.display())))?;
         further.extend(["-L.", "-llinkwork_c"]);
-        further.extend(match (is_static(from), cfg!(target_os = "macos")) {
+        further.extend(match (is_static_library(from), cfg!(target_os = "macos")) {
             // Symbols of the library remain those of this FMU.
             (true, false) => &["-Wl,--exclude-libs,ALL", "-lpthread", "-ldl"][..],
             (true, true) => &[],

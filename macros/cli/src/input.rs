@@ -177,8 +177,8 @@ fn rewrite_advice_for_command(text: &str) -> String {
         let Some(end) = said[at..].find(")]`").map(|end| at + end) else { break };
         let options = &said[at + "`#[mechanism(".len()..end];
         // The file is already named on the command line.
-        let has_string_value = |option: &&str| *option == "…" || option.ends_with("= \"…\"");
-        let options: Vec<&str> = options.split(", ").skip_while(has_string_value).collect();
+        let is_elided_file_option = |option: &&str| *option == "…" || option.ends_with("= \"…\"");
+        let options: Vec<&str> = options.split(", ").skip_while(is_elided_file_option).collect();
         let with = format!("`--with \"{}\"`", options.join(", "));
         said.replace_range(at..end + ")]`".len(), &with);
         from = at + with.len();

@@ -329,7 +329,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let m = MechanismAssembler { robot: &self.robot, model: self.model };
         let (name, [in_q, in_v]) = (&self.model.name, &self.given);
         let has_singular_speeds = |q: &[f64]| self.robot.regularity_of_speeds(q) <= SINGULAR;
-        if !has_singular_speeds(&self.q) && !m.has_inertia(&self.q)? {
+        if !has_singular_speeds(&self.q) && !m.has_positive_definite_inertia(&self.q)? {
             return Err(Stop::Failure(format!(
                 "the mass matrix of `{name}` is singular at the beginning: with these parameters a moving \
                  body has no inertia"

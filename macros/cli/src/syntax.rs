@@ -9,7 +9,7 @@ use std::str::FromStr;
 pub fn syntax_error_of_text(text: &str, error: &syn::Error) -> SourceError {
     let (at, message, notes) = match TokenStream::from_str(text) {
         Ok(tokens) if error.to_string().starts_with("expected `,`") => {
-            let (before, after) = tokens_around_position(&tokens, error.span().start());
+            let (before, after) = previous_end_and_found_token(&tokens, error.span().start());
             (before.unwrap_or(error.span().start()), format!("expected `,`{after}"), Vec::new())
         }
         Ok(_) => (error.span().start(), error.to_string(), Vec::new()),
@@ -101,7 +101,7 @@ fn find_misaligned_brace(text: &str) -> Option<LineColumn> {
 }
 
 /// Returns the end of the last token before a position, and the text `, found …` for the token at it.
-fn tokens_around_position(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) {
+fn previous_end_and_found_token(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) {
     let (mut before, mut after, mut todo): (Option<LineColumn>, _, _) =
         (None, String::new(), vec![tokens.clone()]);
     while let Some(tokens) = todo.pop() {

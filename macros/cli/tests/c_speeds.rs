@@ -21,7 +21,7 @@ type ExportedEntry = (&'static str, String, Vec<f64>);
 
 /// Exports the mechanism in the given arithmetic, compiles it with the given flags, and returns the numbers
 /// that the program prints.
-fn compile_and_run(
+fn export_compile_and_run(
     entries: &[ExportedEntry],
     given: &str,
     arithmetic: &str,
@@ -203,7 +203,7 @@ fn check_entries_with_tolerance(name: &str, found: &[f64], expected: &[f64], tol
 #[test]
 fn declared_speeds_in_c_agree_with_rust() {
     let (entries, given) = exported_functions();
-    let found = compile_and_run(&entries, &given, "fast", &["-std=c99", "-O1"]);
+    let found = export_compile_and_run(&entries, &given, "fast", &["-std=c99", "-O1"]);
     assert_eq!(found.len(), entries.len());
     for ((name, _, expected), found) in entries.iter().zip(found) {
         check_entries_with_tolerance(name, &found, expected, 1e-11);
@@ -217,7 +217,8 @@ fn declared_speeds_in_c_agree_with_rust() {
 fn reproducible_c_code_has_the_bits_of_rust() {
     let (mut entries, given) = exported_functions();
     entries.retain(|(name, ..)| !name.ends_with("transition"));
-    let found = compile_and_run(&entries, &given, "reproducible", &["-std=gnu11", "-O2", "-march=native"]);
+    let found =
+        export_compile_and_run(&entries, &given, "reproducible", &["-std=gnu11", "-O2", "-march=native"]);
     assert_eq!(found.len(), entries.len());
     let same_operations = cfg!(all(target_arch = "x86_64", not(target_feature = "fma"), debug_assertions));
     let mut others = Vec::new();

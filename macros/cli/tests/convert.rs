@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Compiles a struct with arguments of the attribute, and passes the result to `test`.
-fn test_compiled_struct<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Output) -> T) -> T {
+fn with_compiled_struct<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Output) -> T) -> T {
     let cx = &mut Diagnostics::new();
     let source: Option<Source> =
         read_source(arguments.parse().unwrap(), item.parse().unwrap(), Path::new("/"), cx);
@@ -90,10 +90,10 @@ fn check_conversion_with_notes(format: &str, file: &Path, with: &str, notes: &[&
     let evaluate_all_functions = |model: &Model<'_>, output: &Output| {
         functions.map(|function| evaluate_at_sample_state(model, output, function))
     };
-    let expected = test_compiled_struct(&given, "struct Robot;", |m, o| {
+    let expected = with_compiled_struct(&given, "struct Robot;", |m, o| {
         (m.nq(), m.nu(), count_frames(m), m.limits.len(), evaluate_all_functions(m, o))
     });
-    let found = test_compiled_struct(&arguments, &item, |m, o| {
+    let found = with_compiled_struct(&arguments, &item, |m, o| {
         (m.nq(), m.nu(), count_frames(m), m.limits.len(), evaluate_all_functions(m, o))
     });
     assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
@@ -212,9 +212,9 @@ fn robot_files_convert_with_equal_dynamics() {
                     .map(|function| evaluate_at_sample_state(model, output, function)),
             )
         };
-        let expected = test_compiled_struct(&given, "struct Robot;", sizes_and_dynamics_values);
+        let expected = with_compiled_struct(&given, "struct Robot;", sizes_and_dynamics_values);
         let (arguments, item) = split_attribute_and_struct(&convert_file(&file, with).0);
-        let found = test_compiled_struct(&arguments, &item, sizes_and_dynamics_values);
+        let found = with_compiled_struct(&arguments, &item, sizes_and_dynamics_values);
         assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
         for (a, b) in found.2.iter().zip(&expected.2) {
             let size = b.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
@@ -249,10 +249,10 @@ fn names_shared_by_link_and_joint_are_resolved() {
     let evaluate_all_functions = |model: &Model<'_>, output: &Output| {
         functions.map(|function| evaluate_at_sample_state(model, output, function))
     };
-    let expected = test_compiled_struct(&given, "struct Robot;", evaluate_all_functions);
+    let expected = with_compiled_struct(&given, "struct Robot;", evaluate_all_functions);
     let (code, _) = convert_file(&file, "");
     let (arguments, item) = split_attribute_and_struct(&code);
-    for (a, b) in test_compiled_struct(&arguments, &item, evaluate_all_functions).iter().zip(&expected) {
+    for (a, b) in with_compiled_struct(&arguments, &item, evaluate_all_functions).iter().zip(&expected) {
         assert!(a.len() == b.len() && !a.is_empty(), "{a:?} {b:?}");
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * b.abs().max(1.0)), "{a:?} {b:?}");
     }

@@ -127,7 +127,7 @@ impl Fmu {
 }
 
 /// Returns the states of a motion of `linkwork simulate`, without the columns of inputs.
-fn simulate_states(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64>> {
+fn states_from_simulate_command(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64>> {
     let (duration, every) = (stop.to_string(), (stop / samples as f64).to_string());
     let options =
         ["--duration", &duration, "--every", &every, "--tolerance", "1e-11", "--method", "dormand-prince"];
@@ -153,7 +153,7 @@ fn compare_states(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], toleran
 /// Simulates a mechanism in both modes, and compares the motions with that of the library.
 fn check_both_fmi_modes(name: &str, arguments: &[&str], stop: f64, steps: f64) -> Option<Fmu> {
     let fmu = Fmu::new(name, arguments)?;
-    let expected = simulate_states(arguments, stop, 10);
+    let expected = states_from_simulate_command(arguments, stop, 10);
     compare_states(name, &fmu.importer_rows("co-simulation", [stop, 10.0, 0.0]), &expected, 1e-8);
     compare_states(name, &fmu.importer_rows("exchange", [stop, 10.0, steps]), &expected, 1e-6);
     Some(fmu)

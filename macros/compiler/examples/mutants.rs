@@ -37,8 +37,8 @@ pub fn is(mutant: usize) -> bool {
     {
         let _ = (&*file).write_all(format!("{mutant}\n").as_bytes());
     }
-    let chosen = || var("LINKWORK_MUTANTS").unwrap_or_default().split(',').flat_map(str::parse).collect();
-    CHOSEN.get_or_init(chosen).contains(&mutant)
+    let selected = || var("LINKWORK_MUTANTS").unwrap_or_default().split(',').flat_map(str::parse).collect();
+    CHOSEN.get_or_init(selected).contains(&mutant)
 }
 "#;
 
@@ -123,7 +123,7 @@ impl Mutator<'_> {
 
 /// Returns the names that a file imports from `machine`.
 fn imported_machine_limits(file: &syn::File) -> Vec<String> {
-    let names_of_use_item = |item: &syn::Item| match item {
+    let machine_names_of_use_item = |item: &syn::Item| match item {
         syn::Item::Use(item) => {
             let text = item.tree.to_token_stream().to_string();
             text.strip_prefix("crate :: machine ::").map(|names| {
@@ -132,7 +132,7 @@ fn imported_machine_limits(file: &syn::File) -> Vec<String> {
         }
         _ => None,
     };
-    let names: Vec<Vec<String>> = file.items.iter().filter_map(names_of_use_item).collect();
+    let names: Vec<Vec<String>> = file.items.iter().filter_map(machine_names_of_use_item).collect();
     names.concat().into_iter().filter(|name| !name.is_empty()).collect()
 }
 

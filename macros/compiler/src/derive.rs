@@ -73,7 +73,7 @@ pub fn derive_with_options<'g>(
         return derive_kinematic((model, speeds.as_ref()), requests, passes, &joints, cx);
     }
     let mass = crba::mass_matrix(model, &joints);
-    if !singular::report_singular_mass_matrix(model, &joints, &mass, cx)
+    if !singular::check_mass_matrix(model, &joints, &mass, cx)
         || !singular::check_effective_mass(model, &joints, &mass, cx)
     {
         return None;
@@ -137,7 +137,7 @@ pub fn derive_with_options<'g>(
         constants,
         ..output_with_recursion_steps(model, &joints, functions)
     };
-    check_derived_output(model, output, cx)
+    validated_output(model, output, cx)
 }
 
 /// Derives the functions of a mechanism without dynamics: the configuration space, frames, constraints, the
@@ -165,11 +165,7 @@ fn derive_kinematic<'g>(
         ParameterSpecialisation::None,
     );
     let constants = drawing_constants(model, requests);
-    check_derived_output(
-        model,
-        Output { constants, ..output_with_recursion_steps(model, joints, functions) },
-        cx,
-    )
+    validated_output(model, Output { constants, ..output_with_recursion_steps(model, joints, functions) }, cx)
 }
 
 /// Checks that the requested functions exist for a mechanism and are not too long; reports an error and
@@ -235,7 +231,7 @@ fn output_with_recursion_steps<'g>(
 
 /// Checks the derived output: all coefficients must be finite, no expression may be NaN, and the number of
 /// values of each program must match its result. Returns `None` with the error in `cx` otherwise.
-fn check_derived_output(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
+fn validated_output(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
     if !output.all_functions().all(|f| f.program.is_finite()) {
         cx.report_error(model.place.clone(), "the values of this mechanism are too large")
             .add_help("a product of masses, lengths or forces in its equations is not a finite number");

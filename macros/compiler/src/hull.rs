@@ -99,7 +99,7 @@ impl Hull {
 
     /// Returns the distance of a point from the hull; negative inside.
     pub fn distance(&self, p: Point) -> f64 {
-        let Some((face, height)) = farthest_face(&self.faces, p) else { return f64::NAN };
+        let Some((face, height)) = face_farthest_below_point(&self.faces, p) else { return f64::NAN };
         let foot = sub(p, face.normal.map(|x| x * height));
         if self.faces.iter().all(|face| face.distance_from_plane(foot) <= FLAT * self.size) {
             return height;
@@ -139,7 +139,8 @@ fn initial_tetrahedron_vertices(points: &[Point], size: f64) -> Result<Vec<Point
 fn add_farthest_points(vertices: &mut Vec<Point>, outside: &mut Vec<Point>, maximum: usize, size: f64) {
     loop {
         let faces = hull_faces(vertices, size);
-        let height_above_hull = |p: &Point| farthest_face(&faces, *p).map_or(0.0, |(_, height)| height);
+        let height_above_hull =
+            |p: &Point| face_farthest_below_point(&faces, *p).map_or(0.0, |(_, height)| height);
         let mut next: Option<(f64, Point)> = None;
         outside.retain(|p| {
             let height = height_above_hull(p);
@@ -220,7 +221,7 @@ fn hull_edges(vertices: &[Point], faces: &[HullFace]) -> Vec<[usize; 2]> {
 }
 
 /// Returns the face whose plane is farthest below a point, with the height of the point above it.
-fn farthest_face(faces: &[HullFace], p: Point) -> Option<(HullFace, f64)> {
+fn face_farthest_below_point(faces: &[HullFace], p: Point) -> Option<(HullFace, f64)> {
     let heights = faces.iter().map(|face| (*face, face.distance_from_plane(p)));
     heights.max_by(|(_, a), (_, b)| a.total_cmp(b))
 }

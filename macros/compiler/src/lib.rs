@@ -428,7 +428,7 @@ fn check_output_names(
         let names: Vec<String> = asked.map(|(suffix, ..)| format!("{name}{suffix}")).collect();
         names.into_iter()
     };
-    let find_suffixed_output = |name: &str| {
+    let find_output_without_suffix = |name: &str| {
         let asked = suffixes.iter().filter(|(.., asked)| *asked);
         asked
             .flat_map(|suffix| outputs.iter().map(move |output| (suffix, &output.name.text)))
@@ -441,7 +441,7 @@ fn check_output_names(
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
-        if let Some(((suffix, what, _), other)) = find_suffixed_output(text) {
+        if let Some(((suffix, what, _), other)) = find_output_without_suffix(text) {
             cx.report_error(name.place.clone(), format!("`{text}` {what} of the output `{other}`")).add_help(
                 format!("each output has a function of its name and one of its name with `{suffix}`"),
             );

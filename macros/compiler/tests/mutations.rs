@@ -25,14 +25,14 @@ const LARGEST: usize = 1500;
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Source of a mechanism of the gallery, to which mutations are applied.
-struct MutatedMechanism {
+struct GalleryMechanism {
     name: String,
     arguments: TokenStream,
     item: TokenStream,
 }
 
 /// Reads the mechanisms of the gallery of models.
-fn gallery_mechanisms() -> Vec<MutatedMechanism> {
+fn gallery_mechanisms() -> Vec<GalleryMechanism> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/src");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
@@ -50,7 +50,7 @@ fn gallery_mechanisms() -> Vec<MutatedMechanism> {
             };
             item.attrs.clear();
             let name = item.ident.to_string();
-            all.push(MutatedMechanism { name, arguments, item: item.into_token_stream() });
+            all.push(GalleryMechanism { name, arguments, item: item.into_token_stream() });
         }
     }
     all.retain(|subject| {

@@ -317,11 +317,9 @@ fn snapshot_difference(name: &str, text: &str) -> Option<String> {
     }
     let expected = fs::read_to_string(&path).unwrap_or_default();
     let lines = text.lines().count().max(expected.lines().count());
-    let repeated_line = |text: &'static str| std::iter::repeat(text);
-    let both = text
-        .lines()
-        .chain(repeated_line("(no more)"))
-        .zip(expected.lines().chain(repeated_line("(no more)")));
+    let endless_line = |text: &'static str| std::iter::repeat(text);
+    let both =
+        text.lines().chain(endless_line("(no more)")).zip(expected.lines().chain(endless_line("(no more)")));
     let (k, (now, before)) = both.take(lines).enumerate().find(|(_, (now, before))| now != before)?;
     Some(format!("{name}.txt, line {}:\n  before: {before}\n  now:    {now}", k + 1))
 }

@@ -43,7 +43,7 @@ struct ArmRun {
 }
 
 /// Computed-torque control in the task space of the hand, with the model without a load.
-struct ArmController {
+struct TaskSpaceController {
     /// Whether the controller uses the disturbance observer.
     observing: bool,
     /// Desired orientation of the hand.
@@ -167,7 +167,7 @@ fn small_rotation_between(from: &IsometryMatrix3<f64>, to: &IsometryMatrix3<f64>
     (0..3).map(|k| axis_of_frame(from, k).cross(&axis_of_frame(to, k))).sum::<Vector3<f64>>() / 2.0
 }
 
-impl ArmController {
+impl TaskSpaceController {
     fn new(observing: bool) -> Self {
         Self {
             observing,
@@ -217,7 +217,7 @@ impl ArmController {
 
 fn simulate_drawing(load: f64, observing: bool) -> Result<ArmRun, Error> {
     let arm = LoadedPanda { load };
-    let mut controller = ArmController::new(observing);
+    let mut controller = TaskSpaceController::new(observing);
     let mut cost = Vec::new();
     let run = simulate(&arm)
         .from(HOME, JointVector::zeros())
@@ -277,23 +277,23 @@ fn function_timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2
     let arm = PandaArm;
     let states: Vec<(JointVector, JointVector, JointVector)> =
         samples.iter().step_by(100).map(|s| (s.q, s.v, s.u * 0.1)).collect();
-    let time_per_call = |f: &dyn Fn(&JointVector, &JointVector, &JointVector) -> f64| {
-        let time_batch = || {
+    let median_and_least_time = |f: &dyn Fn(&JointVector, &JointVector, &JointVector) -> f64| {
+        let time_per_call_in_batch = || {
             let start = Instant::now();
             for (q, v, a) in &states {
                 black_box(f(black_box(q), black_box(v), black_box(a)));
             }
             start.elapsed().as_nanos() as f64 / states.len() as f64
         };
-        let times: Vec<f64> = (0..400).map(|_| time_batch()).collect();
+        let times: Vec<f64> = (0..400).map(|_| time_per_call_in_batch()).collect();
         [median_time(&times), times.iter().copied().fold(f64::INFINITY, f64::min)]
     };
     let tip = frame!(PandaArm, "panda_hand_tcp");
     [
-        ("inverse_dynamics", time_per_call(&|q, v, a| black_box(arm.inverse_dynamics(q, v, a))[0])),
-        ("forward_dynamics", time_per_call(&|q, v, a| black_box(arm.forward_dynamics(q, v, a))[0])),
-        ("mass_matrix", time_per_call(&|q, _, _| black_box(arm.mass_matrix(q))[0])),
-        ("frame_jacobian", time_per_call(&|q, _, _| black_box(arm.frame_jacobian(tip, q))[0])),
+        ("inverse_dynamics", median_and_least_time(&|q, v, a| black_box(arm.inverse_dynamics(q, v, a))[0])),
+        ("forward_dynamics", median_and_least_time(&|q, v, a| black_box(arm.forward_dynamics(q, v, a))[0])),
+        ("mass_matrix", median_and_least_time(&|q, _, _| black_box(arm.mass_matrix(q))[0])),
+        ("frame_jacobian", median_and_least_time(&|q, _, _| black_box(arm.frame_jacobian(tip, q))[0])),
     ]
 }
 
@@ -302,7 +302,7 @@ fn scene_of_run(run: &ArmRun) -> Scene {
     let joints: [usize; 7] = std::array::from_fn(|k| frame_index_of_name(&format!("panda_link{}", k + 1)));
     let (flange, palm) = (frame_index_of_name("panda_link8"), frame_index_of_name("panda_hand"));
     let tip = frame_index_of_name("panda_hand_tcp");
-    let points_of_frame = |s: &Sample<f64, 7, 7, 7>| {
+    let points_of_sample = |s: &Sample<f64, 7, 7, 7>| {
         let at = PandaArm.frame_placements(&s.q);
         let mut points: Vec<Point> = vec![[0.0; 3]];
         // Origins of the links, then the ends of each joint's housing.
@@ -345,7 +345,7 @@ fn scene_of_run(run: &ArmRun) -> Scene {
         rate: RATE,
         speed: 1.0,
         parts,
-        frames: run.samples.iter().step_by(every).map(points_of_frame).collect(),
+        frames: run.samples.iter().step_by(every).map(points_of_sample).collect(),
         still: 4.4,
         captions: vec![(0, "drawing".into()), ((DRAWING * RATE) as usize, "at rest: load weighed".into())],
         guides: vec![guide.collect()],

@@ -23,7 +23,7 @@ const DURATION: f64 = 12.0;
 /// Frames per second of the animation.
 const RATE: f64 = 50.0;
 
-type State = SVector<f64, 2>;
+type CartPoleVector = SVector<f64, 2>;
 
 /// Controller that swings the pole up, and switches to the regulator near the upright position.
 struct SwingUpController {
@@ -33,7 +33,8 @@ struct SwingUpController {
 }
 
 pub fn run_cart_pole_tour() -> Result<Section, Box<dyn std::error::Error>> {
-    let upright_system = linear_system(&CART_POLE, &State::zeros(), &State::zeros(), &SVector::zeros())?;
+    let upright_system =
+        linear_system(&CART_POLE, &CartPoleVector::zeros(), &CartPoleVector::zeros(), &SVector::zeros())?;
     // Riccati's equation for inputs that are constant over a period.
     let best = upright_system.lqr_held(&Cost::diagonal(&[20.0, 10.0, 1.0, 1.0], &[0.05]), PERIOD)?;
     let gains = SMatrix::<f64, 1, 4>::from_iterator(best.gain.iter().copied());
@@ -51,7 +52,7 @@ pub fn run_cart_pole_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let samples: Vec<_> = run.collect::<Result<_, _>>()?;
     let caught = controller.caught.unwrap_or(f64::NAN);
 
-    let largest_magnitude_since = |from: f64, f: &dyn Fn(&State) -> f64| {
+    let largest_magnitude_since = |from: f64, f: &dyn Fn(&CartPoleVector) -> f64| {
         samples.iter().filter(|s| s.t >= from).map(|s| f(&s.q).abs()).fold(0.0, f64::max)
     };
     let strongest = forces.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
@@ -116,7 +117,7 @@ pub fn run_cart_pole_tour() -> Result<Section, Box<dyn std::error::Error>> {
 }
 
 impl SwingUpController {
-    fn force_on_cart(&mut self, t: f64, q: &State, v: &State) -> f64 {
+    fn force_on_cart(&mut self, t: f64, q: &CartPoleVector, v: &CartPoleVector) -> f64 {
         let x = SVector::from([q[0], angle_from_upright(q[1]), v[0], v[1]]);
         let hold = -(self.gains * x)[0];
         // Switch to the regulator as soon as the motor is strong enough; switch back only if the pole falls.
@@ -132,9 +133,9 @@ impl SwingUpController {
     /// Returns the force of Åström and Furuta's energy shaping, *Automatica* 36 (2000). The pole's energy `E`
     /// relative to the cart is controlled to that of the upright position; `Ė` is proportional to the cart's
     /// acceleration.
-    fn swing_up_force(&self, q: &State, v: &State) -> f64 {
-        let turning = State::new(0.0, v[1]);
-        let top = CART_POLE.potential_energy(&State::zeros());
+    fn swing_up_force(&self, q: &CartPoleVector, v: &CartPoleVector) -> f64 {
+        let turning = CartPoleVector::new(0.0, v[1]);
+        let top = CART_POLE.potential_energy(&CartPoleVector::zeros());
         let energy = CART_POLE.kinetic_energy(q, &turning) + CART_POLE.potential_energy(q) - top;
         let acceleration = -3.0 * energy * v[1] * q[1].cos() - 14.0 * q[0] - 4.0 * v[0];
         // Force that gives the cart this acceleration while the pole rotates freely: two rows of M v̇ + h =
@@ -160,7 +161,7 @@ fn scene_of_samples(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         let [x, y, z] = point_in_ground(body, at);
         [x, -z, y]
     };
-    let points_of_frame = |s: &Sample<f64, 2, 2, 1>| {
+    let points_of_sample = |s: &Sample<f64, 2, 2, 1>| {
         let cart = CART_POLE.frame_placement(frame!(CartPole, "cart"), &s.q);
         let pole = CART_POLE.frame_placement(frame!(CartPole, "pole"), &s.q);
         let mut points = vec![to_z_up(&pole, [0.0; 3]), to_z_up(&pole, [0.0, CART_POLE.pole_length, 0.0])];
@@ -186,7 +187,7 @@ fn scene_of_samples(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         rate: RATE,
         speed: 1.0,
         parts,
-        frames: samples.iter().map(points_of_frame).collect(),
+        frames: samples.iter().map(points_of_sample).collect(),
         still: 4.6,
         captions: vec![
             (0, "pumping energy".into()),

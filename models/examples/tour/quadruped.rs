@@ -203,7 +203,7 @@ fn scene_of_samples(samples: &[QuadrupedSample]) -> Scene {
     let frame_index_of_link =
         |leg: &str, link: &str| Solo12::frame_index(&format!("{leg}_{link}")).unwrap_or(0);
     let legs = ["FL", "FR", "HL", "HR"];
-    let points_of_frame = |s: &QuadrupedSample| {
+    let points_of_sample = |s: &QuadrupedSample| {
         let at = Solo12.frame_placements(&s.q);
         let trunk = Solo12.frame_placement(frame!(Solo12, "base_link"), &s.q);
         let mut points: Vec<Point> = corners_of_box(&trunk, [0.0; 3], [0.2, 0.055, 0.028]).to_vec();
@@ -241,7 +241,7 @@ fn scene_of_samples(samples: &[QuadrupedSample]) -> Scene {
         rate: RATE,
         speed: 0.25,
         parts,
-        frames: samples.iter().map(points_of_frame).collect(),
+        frames: samples.iter().map(points_of_sample).collect(),
         still: 0.75,
         captions: vec![
             (0, "take-off".into()),

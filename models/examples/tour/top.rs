@@ -139,7 +139,7 @@ fn scene_of_samples(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
             .map(|a| point_in_ground(body, [radius * a.cos(), radius * a.sin(), z]))
             .collect::<Vec<Point>>()
     };
-    let points_of_frame = |s: &Sample<f64, 4, 3, 0>| {
+    let points_of_sample = |s: &Sample<f64, 4, 3, 0>| {
         let body = TOP.frame_placement(frame!(HeavyTop<f64>, "top"), &s.q);
         let mut points = vec![
             [0.0; 3],
@@ -163,7 +163,7 @@ fn scene_of_samples(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
         rate: RATE,
         speed: 0.25,
         parts,
-        frames: samples.iter().map(points_of_frame).collect(),
+        frames: samples.iter().map(points_of_sample).collect(),
         still: 1.2,
         captions: Vec::new(),
         guides: Vec::new(),

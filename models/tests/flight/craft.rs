@@ -196,7 +196,7 @@ fn neutral_state_at_rest() -> (SVector<f64, 7>, SVector<f64, 6>) {
 fn reaction_wheels_rotate_the_satellite() {
     let (q, v) = neutral_state_at_rest();
     // Rest-to-rest manoeuvre: acceleration in one direction, then in the opposite one.
-    let apply_wheel_torques = |torques: [f64; 3], q, v, duration: f64| {
+    let simulate_wheel_torques = |torques: [f64; 3], q, v, duration: f64| {
         let path = simulate(&SATELLITE)
             .from(q, v)
             .inputs(|_, _, _| torques.into())
@@ -206,8 +206,8 @@ fn reaction_wheels_rotate_the_satellite() {
             .unwrap();
         (path.q, path.v)
     };
-    let (q, v) = apply_wheel_torques([0.1, 0.0, 0.0], q, v, 20.0);
-    let (q, v) = apply_wheel_torques([-0.1, 0.0, 0.0], q, v, 20.0);
+    let (q, v) = simulate_wheel_torques([0.1, 0.0, 0.0], q, v, 20.0);
+    let (q, v) = simulate_wheel_torques([-0.1, 0.0, 0.0], q, v, 20.0);
     assert!(v.norm() < 1e-8, "{v}");
     let hull = 2.0 * q[0].atan2(q[3]);
     assert_relatively_close(hull, -SATELLITE.wheel / (SATELLITE.ixx + 2.0 * SATELLITE.wheel) * q[4], 1e-8);
@@ -216,7 +216,7 @@ fn reaction_wheels_rotate_the_satellite() {
     let v = SVector::from([0.1, -0.2, 0.15, 80.0, -50.0, 20.0]);
     let outputs_of_state =
         |q: &_, v: &_| Outputs::outputs(&SATELLITE, 0.0, q, v, &SVector::zeros(), &SVector::zeros());
-    let (later, faster) = apply_wheel_torques([0.05, 0.1, -0.02], q, v, 15.0);
+    let (later, faster) = simulate_wheel_torques([0.05, 0.1, -0.02], q, v, 15.0);
     let (before, after) = (outputs_of_state(&q, &v), outputs_of_state(&later, &faster));
     assert!((before - after).norm() < 1e-7 * before.norm(), "{before} {after}");
     assert!((faster - v).norm() > 10.0);

@@ -17,11 +17,11 @@ fn ball_configuration(theta: f64) -> SVector<f64, 7> {
 fn ball_in_bowl_has_pendulum_period() -> Result<(), Error> {
     assert_eq!((BallInBowl::NC, BallInBowl::NS), (3, 3));
     for theta in [1.1_f64, 1e-3] {
-        let angular_speed = |v: &SVector<f64, 6>| v[4];
+        let swing_rate_about_y = |v: &SVector<f64, 6>| v[4];
         let end = simulate(&B)
             .from(ball_configuration(theta), [0.0; 6])
             .method(precise_integrator())
-            .until_crossing(Crossing::Rising, |_, _, v| -angular_speed(v))
+            .until_crossing(Crossing::Rising, |_, _, v| -swing_rate_about_y(v))
             .duration(10.0)
             .finish()?;
         let length = 1.4 * (B.bowl - B.radius);

@@ -23,7 +23,7 @@ const S: DelayedServo = DelayedServo {
 /// Speed of the rotor, and the states of the servo in the order of their declaration.
 type ServoState = SVector<f64, 5>;
 
-fn linear_servo_motion(v: &ServoState, target: f64) -> LinearMotion<f64, 5, 1> {
+fn linearised_servo_motion(v: &ServoState, target: f64) -> LinearMotion<f64, 5, 1> {
     at(&S.extended(), 0.0).linear_motion(&[0.0].into(), v, &[target].into())
 }
 
@@ -40,7 +40,7 @@ fn servo_system_matrix(linear: &LinearMotion<f64, 5, 1>) -> SMatrix<f64, 6, 6> {
 fn servo_has_the_expected_characteristic_polynomial() {
     let v = [0.3, 0.01, -0.1, 0.02, 0.04].into();
     assert_derivatives(&S.extended(), &[0.1].into(), &v, &[0.05].into(), 1e-6);
-    let a = servo_system_matrix(&linear_servo_motion(&v, 0.0)).map(|x| Complex::new(x, 0.0));
+    let a = servo_system_matrix(&linearised_servo_motion(&v, 0.0)).map(|x| Complex::new(x, 0.0));
     for s in [Complex::new(2.0, 0.0), Complex::new(-3.0, 8.0), Complex::new(0.0, 40.0)] {
         let delay = s * s * (0.05 * 0.05 / 12.0) + s * 0.025 + 1.0;
         let pid = (s * 1.5 + 2.0) * (s + 60.0) + s * s * (0.15 * 60.0);
@@ -53,7 +53,7 @@ fn servo_has_the_expected_characteristic_polynomial() {
 
 #[test]
 fn servo_delay_changes_only_the_phase() {
-    let a = servo_system_matrix(&linear_servo_motion(&ServoState::zeros(), 0.0));
+    let a = servo_system_matrix(&linearised_servo_motion(&ServoState::zeros(), 0.0));
     for omega in [1.0, 10.0, 40.0] {
         let s = Complex::new(0.0, omega);
         // Response of the rate of the filtered angle to the angle.
@@ -76,7 +76,7 @@ fn servo_integral_stops_at_the_limit() -> Result<(), Error> {
     let end = run.duration(6.0).finish()?;
     // The demand is kp e + integral, once the differential part has decayed.
     assert_close(1.5 * 3.0 + end.v[4], 0.8 + 2.0 * 3.0 / 5.0, 1e-6);
-    let a = linear_servo_motion(&end.v, 3.0);
+    let a = linearised_servo_motion(&end.v, 3.0);
     assert_close(a.acceleration[0], 0.8 / 0.02, 1e-12);
     // Under saturation the torque depends only on the speed, through friction.
     assert_near(a.by_v.row(0).into_owned(), SMatrix::from_row_slice(&[-0.5, 0.0, 0.0, 0.0, 0.0]), 1e-13);

@@ -24,7 +24,7 @@ fn point_on_circle(radius: f64, degrees: f64) -> Vector3<f64> {
 }
 
 /// Returns a pose of the platform without symmetry.
-fn platform_pose() -> Isometry3<f64> {
+fn asymmetric_platform_pose() -> Isometry3<f64> {
     Isometry3::from_parts(
         Vector3::new(0.1, -0.05, 0.9).into(),
         UnitQuaternion::from_euler_angles(0.15, -0.2, 0.3),
@@ -57,7 +57,7 @@ fn platform_configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatfo
 fn stewart_platform_legs_match_inverse_kinematics() {
     assert_eq!((StewartPlatform::NV, StewartPlatform::NC), (24, 18));
     assert_eq!((StewartPlatform::NP, StewartPlatform::NS, StewartPlatform::NU), (6, 6, 6));
-    let q = platform_configuration(&platform_pose());
+    let q = platform_configuration(&asymmetric_platform_pose());
     assert!(P.constraint_residuals(&q).amax() < 1e-15);
     // Assembly from a level platform with the pose fixed.
     let mut guess = platform_configuration(&Isometry3::translation(0.0, 0.0, 0.9));
@@ -73,7 +73,7 @@ fn stewart_platform_legs_match_inverse_kinematics() {
 /// the lengths, with respect to the platform's velocity in body axes.
 #[test]
 fn stewart_leg_forces_satisfy_virtual_work() {
-    let pose = platform_pose();
+    let pose = asymmetric_platform_pose();
     let (mut lengths, mut weight) = (Matrix6::zeros(), Vector6::zeros());
     weight[2] = P.platform_mass;
     for (k, (leg, (_, head))) in legs_as_vectors(&pose).into_iter().zip(LEGS).enumerate() {
@@ -101,7 +101,7 @@ fn stewart_leg_forces_satisfy_virtual_work() {
 
 #[test]
 fn stewart_platform_conserves_energy() -> Result<(), Error> {
-    let q = platform_configuration(&platform_pose());
+    let q = platform_configuration(&asymmetric_platform_pose());
     let mut v = SVector::<f64, { StewartPlatform::NV }>::zeros();
     v.fixed_rows_mut::<6>(0).copy_from_slice(&[0.3, -0.2, 0.5, 0.4, 0.6, -0.5]);
     let v = P.project_velocity(&q, &v).expect("regular");

@@ -53,7 +53,7 @@ struct PolynomialTerms(Vec<ErrorBoundedCoefficient>);
 
 impl PolynomialTerms {
     /// Sets coefficients that are rounding errors to zero, and removes zeros of the highest powers.
-    fn without_rounding_errors(mut self) -> Self {
+    fn without_negligible_coefficients(mut self) -> Self {
         for c in &mut self.0 {
             if c.value.value().abs() <= c.error {
                 c.value = DoubleDouble::default();
@@ -153,13 +153,19 @@ impl PolynomialTerms {
         let all: Vec<usize> = (0..self.0.len()).filter(is_nonzero).collect();
         let (first, last) = (all[0], all[all.len() - 1]);
         // Fujiwara's bound, and that of the polynomial with reversed coefficients.
-        let slope_between = |low: usize, high: usize| {
+        let logarithmic_slope_between = |low: usize, high: usize| {
             (logarithm_of_coefficient(low) - logarithm_of_coefficient(high)) / (high - low) as f64
         };
-        let high =
-            all.iter().filter(|k| **k < last).map(|k| slope_between(*k, last)).fold(f64::MIN, f64::max);
-        let low =
-            all.iter().filter(|k| **k > first).map(|k| slope_between(first, *k)).fold(f64::MAX, f64::min);
+        let high = all
+            .iter()
+            .filter(|k| **k < last)
+            .map(|k| logarithmic_slope_between(*k, last))
+            .fold(f64::MIN, f64::max);
+        let low = all
+            .iter()
+            .filter(|k| **k > first)
+            .map(|k| logarithmic_slope_between(first, *k))
+            .fold(f64::MAX, f64::min);
         let (low, high) = (0.4 * low.exp(), 2.5 * high.exp());
         // One change of sign is one root.
         let changes = signs.windows(2).filter(|pair| pair[0] * pair[1].signum() < 0.0).count();
@@ -231,7 +237,7 @@ impl EvenAndOddParts {
             .plus_polynomial(&self.odd.times_polynomial(&self.odd).times_x())
     }
 
-    fn add_even_and_odd_parts(&self, other: &Self) -> Self {
+    fn plus_even_and_odd_parts(&self, other: &Self) -> Self {
         Self { even: self.even.plus_polynomial(&other.even), odd: self.odd.plus_polynomial(&other.odd) }
     }
 }
@@ -337,7 +343,7 @@ impl LoopPolynomials {
         both: [Vec<ErrorBoundedCoefficient>; 2],
         period: Option<f64>,
     ) -> Result<Self, Error> {
-        let mut both = both.map(|all| PolynomialTerms(all).without_rounding_errors().0);
+        let mut both = both.map(|all| PolynomialTerms(all).without_negligible_coefficients().0);
         let common = both[0].iter().zip(&both[1]).take_while(|(n, d)| n.is_zero() && d.is_zero()).count();
         both.iter_mut().for_each(|all| drop(all.drain(..common.min(all.len()))));
         let logarithm_of_coefficient = |c: &ErrorBoundedCoefficient| c.value.value().abs().log2();
@@ -374,8 +380,9 @@ impl LoopPolynomials {
         self.period.map_or(self.unit * x.sqrt(), |h| 2.0 / h * x.sqrt().atan())
     }
 
-    /// Evaluates numerator and denominator of the loop at the frequency whose scaled square is `x`.
-    fn loop_numerator_and_denominator(&self, x: f64) -> LoopValue {
+    /// Evaluates numerator and denominator of the loop at the frequency whose scaled
+    /// square is `x`.
+    fn loop_value_at(&self, x: f64) -> LoopValue {
         let degree = self.coefficients.iter().map(|all| all.len() / 2).max().unwrap_or(0);
         let root = x.sqrt();
         let parts = [&self.numerator, &self.denominator].map(|p| {
@@ -383,13 +390,13 @@ impl LoopPolynomials {
         });
         let [[ne, no], [de, d_o]] = parts;
         let x = ErrorBoundedCoefficient::exact_coefficient(x);
-        let square = |[even, odd]: [ErrorBoundedCoefficient; 2]| {
+        let squared_magnitude_of_parts = |[even, odd]: [ErrorBoundedCoefficient; 2]| {
             even.product_with_error_bound(even)
                 .plus_coefficient(odd.product_with_error_bound(odd).product_with_error_bound(x))
                 .value
                 .value()
         };
-        let squares = parts.map(square);
+        let squares = parts.map(squared_magnitude_of_parts);
         let is_certain_value = |k: usize| {
             let [even, odd] = parts[k];
             even.error + root * odd.error <= CERTAIN * squares[k].sqrt()
@@ -415,7 +422,7 @@ impl LoopPolynomials {
         n.odd
             .times_polynomial(&d.even)
             .subtract_polynomial(&n.even.times_polynomial(&d.odd))
-            .without_rounding_errors()
+            .without_negligible_coefficients()
     }
 
     /// Returns the difference of the squared magnitudes of numerator `N` and denominator `D`. Its roots are
@@ -424,20 +431,20 @@ impl LoopPolynomials {
         self.numerator
             .squared_magnitude()
             .subtract_polynomial(&self.denominator.squared_magnitude())
-            .without_rounding_errors()
+            .without_negligible_coefficients()
     }
 
     /// Returns the derivative of the loop's squared distance from −1 with respect to `ω²`, times the fourth
     /// power of `|D|`.
     fn distance_slope_terms(&self) -> PolynomialTerms {
         let (p, r) = (
-            self.numerator.add_even_and_odd_parts(&self.denominator).squared_magnitude(),
+            self.numerator.plus_even_and_odd_parts(&self.denominator).squared_magnitude(),
             self.denominator.squared_magnitude(),
         );
         p.derivative_of_polynomial()
             .times_polynomial(&r)
             .subtract_polynomial(&p.times_polynomial(&r.derivative_of_polynomial()))
-            .without_rounding_errors()
+            .without_negligible_coefficients()
     }
 
     /// Returns the value of the loop at zero frequency, or at infinite `s` or `w`.
@@ -460,7 +467,7 @@ impl LoopPolynomials {
         };
         let between =
             self.imaginary_part_terms().roots_with_certain_sign_change().into_iter().filter_map(|x| {
-                let at = self.loop_numerator_and_denominator(x);
+                let at = self.loop_value_at(x);
                 let is_negative = at.product.re < 0.0 && at.certain == [true; 2];
                 is_negative.then(|| GainMargin {
                     factor: -at.squares[1] / at.product.re,
@@ -472,7 +479,7 @@ impl LoopPolynomials {
             .and_then(|h| gain_margin_at_limit_frequency(self.value_at_zero_or_infinity(false), PI / h));
         let phase = self.magnitude_difference_terms().roots_with_certain_sign_change().into_iter().map(|x| {
             PhaseMargin {
-                degrees: (-self.loop_numerator_and_denominator(x).product).arg().to_degrees(),
+                degrees: (-self.loop_value_at(x).product).arg().to_degrees(),
                 frequency: self.frequency_of_square(x),
             }
         });
@@ -496,7 +503,7 @@ impl LoopPolynomials {
             (distance_at_limit(self.value_at_zero_or_infinity(true)), 0.0),
         ];
         let inner = self.distance_slope_terms().positive_roots().into_iter().filter_map(|x| {
-            let LoopValue { product, squares, certain } = self.loop_numerator_and_denominator(x);
+            let LoopValue { product, squares, certain } = self.loop_value_at(x);
             let value = product / squares[1];
             certain[1].then(|| ((1.0 + value).norm(), self.frequency_of_square(x)))
         });

@@ -32,7 +32,7 @@ use linkwork::{Derivatives, LinearMotion, Mechanism, OutputDerivatives, OutputJa
 use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// Converts a statically sized matrix to a dynamically sized one.
-fn dynamic_matrix<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
+fn dynamically_sized_matrix<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
     DMatrix::from_fn(R, C, |i, j| m[(i, j)])
 }
 
@@ -178,11 +178,11 @@ fn state_space_of_linear_motion<const NV: usize, const NU: usize>(
 ) -> Result<StateSpace, Error> {
     let identity = DMatrix::identity(NV, NV);
     let a = block_matrix([
-        [&dynamic_matrix(&motion.turning), &identity],
-        [&dynamic_matrix(&motion.by_q), &dynamic_matrix(&motion.by_v)],
+        [&dynamically_sized_matrix(&motion.turning), &identity],
+        [&dynamically_sized_matrix(&motion.by_q), &dynamically_sized_matrix(&motion.by_v)],
     ]);
     let mut b = DMatrix::zeros(2 * NV, NU);
-    b.view_mut((NV, 0), (NV, NU)).copy_from(&dynamic_matrix(&motion.by_u));
+    b.view_mut((NV, 0), (NV, NU)).copy_from(&dynamically_sized_matrix(&motion.by_u));
     let kept = state_indices(NV, first_order);
     let (a, b, n) = (a.select_rows(&kept).select_columns(&kept), b.select_rows(&kept), kept.len());
     StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, NU))
@@ -246,9 +246,9 @@ fn output_matrices<const NY: usize, const NV: usize, const NU: usize>(
     seen: &OutputJacobians<f64, NY, NV, NU>,
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut c = DMatrix::zeros(NY, 2 * NV);
-    c.view_mut((0, 0), (NY, NV)).copy_from(&dynamic_matrix(&seen.by_q));
-    c.view_mut((0, NV), (NY, NV)).copy_from(&dynamic_matrix(&seen.by_v));
-    (c, dynamic_matrix(&seen.by_u))
+    c.view_mut((0, 0), (NY, NV)).copy_from(&dynamically_sized_matrix(&seen.by_q));
+    c.view_mut((0, NV), (NY, NV)).copy_from(&dynamically_sized_matrix(&seen.by_v));
+    (c, dynamically_sized_matrix(&seen.by_u))
 }
 
 /// Converts the result of `linearize` of a mechanism with constraints to a system in independent coordinates
@@ -294,7 +294,7 @@ pub fn constrained_system<
 where
     M: linkwork::Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let (a, b) = (dynamic_matrix(&linear.a), dynamic_matrix(&linear.b));
+    let (a, b) = (dynamically_sized_matrix(&linear.a), dynamically_sized_matrix(&linear.b));
     let system = StateSpace::new(a, b, DMatrix::identity(NX, NX), DMatrix::zeros(NX, NU))?;
     let states =
         signals_of_states::<M, NQ, NV, NU>(linear.coordinates.iter().copied(), linear.speeds.iter().copied());
@@ -313,7 +313,7 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     if !M::FEEDBACK || M::CONSTRAINED {
-        return dynamic_matrix(&Mechanism::mass_matrix(m, t, q));
+        return dynamically_sized_matrix(&Mechanism::mass_matrix(m, t, q));
     }
     let at_rest = Mechanism::inverse_dynamics(m, t, q, v, &SVector::zeros());
     let mut mass = DMatrix::zeros(NV, NV);
@@ -352,12 +352,12 @@ where
     }
     let motion = m.linear_motion(q, v, u);
     let mass = effective_mass_at_state(m, 0.0, q, v);
-    let (by_q, by_v) = (dynamic_matrix(&motion.by_q), dynamic_matrix(&motion.by_v));
-    let turning = dynamic_matrix(&motion.turning);
+    let (by_q, by_v) = (dynamically_sized_matrix(&motion.by_q), dynamically_sized_matrix(&motion.by_v));
+    let turning = dynamically_sized_matrix(&motion.turning);
     // δv = δq̇ − T δq; hence δv̇ = δq̈ − T δq̇ about a steady motion.
     let velocity = -(&mass * (&by_v + &turning));
     let position = -(&mass * (&by_q - &by_v * &turning));
-    let input = &mass * dynamic_matrix(&motion.by_u);
+    let input = &mass * dynamically_sized_matrix(&motion.by_u);
     let form = SecondOrderForm::new(mass, velocity, position, input)?;
     form.with_names(displacement_signals::<M, NQ, NV, NU>(0..NV), input_signals::<M, NQ, NV, NU>())
 }

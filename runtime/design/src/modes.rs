@@ -94,7 +94,7 @@ impl Mode {
     }
 
     /// Returns the index of a state by name; zero for an unknown name.
-    pub(crate) fn index_of_state_name(&self, state: &str) -> usize {
+    pub(crate) fn state_index_or_zero(&self, state: &str) -> usize {
         self.states.iter().position(|s| s.name == state).unwrap_or(0)
     }
 

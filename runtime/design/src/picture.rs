@@ -71,7 +71,7 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     sizes.sort_by(f64::total_cmp);
     let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0).max(1.0);
     let reach = (-10.0 * typical, 10.0 * typical);
-    let smooth = smooth_curve(&response.values);
+    let smooth = spline_through_values(&response.values);
     let nyquist_points = |sign: f64| smooth.iter().map(|x| (x.re, sign * x.im)).collect();
     let panel = Panel {
         title: format!("Nyquist diagram, {}", frequency_response_title(response)),
@@ -93,7 +93,7 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
 /// Interpolates values by a smooth curve with eight segments per interval. The curve is a centripetal
 /// Catmull–Rom spline: its knots are spaced by the square roots of the chords, which avoids sharp bends for
 /// unevenly spaced points (Barry and Goldman, *SIGGRAPH*, 1988).
-fn smooth_curve(values: &[C]) -> Vec<C> {
+fn spline_through_values(values: &[C]) -> Vec<C> {
     const PARTS: u32 = 8;
     let mut all = Vec::with_capacity(values.len() * PARTS as usize);
     for (k, pair) in values.windows(2).enumerate() {
@@ -135,7 +135,7 @@ fn smooth_curve(values: &[C]) -> Vec<C> {
 
 /// Returns the points of the stability boundary in the complex plane: the imaginary axis, or the unit circle
 /// for a discrete system.
-fn stability_boundary(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
+fn stability_boundary_outline(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
     match period {
         Some(_) => (0..=180).map(|k| (TAU * f64::from(k) / 180.0).sin_cos()).collect(),
         None => vec![(0.0, -reach), (0.0, reach)],
@@ -148,7 +148,7 @@ fn marks_of_roots(mark: Mark, roots: &[C]) -> impl Iterator<Item = (Mark, f64, f
     roots.iter().map(move |x| (mark, x.re, x.im))
 }
 
-fn largest_reach(roots: &[C]) -> f64 {
+fn reach_around_roots(roots: &[C]) -> f64 {
     1.3 * roots.iter().map(|x| x.norm()).fold(0.0, f64::max).max(1e-3)
 }
 
@@ -172,7 +172,7 @@ pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
     let (poles, zeros) = (system.poles()?, system.zeros()?);
     let all = [poles.clone(), zeros.clone()].concat();
     let panel = Panel {
-        lines: vec![stability_boundary(system.period(), largest_reach(&all))],
+        lines: vec![stability_boundary_outline(system.period(), reach_around_roots(&all))],
         marks: marks_of_roots(Mark::Cross, &poles).chain(marks_of_roots(Mark::Circle, &zeros)).collect(),
         mark_names: MARKS.into(),
         ..complex_plane_panel("Poles and zeros", system.period())
@@ -187,14 +187,14 @@ pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
 /// [`Error::Picture`] for an empty locus or values that are not finite.
 pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
     let all = [locus.poles.clone(), locus.zeros.clone()].concat();
-    let far = 2.0 * largest_reach(&all);
+    let far = 2.0 * reach_around_roots(&all);
     let curve_of_branch = |branch: &Vec<C>| Curve {
         name: String::new(),
         points: branch.iter().take_while(|x| x.norm() <= far).map(|x| (x.re, x.im)).collect(),
     };
     let panel = Panel {
         curves: locus.branches.iter().map(curve_of_branch).collect(),
-        lines: vec![stability_boundary(locus.period, largest_reach(&all))],
+        lines: vec![stability_boundary_outline(locus.period, reach_around_roots(&all))],
         marks: marks_of_roots(Mark::Cross, &locus.poles)
             .chain(marks_of_roots(Mark::Circle, &locus.zeros))
             .collect(),

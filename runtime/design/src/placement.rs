@@ -49,7 +49,7 @@ fn pseudorandom_matrix(rows: usize, columns: usize, attempt: usize) -> DMatrix<f
 
 /// Returns the largest distance between a required pole and its nearest computed pole, as a fraction of the
 /// tolerance. The tolerance grows with the multiplicity of the pole.
-fn largest_pole_distance(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
+fn pole_error_over_tolerance(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
     let size = wanted.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
     let mut worst: f64 = 0.0;
     for pole in wanted {
@@ -122,7 +122,7 @@ impl StateSpace {
             let transposed = pseudorandom_matrix(m, n, ATTEMPTS + attempt).transpose();
             let Ok(gain) = solve_linear_system(what, &x.transpose(), &transposed) else { continue };
             let gain = away + gain.transpose();
-            let found = largest_pole_distance(poles, eigenvalues(&(&self.a - &self.b * &gain))?);
+            let found = pole_error_over_tolerance(poles, eigenvalues(&(&self.a - &self.b * &gain))?);
             let singular = x.singular_values();
             let measure = singular.max() / singular.min();
             if found <= 1.0 && best.as_ref().is_none_or(|(least, _)| measure < *least) {

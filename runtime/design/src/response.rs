@@ -143,7 +143,7 @@ impl StateSpace {
         if !state.iter().all(|x| x.is_finite()) {
             return Err(Error::NotFinite { what: "the initial state" });
         }
-        let step = check_times(times, self.period)?;
+        let step = checked_time_spacing(times, self.period)?;
         // x⁺ = A x + B₀ u + B₁ u⁺.
         let (a, b, next) = match (self.period, hold) {
             (Some(_), _) => (self.a.clone(), self.b.clone(), None),
@@ -188,7 +188,7 @@ impl StateSpace {
 
 /// Returns the spacing of the instants, s, or an error if they are not equally spaced or do not begin at
 /// zero.
-fn check_times(times: &[f64], period: Option<f64>) -> Result<f64, Error> {
+fn checked_time_spacing(times: &[f64], period: Option<f64>) -> Result<f64, Error> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else {
         return Ok(period.unwrap_or(1.0));
     };

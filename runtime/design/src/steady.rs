@@ -47,12 +47,12 @@ mod stiffness;
 pub use stiffness::{Stiffness, Verdict};
 
 /// Function that builds a mechanism from the values of its unknown parameters.
-type MechanismFamily<'m, M> = dyn Fn(&[f64]) -> M + 'm;
+type MechanismBuilder<'m, M> = dyn Fn(&[f64]) -> M + 'm;
 
 /// Mechanism of a trim: either fixed, or built for each set of parameters.
-enum TrimMechanism<'m, M> {
+enum MechanismSource<'m, M> {
     Given(&'m M),
-    Family(Box<MechanismFamily<'m, M>>),
+    Family(Box<MechanismBuilder<'m, M>>),
 }
 
 /// Function that evaluates the constraints of a mechanism at a time, a configuration and a velocity.
@@ -76,7 +76,7 @@ type OutputFunction<M, const NQ: usize, const NV: usize, const NU: usize> = fn(
 ) -> OutputSensitivities;
 
 /// Scalar function of mechanism, configuration, velocity and inputs, whose value a steady state prescribes.
-type ConditionQuantity<'m, M, const NQ: usize, const NV: usize, const NU: usize> =
+type ConditionFunction<'m, M, const NQ: usize, const NV: usize, const NU: usize> =
     Box<dyn Fn(&M, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>) -> f64 + 'm>;
 
 /// Unknowns and conditions of a steady state.
@@ -86,7 +86,7 @@ type ConditionQuantity<'m, M, const NQ: usize, const NV: usize, const NU: usize>
 /// mechanism, are unknown unless they are [fixed](Trim::fix), and their rates are zero. Constraints are
 /// always conditions.
 pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
-    source: TrimMechanism<'m, M>,
+    source: MechanismSource<'m, M>,
     t: f64,
     q: SVector<f64, NQ>,
     v: SVector<f64, NV>,
@@ -101,7 +101,7 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     accelerations: Vec<(String, Option<f64>)>,
     conditions: Vec<(String, f64)>,
     /// Conditions on quantities that are not outputs: name, required value and function.
-    quantities: Vec<(String, f64, ConditionQuantity<'m, M, NQ, NV, NU>)>,
+    quantities: Vec<(String, f64, ConditionFunction<'m, M, NQ, NV, NU>)>,
     constraints: Option<(ConstraintFunction<M, NQ, NV>, MultiplierFunction<M, NQ, NV>)>,
     outputs: Option<OutputFunction<M, NQ, NV, NU>>,
     nearest: bool,
@@ -205,7 +205,7 @@ where
 {
     fn new(m: &'m M) -> Self {
         Self {
-            source: TrimMechanism::Given(m),
+            source: MechanismSource::Given(m),
             t: 0.0,
             q: m.neutral(),
             v: SVector::zeros(),
@@ -420,7 +420,7 @@ where
         family: impl Fn(&[f64]) -> M + 'm,
     ) -> Self {
         self.parameters = guesses.into_iter().map(|(name, guess)| (name.into(), guess)).collect();
-        self.source = TrimMechanism::Family(Box::new(family));
+        self.source = MechanismSource::Family(Box::new(family));
         self
     }
 
@@ -489,8 +489,8 @@ where
 
     fn call_with_mechanism<R>(&self, parameters: &[f64], f: impl FnOnce(&M) -> R) -> R {
         match &self.source {
-            TrimMechanism::Given(m) => f(m),
-            TrimMechanism::Family(family) => f(&family(parameters)),
+            MechanismSource::Given(m) => f(m),
+            MechanismSource::Family(family) => f(&family(parameters)),
         }
     }
 }

@@ -39,7 +39,7 @@ pub struct KalmanRanks {
 }
 
 impl StateSpace {
-    fn balanced_system(&self) -> (Self, Vec<f64>) {
+    fn diagonally_balanced_system(&self) -> (Self, Vec<f64>) {
         let (a, b, c, d) = balance_system(&self.a, &self.b, &self.c);
         (Self { a, b, c, ..self.clone() }, d)
     }
@@ -69,7 +69,7 @@ impl StateSpace {
         if !(0.0..1.0).contains(&tolerance) {
             return Err(Error::Range { what: "a tolerance", value: tolerance });
         }
-        let (scaled, scales) = self.balanced_system();
+        let (scaled, scales) = self.diagonally_balanced_system();
         let n = self.order();
         let relative = if tolerance > 0.0 { tolerance } else { ROUNDING.max(10.0 * f64::EPSILON * n as f64) };
         let (size_a, size_b) = (scaled.a.norm(), scaled.b.norm());
@@ -144,7 +144,7 @@ impl StateSpace {
     /// [`Error::Unstable`] with an unstable pole.
     pub fn controllability_gramian(&self) -> Result<DMatrix<f64>, Error> {
         self.check_stable()?;
-        let (scaled, d) = self.balanced_system();
+        let (scaled, d) = self.diagonally_balanced_system();
         let q = &scaled.b * scaled.b.transpose();
         let w = match self.period {
             Some(_) => discrete_lyapunov(&scaled.a, &q)?,
@@ -194,7 +194,7 @@ impl StateSpace {
     ///
     /// [`Error::NotConverged`].
     pub fn mode_controllability(&self) -> Result<Vec<(C, f64)>, Error> {
-        let (scaled, _) = self.balanced_system();
+        let (scaled, _) = self.diagonally_balanced_system();
         let (n, m) = scaled.b.shape();
         let size = scaled.a.norm().max(f64::MIN_POSITIVE);
         let distance_to_uncontrollability = |pole: C| {

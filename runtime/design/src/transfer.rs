@@ -172,8 +172,8 @@ impl TransferFunction {
         let mut all = self.factored()?;
         let mut kept = Vec::new();
         for zero in all.zeros {
-            let is_near_zero = |p: &C| (p - zero).norm() <= tolerance * (1.0 + zero.norm());
-            match all.poles.iter().position(is_near_zero) {
+            let cancels_zero = |p: &C| (p - zero).norm() <= tolerance * (1.0 + zero.norm());
+            match all.poles.iter().position(cancels_zero) {
                 Some(k) => drop(all.poles.remove(k)),
                 None => kept.push(zero),
             }

@@ -46,7 +46,7 @@ fn gain_system(k: f64) -> StateSpace {
     StateSpace::gain(dmatrix![k]).unwrap()
 }
 
-fn real_number(x: f64) -> Complex<f64> {
+fn complex_from_real(x: f64) -> Complex<f64> {
     Complex::new(x, 0.0)
 }
 
@@ -158,7 +158,7 @@ fn unstable_systems_name_the_pole() {
         "s I − A, at a pole, is singular",
         integrator_system().frequency_response(0, 0, &[1.0, 0.0]),
     );
-    assert_error_message("s I − A, at a pole, is singular", stable_system().at(real_number(-1.0)));
+    assert_error_message("s I − A, at a pole, is singular", stable_system().at(complex_from_real(-1.0)));
     let direct = stable_system().parallel(&gain_system(1.0)).unwrap();
     assert_error_message("the H₂ norm, with direct feedthrough, is infinite", direct.h2_norm());
     let cancel = "the equation, whose eigenvalues cancel, is singular";
@@ -214,7 +214,7 @@ fn impossible_regulators_name_the_mode() {
     assert_error_message("no input controls the mode 2+0i", stuck.lqr(&diagonal_cost(&[1.0, 1.0], 1.0)));
     assert_error_message(
         "no input controls the mode 2+0i",
-        stuck.place(&[real_number(-1.0), real_number(-3.0)]),
+        stuck.place(&[complex_from_real(-1.0), complex_from_real(-3.0)]),
     );
     let error = stuck.lqr_held(&diagonal_cost(&[1.0, 1.0], 1.0), 0.1).unwrap_err();
     let Error::Unstabilizable { mode } = error else { panic!("{error}") };
@@ -244,11 +244,11 @@ fn impossible_regulators_name_the_mode() {
         "the outputs' noise is not symmetric and positive",
         unstable_system().kalman(&noise_with_variance(-1.0)),
     );
-    assert_error_message("expected 2 poles, found 1", double.place(&[real_number(-1.0)]));
+    assert_error_message("expected 2 poles, found 1", double.place(&[complex_from_real(-1.0)]));
     let unpaired = "the pole -1+1i is not finite, or lacks its conjugate";
     assert_error_message(unpaired, double.place(&[Complex::new(-1.0, 1.0), Complex::new(-1.0, 1.0)]));
     let infinite = "the pole NaN+0i is not finite, or lacks its conjugate";
-    assert_error_message(infinite, double.place(&[real_number(f64::NAN), real_number(-1.0)]));
+    assert_error_message(infinite, double.place(&[complex_from_real(f64::NAN), complex_from_real(-1.0)]));
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn repeated_poles_have_exact_results() {
     assert!(modes.iter().any(linkwork_design::Mode::is_defective), "{modes:?}");
     assert!(modes.iter().all(|mode| (mode.exponent + 1.0).norm() < 1e-4), "{modes:?}");
     let double = double_integrator();
-    let gain = double.place(&[real_number(-1.0), real_number(-1.0)]).unwrap();
+    let gain = double.place(&[complex_from_real(-1.0), complex_from_real(-1.0)]).unwrap();
     assert!((gain - dmatrix![1.0, 2.0]).amax() < 1e-12);
 }
 
@@ -402,78 +402,69 @@ fn linearisation_off_steady_state_is_an_error() {
 fn wrongly_posed_trims_are_errors() {
     let whole = Pendulum { lag: 0.2, torque: 0.0 };
     let whole = whole.extended();
-    let unsolved_equilibrium_problem = || equilibrium(&whole);
+    let equilibrium_problem = || equilibrium(&whole);
     let unknown_name_message =
         |kind: &str| format!("no {kind} `hing`, perhaps `hinge`; there are hinge, torque");
     assert_error_message(
         &unknown_name_message("coordinate"),
-        unsolved_equilibrium_problem().coordinates(["hing"]).find(),
+        equilibrium_problem().coordinates(["hing"]).find(),
     );
+    assert_error_message(&unknown_name_message("coordinate"), equilibrium_problem().fix(["hing"]).find());
+    assert_error_message(&unknown_name_message("coordinate"), equilibrium_problem().hold(["hing"]).find());
+    assert_error_message(&unknown_name_message("speed"), equilibrium_problem().speeds(["hing"]).find());
     assert_error_message(
-        &unknown_name_message("coordinate"),
-        unsolved_equilibrium_problem().fix(["hing"]).find(),
-    );
-    assert_error_message(
-        &unknown_name_message("coordinate"),
-        unsolved_equilibrium_problem().hold(["hing"]).find(),
-    );
-    assert_error_message(
-        &unknown_name_message("speed"),
-        unsolved_equilibrium_problem().speeds(["hing"]).find(),
+        &unknown_name_message("velocity"),
+        equilibrium_problem().accelerating(["hing"]).find(),
     );
     assert_error_message(
         &unknown_name_message("velocity"),
-        unsolved_equilibrium_problem().accelerating(["hing"]).find(),
-    );
-    assert_error_message(
-        &unknown_name_message("velocity"),
-        unsolved_equilibrium_problem().acceleration("hing", 1.0).find(),
+        equilibrium_problem().acceleration("hing", 1.0).find(),
     );
     assert_error_message(
         "no input `comand`, perhaps `command`; there are command",
-        unsolved_equilibrium_problem().inputs(["comand"]).find(),
+        equilibrium_problem().inputs(["comand"]).find(),
     );
-    let output_at_rest = || unsolved_equilibrium_problem().inputs(["command"]).output("angle", 0.2);
-    let angel = unsolved_equilibrium_problem().inputs(["command"]).output("angel", 0.2);
+    let problem_with_output_condition = || equilibrium_problem().inputs(["command"]).output("angle", 0.2);
+    let angel = equilibrium_problem().inputs(["command"]).output("angel", 0.2);
     assert_error_message("no output `angel`, perhaps `angle`; there are angle", angel.find());
     assert_error_message(
         "the coordinate `hinge` is requested twice",
-        unsolved_equilibrium_problem().coordinates(["hinge", "hinge"]).find(),
+        equilibrium_problem().coordinates(["hinge", "hinge"]).find(),
     );
     assert_error_message(
         "the coordinate `hinge` is requested twice",
-        unsolved_equilibrium_problem().hold(["hinge"]).hold(["hinge"]).find(),
+        equilibrium_problem().hold(["hinge"]).hold(["hinge"]).find(),
     );
     assert_error_message(
         "the input `command` is requested twice",
-        output_at_rest().inputs(["command"]).find(),
+        problem_with_output_condition().inputs(["command"]).find(),
     );
     assert_error_message(
         "the output `angle` is requested twice",
-        output_at_rest().output("angle", 0.3).find(),
+        problem_with_output_condition().output("angle", 0.3).find(),
     );
     assert_error_message(
         "the velocity `hinge` is requested twice",
-        unsolved_equilibrium_problem().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
+        equilibrium_problem().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
     );
     // Too many unknowns.
     assert_error_message(
         "the conditions do not determine hinge, torque', command at hinge 0.000000, torque' 0.000000, \
          command 0.000000: fix or prescribe one of them, add a condition, or take the nearest",
-        unsolved_equilibrium_problem().inputs(["command"]).find(),
+        equilibrium_problem().inputs(["command"]).find(),
     );
     // Too few unknowns, and equal numbers of unknowns and conditions without a solution.
     for (trim, start) in [
         (
-            unsolved_equilibrium_problem().output("angle", 0.2),
+            equilibrium_problem().output("angle", 0.2),
             "no steady state near the guess: 2 unknowns for 3 conditions, and `hinge''` is left at ",
         ),
         (
-            unsolved_equilibrium_problem().fix(["hinge"]).from([0.5].into()),
+            equilibrium_problem().fix(["hinge"]).from([0.5].into()),
             "no steady state near the guess: one unknown for 2 conditions, and `torque'` is left at ",
         ),
         (
-            unsolved_equilibrium_problem().with_inputs([100.0].into()),
+            equilibrium_problem().with_inputs([100.0].into()),
             "no steady state near the guess: 2 unknowns for 2 conditions, and `torque'` is left at ",
         ),
     ] {

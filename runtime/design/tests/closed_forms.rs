@@ -341,7 +341,7 @@ fn oscillation_deviation(zeta: f64, t: f64) -> f64 {
 
 /// Returns the first time at which the step response of an oscillator reaches a level, by bisection before
 /// the first peak.
-fn first_rise_time(zeta: f64, level: f64) -> f64 {
+fn first_time_at_level(zeta: f64, level: f64) -> f64 {
     let (mut low, mut high) = (0.0, PI / (1.0 - zeta * zeta).sqrt());
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
@@ -367,7 +367,7 @@ fn second_order_step_responses_match_closed_forms() {
         assert_relatively_close(
             "rise time",
             figures.rise_time * omega,
-            first_rise_time(zeta, 0.9) - first_rise_time(zeta, 0.1),
+            first_time_at_level(zeta, 0.9) - first_time_at_level(zeta, 0.1),
             1e-8,
         );
         // The last extremum outside the band is at half period k; the response enters the band before the

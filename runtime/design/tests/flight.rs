@@ -80,13 +80,13 @@ struct Wing {
 fn glide_and_level_flight_match_closed_form() {
     let wing = Wing { mass: 300.0, lift_area: 9.0, drag_area: 0.45 };
     let weight = 300.0 * 9.81;
-    let equilibrium_of_wing = || equilibrium(&wing).moving([30.0, 1.0].into()).fix(["place.x", "place.y"]);
-    let glide = equilibrium_of_wing().speeds(["place.x", "place.y"]).find().unwrap();
+    let trim_problem_of_wing = || equilibrium(&wing).moving([30.0, 1.0].into()).fix(["place.x", "place.y"]);
+    let glide = trim_problem_of_wing().speeds(["place.x", "place.y"]).find().unwrap();
     assert_relatively_close(glide.v[1].atan2(glide.v[0]), (0.45_f64 / 9.0).atan(), 1e-12);
     assert_relatively_close(0.6 * glide.v.norm_squared() * 9.0_f64.hypot(0.45), weight, 1e-12);
 
     let trim_with_sink_rate = |w: f64| {
-        let trim = equilibrium_of_wing().speeds(["place.x", "place.y"]).inputs(["thrust"]);
+        let trim = trim_problem_of_wing().speeds(["place.x", "place.y"]).inputs(["thrust"]);
         trim.condition("sink", w, |_, _, v, _| v[1]).find().unwrap()
     };
     let level = trim_with_sink_rate(0.0);
@@ -102,10 +102,12 @@ fn glide_and_level_flight_match_closed_form() {
     }
 
     // A condition that cannot hold is reported by its name, and so is one that is given twice.
-    let never =
-        equilibrium_of_wing().speeds(["place.x", "place.y"]).condition("sink", 0.0, |_, _, v, _| v[1]).find();
+    let never = trim_problem_of_wing()
+        .speeds(["place.x", "place.y"])
+        .condition("sink", 0.0, |_, _, v, _| v[1])
+        .find();
     assert!(matches!(never, Err(Error::NoSteadyState { .. })), "{never:?}");
-    let twice = equilibrium_of_wing().condition("sink", 0.0, |_, _, v, _| v[1]).condition(
+    let twice = trim_problem_of_wing().condition("sink", 0.0, |_, _, v, _| v[1]).condition(
         "sink",
         1.0,
         |_, _, v, _| v[1],

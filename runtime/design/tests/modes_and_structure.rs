@@ -50,9 +50,9 @@ fn compensator_places_the_poles_of_regulator_and_estimator() {
     let (gain, estimator) = (dmatrix![5.0, 2.0], dmatrix![4.0; 7.0]);
     let compensator = plant.compensator(&gain, &estimator).unwrap();
     let found = plant.feedback(&compensator).unwrap().poles().unwrap();
-    let separate = |a: DMatrix<f64>| linkwork_design::matrices::eigenvalues(&a).unwrap();
-    let mut expected = separate(plant.a() - plant.b() * &gain);
-    expected.extend(separate(plant.a() - &estimator * plant.c()));
+    let eigenvalues_of_matrix = |a: DMatrix<f64>| linkwork_design::matrices::eigenvalues(&a).unwrap();
+    let mut expected = eigenvalues_of_matrix(plant.a() - plant.b() * &gain);
+    expected.extend(eigenvalues_of_matrix(plant.a() - &estimator * plant.c()));
     assert_eq!(found.len(), expected.len());
     for pole in expected {
         assert!(found.iter().any(|other| (other - pole).norm() < 1e-9), "{pole} among {found:?}");

@@ -23,7 +23,7 @@ const FACTORS: &str = "factors";
 pub struct VectorJacobian {
     shared: Arc<Shared>,
     name: String,
-    kind: Product,
+    kind: VectorJacobianMethod,
     /// Number of entries of each argument of the function.
     arguments: Vec<usize>,
     factors: usize,
@@ -32,7 +32,7 @@ pub struct VectorJacobian {
 
 /// Method by which a vector–Jacobian product is computed: a reversed program, or a function of the
 /// configuration space.
-enum Product {
+enum VectorJacobianMethod {
     ReverseModeProgram(Box<Routine>),
     Integrate,
     Difference,
@@ -78,14 +78,14 @@ impl Function {
                 });
                 let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
                 let reversed = reverse_program(program, symbols).ok_or_else(missing_adjoint_error)?;
-                Product::ReverseModeProgram(Box::new(
+                VectorJacobianMethod::ReverseModeProgram(Box::new(
                     Routine::new(reversed, &all, inputs).ok_or_else(missing_adjoint_error)?,
                 ))
             }
             (None, _) if self.shared_mechanism().has_speeds => return Err(missing_adjoint_error()),
-            (None, "integrate") => Product::Integrate,
-            (None, "difference") => Product::Difference,
-            (None, "tangent_rate") => Product::TangentRate,
+            (None, "integrate") => VectorJacobianMethod::Integrate,
+            (None, "difference") => VectorJacobianMethod::Difference,
+            (None, "tangent_rate") => VectorJacobianMethod::TangentRate,
             _ => return Err(missing_adjoint_error()),
         };
         Ok(VectorJacobian {
@@ -150,7 +150,7 @@ impl VectorJacobian {
         robot.check_length("derivatives", self.length(), out.len())?;
         let charts = &self.shared.charts;
         match &self.kind {
-            Product::ReverseModeProgram(routine) => {
+            VectorJacobianMethod::ReverseModeProgram(routine) => {
                 let arguments: Vec<&[f64]> = arguments.iter().copied().chain([factors]).collect();
                 let (parameters, tables) = (robot.parameter_values(), robot.interpolation_tables());
                 let values = Values { parameters, arguments: &arguments, tables, interpreted: false };
@@ -162,8 +162,10 @@ impl VectorJacobian {
                 let second = &mut rest[..self.arguments[1]];
                 let [a, b] = [arguments[0], arguments[1]];
                 match self.kind {
-                    Product::Integrate => adjoint_steps::integrate(charts, a, b, factors, first, second),
-                    Product::Difference => {
+                    VectorJacobianMethod::Integrate => {
+                        adjoint_steps::integrate(charts, a, b, factors, first, second)
+                    }
+                    VectorJacobianMethod::Difference => {
                         adjoint_steps::difference(charts, [a, b], factors, [first, second])
                     }
                     _ => adjoint_steps::tangent_rate(charts, [a, b], factors, [first, second]),

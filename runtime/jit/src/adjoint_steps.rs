@@ -234,7 +234,7 @@ pub(crate) fn integrate(
     by_dv: &mut [f64],
 ) {
     let mut end = vec![0.0; q.len()];
-    crate::space::integrate(charts, q, dv, &mut end);
+    crate::configuration_space::integrate(charts, q, dv, &mut end);
     // Factors of displacements of the result.
     let mut tangent = vec![0.0; dv.len()];
     for chart in charts {
@@ -287,7 +287,7 @@ pub(crate) fn difference(
 ) {
     let n = factors.len();
     let mut dv = vec![0.0; n];
-    crate::space::difference(charts, from, to, &mut dv);
+    crate::configuration_space::difference(charts, from, to, &mut dv);
     // The rate of `dv` is the inverse of the derivative of `integrate` by `dv`, times the velocity.
     let [_, inverse] = tangent_rate_derivatives(charts, &dv, &vec![0.0; n]);
     let [by_q, _] = integrate_derivatives(charts, &dv);

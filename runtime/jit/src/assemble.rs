@@ -246,7 +246,12 @@ impl<const N: usize> Padded<N, N, N, &Robot> {
             integrate: move |q: &SVector<f64, N>, dv: &SVector<f64, N>| {
                 let mut moved = *q;
                 let charts = &robot.shared.charts;
-                crate::space::integrate(charts, q.as_slice(), dv.as_slice(), moved.as_mut_slice());
+                crate::configuration_space::integrate(
+                    charts,
+                    q.as_slice(),
+                    dv.as_slice(),
+                    moved.as_mut_slice(),
+                );
                 moved
             },
         }

@@ -140,7 +140,7 @@ impl Code {
         results: &mut [f64],
         more: &mut [f64],
     ) {
-        let fits = self.call_if(parameters, arguments, |_, _| true, tables, results, more);
+        let fits = self.call_if_arguments_satisfy(parameters, arguments, |_, _| true, tables, results, more);
         assert!(fits, "lengths of arguments and results");
     }
 
@@ -157,13 +157,13 @@ impl Code {
     ) -> bool {
         let has_length = |k: usize, list: &[f64]| lengths.get(k).is_some_and(|length| list.len() == *length);
         arguments.len() == lengths.len()
-            && self.call_if(parameters, arguments, has_length, tables, results, &mut [])
+            && self.call_if_arguments_satisfy(parameters, arguments, has_length, tables, results, &mut [])
     }
 
     /// Evaluates the program if no slice is too short and all arguments satisfy a condition. Returns false
     /// otherwise.
     #[inline]
-    fn call_if(
+    fn call_if_arguments_satisfy(
         &self,
         parameters: &[f64],
         arguments: &[&[f64]],

@@ -39,7 +39,9 @@ impl Loader {
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
         let passes = Passes { lanes: false, ..Passes::default() };
         let compiled = compile_with_passes(&source, &graph, passes, cx);
-        let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report_errors(cx)) };
+        let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else {
+            return Err(self.error_from_diagnostics(cx));
+        };
         let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
         for piece in &model.drawing {
             pieces.push(drawn(piece, numbers.len()));
@@ -86,7 +88,7 @@ fn evaluate_program(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f6
             .get(lookup.table_index())
             .map_or(f64::NAN, |table| table.value_or_derivative(x, orders))
     };
-    program.run_with(&value_of_symbol, &value_of_table)
+    program.interpret_with_tables(&value_of_symbol, &value_of_table)
 }
 
 /// Converts a piece of the compiler's drawing to one of the runtime, whose numbers begin at index `first`.

@@ -115,7 +115,7 @@ impl Error {
 
 impl Error {
     /// Whether the limit on the number of steps was reached, which an implicit method may avoid.
-    pub(crate) fn is_too_long(&self) -> bool {
+    pub(crate) fn is_step_limit_error(&self) -> bool {
         matches!(self, Error::Motion { reason: integrate::Error::TooManySteps { .. }, .. })
     }
 }

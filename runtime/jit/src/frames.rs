@@ -137,7 +137,7 @@ impl Frames {
         let mut links: Vec<Option<Vec<Operand>>> = vec![None; self.links.len()];
         let mut outputs = Vec::new();
         for (frame, steps) in self.frames.iter().enumerate() {
-            let mut placement = identity();
+            let mut placement = ground_placement();
             for link in self.links_to_frame(frame) {
                 placement = links[link]
                     .get_or_insert_with(|| {
@@ -167,7 +167,7 @@ impl Frames {
                 merged.bind_symbol(Quantity::Acceleration(k).symbol(), acceleration);
             }
         }
-        let mut placement = identity();
+        let mut placement = ground_placement();
         let mut twist = vec![Operand::Const(0.0); TWIST];
         let mut acceleration = twist.clone();
         let mut placements = Vec::new();
@@ -243,7 +243,7 @@ impl Frames {
 }
 
 /// Returns the placement of the ground: the identity rotation and a zero position, as constants.
-fn identity() -> Vec<Operand> {
+fn ground_placement() -> Vec<Operand> {
     (0..PLACEMENT).map(|k| Operand::Const(f64::from(u8::from(k < 9 && k % 4 == 0)))).collect()
 }
 

@@ -1,5 +1,6 @@
 //! Functions of a loaded mechanism: their signatures, and the computation of their results by programs.
 
+use crate::configuration_space::ConfigurationSpaceFunction;
 use crate::constrained::ConstrainedDynamicsFunction;
 use crate::frames::Access;
 use crate::inverse::Inverse;
@@ -8,7 +9,6 @@ use crate::merge::ProgramMerger;
 use crate::polytopes::takes_features;
 use crate::routine::{Routine, Values};
 use crate::shared::Shared;
-use crate::space::Space;
 use linkwork_compiler::catalogue::{Argument, Called, Id, REACTION, Record, Shape};
 use linkwork_compiler::derive::{self, Output};
 use linkwork_compiler::lower::{Operand, Program};
@@ -83,7 +83,7 @@ pub(crate) enum ResultAssembly {
         n: usize,
         m: usize,
     },
-    Space(Space),
+    ConfigurationSpaceFunction(ConfigurationSpaceFunction),
     /// The results are computed by the runtime, for a mechanism with constraints.
     Constrained(ConstrainedDynamicsFunction),
 }
@@ -115,7 +115,7 @@ impl ResultAssembly {
             | ResultAssembly::Linear { routine, .. }
             | ResultAssembly::CalledLinear { routine, .. } => vec![routine],
             ResultAssembly::CalledForward(called) => vec![&called.accelerations, &called.known],
-            ResultAssembly::Space(_) | ResultAssembly::Constrained(_) => Vec::new(),
+            ResultAssembly::ConfigurationSpaceFunction(_) | ResultAssembly::Constrained(_) => Vec::new(),
         }
     }
 
@@ -124,7 +124,7 @@ impl ResultAssembly {
         match self {
             ResultAssembly::CalledForward(called) => vec![called.forces],
             ResultAssembly::CalledLinear { derivatives, .. } => vec![*derivatives],
-            ResultAssembly::Space(space) => space.calls(),
+            ResultAssembly::ConfigurationSpaceFunction(space) => space.calls(),
             _ => Vec::new(),
         }
     }
@@ -205,7 +205,9 @@ impl Entry {
                 let (by_q, by_v) = by.split_at(square);
                 assemble(*n, *m, [by_q, by_v, inputs, turning], out);
             }
-            ResultAssembly::Space(space) => space.run(shared, values, &self.arguments, out, work),
+            ResultAssembly::ConfigurationSpaceFunction(space) => {
+                space.evaluate(shared, values, &self.arguments, out, work)
+            }
             // The robot calls these functions itself.
             ResultAssembly::Constrained(_) => out.fill(f64::NAN),
         }

@@ -122,8 +122,10 @@ impl Visitor for Linearised<'_> {
         };
         let blocks = motion.independent_blocks();
         // Further velocities are padding.
-        let of_robot = |list: &[usize]| list.iter().copied().filter(|k| *k < robot.nv()).collect::<Vec<_>>();
-        let (coordinates, velocities) = (of_robot(&blocks.coordinates), of_robot(&blocks.speeds));
+        let indices_without_padding =
+            |list: &[usize]| list.iter().copied().filter(|k| *k < robot.nv()).collect::<Vec<_>>();
+        let (coordinates, velocities) =
+            (indices_without_padding(&blocks.coordinates), indices_without_padding(&blocks.speeds));
         if [coordinates.len(), velocities.len()] != robot.shared.constraints.freedom {
             return Err(ConstraintError::Singular);
         }

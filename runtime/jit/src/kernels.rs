@@ -126,7 +126,7 @@ impl<const K: usize> Kernel for Products<'_, K> {
             ($($n:literal)*) => {
                 match n {
                     $($n => {
-                    return negative_products_of_fixed_size::<$n>(square, matrices, columns, mul_add);
+                    return replace_by_fixed_size_products::<$n>(square, matrices, columns, mul_add);
                 })*
                     _ => {}
                 }
@@ -148,7 +148,7 @@ impl<const K: usize> Kernel for Products<'_, K> {
 
 /// Replaces columns of matrices with `N` rows by minus their products with a square matrix.
 #[inline(always)]
-fn negative_products_of_fixed_size<'a, const N: usize>(
+fn replace_by_fixed_size_products<'a, const N: usize>(
     square: &[f64],
     matrices: impl IntoIterator<Item = &'a mut [f64]>,
     columns: &[Vec<Columns>],

@@ -10,6 +10,7 @@ mod code;
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 #[path = "no_code.rs"]
 mod code;
+mod configuration_space;
 mod constrained;
 mod drawing;
 mod error;
@@ -31,7 +32,6 @@ mod roll_out;
 mod routine;
 mod shared;
 mod simulate;
-mod space;
 mod steps;
 mod table;
 mod web;

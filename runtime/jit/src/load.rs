@@ -1,6 +1,7 @@
 //! Loading of mechanisms from files and texts.
 
 use crate::about::MechanismDocumentation;
+use crate::configuration_space::ConfigurationSpaceFunction;
 use crate::constrained;
 use crate::error::Error;
 use crate::frames::Frames;
@@ -10,7 +11,6 @@ use crate::methods::METHODS;
 use crate::polytopes::Polytopes;
 use crate::robot::Robot;
 use crate::shared::{Constraints, Contact, FirstOrder, Quantity, Requirement, Shared, Sizes};
-use crate::space::Space;
 use linkwork::__private::Rule;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
@@ -130,7 +130,7 @@ impl Loader {
     /// The file cannot be read, or its mechanism is wrong.
     pub fn load(self) -> Result<Robot, Error> {
         let interpreted = self.interpreted;
-        let shared = Loader::run_on_compiler_thread(move || self.compile())?;
+        let shared = Loader::run_on_compiler_thread(move || self.compile_mechanism())?;
         Ok(Robot::new(Arc::new(shared), interpreted))
     }
 
@@ -143,7 +143,7 @@ impl Loader {
         thread.join().map_err(|panic| Error::Internal(panic_message(&*panic)))?
     }
 
-    fn compile(self) -> Result<Shared, Error> {
+    fn compile_mechanism(self) -> Result<Shared, Error> {
         let mut source = self.read_source()?;
         remove_rust_only_options(&mut source);
         let requests = &mut source.mechanism.requests;
@@ -156,7 +156,7 @@ impl Loader {
         let allowed = reject_reproducible_arithmetic(&source, "loaded mechanisms", cx);
         let compiled = allowed.and_then(|()| compile_with_passes(&source, &graph, passes, cx));
         let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else {
-            return Err(self.report_errors(cx));
+            return Err(self.error_from_diagnostics(cx));
         };
         Ok(extract_shared_data(&source, &model, output))
     }
@@ -175,7 +175,7 @@ impl Loader {
         }
         let DeclaredStruct { arguments, item, .. } = declaration;
         let source = read_source(arguments, item, &folder, cx);
-        source.filter(|_| cx.is_empty()).ok_or_else(|| self.report_errors(cx))
+        source.filter(|_| cx.is_empty()).ok_or_else(|| self.error_from_diagnostics(cx))
     }
 
     /// Returns the declaration of the mechanism, and the folder of the files that it names.
@@ -188,7 +188,7 @@ impl Loader {
         match &self.origin {
             Origin::Text(text) => Ok((self.choose_declaration(text, "the text")?, base_folder()?)),
             Origin::File(path) => {
-                let text = text_of(path)?;
+                let text = read_text_file(path)?;
                 if !is_rust(path) {
                     return Ok((DeclaredStruct::of_file(path, &text), base_folder()?));
                 }
@@ -224,7 +224,7 @@ impl Loader {
     }
 
     /// Returns the errors of a mechanism with their positions, as compilers print them.
-    pub(crate) fn report_errors(&self, cx: &Diagnostics) -> Error {
+    pub(crate) fn error_from_diagnostics(&self, cx: &Diagnostics) -> Error {
         let messages: Vec<String> = cx.distinct_errors().map(|one| self.diagnostic_message(one)).collect();
         match messages.is_empty() {
             true => Error::Internal("the mechanism could not be compiled".to_string()),
@@ -260,7 +260,7 @@ fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
         .unwrap_or_else(|| "the compiler panicked".to_string())
 }
 
-fn text_of(path: &Path) -> Result<String, Error> {
+fn read_text_file(path: &Path) -> Result<String, Error> {
     let file_error = |reason: String| Error::File { path: path.to_path_buf(), reason };
     let about = std::fs::metadata(path).map_err(|error| file_error(error.to_string()))?;
     if !about.is_file() {
@@ -299,7 +299,7 @@ fn extract_shared_data(
     let frames = Frames::new(model, &mut output);
     let mut maker = CallableFunctionBuilder { model, output: &output, entries: Vec::new() };
     maker.add_derived_functions();
-    Space::add(&mut maker);
+    ConfigurationSpaceFunction::add(&mut maker);
     constrained::add(&mut maker);
     maker.entries.extend(frames.entries(model.time));
     let (mut entries, sizes) = (maker.entries, Sizes { nq: model.nq(), nv: model.nv(), nu: model.nu() });
@@ -377,7 +377,7 @@ fn constraint_data_of_model(model: &Model<'_>) -> Constraints {
         determining: matching_constraint_indices(|constraint| constraint.determines),
         rank: model.nv().saturating_sub(model.freedom.velocities),
         freedom: [model.freedom.coordinates, model.freedom.velocities],
-        overdetermined: model.is_overdetermined(),
+        overdetermined: model.is_overconstrained(),
         independent: model.dependent.is_some(),
         angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),
     }

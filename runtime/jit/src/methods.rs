@@ -12,7 +12,7 @@ impl Robot {
         index.ok_or_else(|| Error::unknown_name_error("function", name, self.shared.names()))
     }
 
-    fn frame_index(&self, function: &str, frame: &str) -> Result<usize, Error> {
+    fn frame_function_index(&self, function: &str, frame: &str) -> Result<usize, Error> {
         self.shared.index.get(&format!("{function}({frame})")).copied().ok_or_else(|| {
             Error::unknown_name_error("frame", frame, self.frames().iter().map(String::as_str))
         })
@@ -44,7 +44,7 @@ impl Robot {
     ///
     /// The mechanism has no such frame, or a slice has the wrong length.
     pub fn frame_placement(&self, frame: &str, q: &[f64]) -> Result<Isometry3<f64>, Error> {
-        let index = self.frame_index("frame_placement", frame)?;
+        let index = self.frame_function_index("frame_placement", frame)?;
         let mut values = [0.0; 12];
         self.call_with_state_into(index, State { q, ..State::default() }, &mut values)?;
         let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&values[..9]));
@@ -58,7 +58,7 @@ impl Robot {
     ///
     /// The mechanism has no such frame, or a slice has the wrong length.
     pub fn frame_velocity(&self, frame: &str, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
-        let index = self.frame_index("frame_velocity", frame)?;
+        let index = self.frame_function_index("frame_velocity", frame)?;
         self.call_function_at_state(index, State { q, v, ..State::default() }).map(DVector::from_vec)
     }
 
@@ -74,7 +74,7 @@ impl Robot {
         v: &[f64],
         a: &[f64],
     ) -> Result<DVector<f64>, Error> {
-        let index = self.frame_index("frame_acceleration", frame)?;
+        let index = self.frame_function_index("frame_acceleration", frame)?;
         self.call_function_at_state(index, State { q, v, a, ..State::default() }).map(DVector::from_vec)
     }
 
@@ -85,7 +85,7 @@ impl Robot {
     ///
     /// The mechanism has no such frame, or a slice has the wrong length.
     pub fn frame_jacobian(&self, frame: &str, q: &[f64]) -> Result<DMatrix<f64>, Error> {
-        let index = self.frame_index("frame_jacobian", frame)?;
+        let index = self.frame_function_index("frame_jacobian", frame)?;
         let [jacobian] = self.matrices_of_function(index, State { q, ..State::default() })?;
         Ok(jacobian)
     }

@@ -5,7 +5,7 @@ use crate::shared::Shared;
 
 /// List of names in a mechanism to which a name in a message belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum List {
+pub(crate) enum NameListKind {
     Configuration,
     Velocities,
     Inputs,
@@ -35,7 +35,7 @@ const fn digit_table() -> [[u8; DIGITS]; 5 * COUNT] {
 }
 
 /// Returns the placeholder numbers for the first names of a list.
-pub(crate) const fn placeholder_numbers<const N: usize>(list: List) -> [&'static str; N] {
+pub(crate) const fn placeholder_numbers<const N: usize>(list: NameListKind) -> [&'static str; N] {
     let mut all = [""; N];
     let mut k = 0;
     while k < N && k < COUNT {

@@ -21,7 +21,7 @@ pub use contacts::PaddedContacts;
 
 use crate::error::Error;
 use crate::internal::InternalFunction;
-use crate::names::{List, placeholder_numbers};
+use crate::names::{NameListKind, placeholder_numbers};
 use crate::robot::{Robot, State};
 use linkwork::constraint::Projected;
 use linkwork::integrate::{Features, Hooks};
@@ -123,7 +123,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns the number of velocities, and the number of velocities and first-order states together.
-    fn velocity_and_state_counts(&self) -> [usize; 2] {
+    fn velocity_and_total_counts(&self) -> [usize; 2] {
         let robot = self.robot();
         [robot.nv(), robot.nv() + robot.shared.states.len()]
     }
@@ -141,7 +141,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     fn state_with_velocity<'a>(&self, t: f64, q: &'a SVector<f64, NQ>, v: &'a SVector<f64, NV>) -> State<'a> {
-        let [n, all] = self.velocity_and_state_counts();
+        let [n, all] = self.velocity_and_total_counts();
         State { v: self.velocity_entries(v), x: &v.as_slice()[n..all], ..self.state_without_velocity(t, q) }
     }
 
@@ -232,7 +232,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
 {
     #[inline]
     fn features(&self) -> Features {
-        let (robot, [_, velocities]) = (self.robot(), self.velocity_and_state_counts());
+        let (robot, [_, velocities]) = (self.robot(), self.velocity_and_total_counts());
         let shared = &robot.shared;
         Features {
             constrained: !shared.constraints.names.is_empty(),
@@ -294,7 +294,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         let charts = &self.robot().shared.charts;
         let mut out = *v;
         if !self.robot().shared.has_speeds {
-            crate::space::transport_velocity(charts, dv.as_slice(), v.as_slice(), out.as_mut_slice());
+            crate::configuration_space::transport_velocity(
+                charts,
+                dv.as_slice(),
+                v.as_slice(),
+                out.as_mut_slice(),
+            );
             return out;
         }
         let n = self.robot().nv();
@@ -309,8 +314,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         };
         let way = coordinate_rates(at, dv);
         let mut there = *q;
-        crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
-        crate::space::transport_velocity(
+        crate::configuration_space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
+        crate::configuration_space::transport_velocity(
             charts,
             way.as_slice(),
             coordinate_rates(at, v).as_slice(),
@@ -329,7 +334,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         let mut out = SVector::<f64, NV>::zeros();
         if !self.robot().shared.has_speeds {
             let charts = &self.robot().shared.charts;
-            crate::space::write_transported_velocity_rate(
+            crate::configuration_space::write_transported_velocity_rate(
                 charts,
                 dv.as_slice(),
                 v.as_slice(),
@@ -342,7 +347,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
     fn translation(&self, _t: f64, dv: &SVector<f64, NV>) -> SVector<f64, NV> {
         let mut out = SVector::<f64, NV>::zeros();
         if !self.robot().shared.has_speeds {
-            crate::space::translation(&self.robot().shared.charts, dv.as_slice(), out.as_mut_slice());
+            crate::configuration_space::translation(
+                &self.robot().shared.charts,
+                dv.as_slice(),
+                out.as_mut_slice(),
+            );
         }
         out
     }
@@ -353,9 +362,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
 {
     type Scalar = f64;
 
-    const CONFIGURATION: [&'static str; NQ] = placeholder_numbers(List::Configuration);
-    const VELOCITIES: [&'static str; NV] = placeholder_numbers(List::Velocities);
-    const INPUTS: [&'static str; NU] = placeholder_numbers(List::Inputs);
+    const CONFIGURATION: [&'static str; NQ] = placeholder_numbers(NameListKind::Configuration);
+    const VELOCITIES: [&'static str; NV] = placeholder_numbers(NameListKind::Velocities);
+    const INPUTS: [&'static str; NU] = placeholder_numbers(NameListKind::Inputs);
 
     fn neutral(&self) -> SVector<f64, NQ> {
         self.vector_with_results(
@@ -367,14 +376,14 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
     }
 
     fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
-        let (nq, [_, nv]) = (self.robot().nq(), self.velocity_and_state_counts());
+        let (nq, [_, nv]) = (self.robot().nq(), self.velocity_and_total_counts());
         let mut all = *q;
         for (to, by) in all.iter_mut().skip(nq).zip(dv.iter().skip(nv)) {
             *to += by;
         }
         if !self.robot().shared.has_speeds {
             let charts = &self.robot().shared.charts;
-            crate::space::integrate(charts, q.as_slice(), dv.as_slice(), all.as_mut_slice());
+            crate::configuration_space::integrate(charts, q.as_slice(), dv.as_slice(), all.as_mut_slice());
             return all;
         }
         let state = State {
@@ -387,7 +396,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
     }
 
     fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
-        let (nq, [n, nv]) = (self.robot().nq(), self.velocity_and_state_counts());
+        let (nq, [n, nv]) = (self.robot().nq(), self.velocity_and_total_counts());
         let mut all = SVector::<f64, NV>::zeros();
         for (entry, (to, from)) in all.iter_mut().skip(nv).zip(to.iter().zip(from).skip(nq)) {
             *entry = to - from;
@@ -402,7 +411,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             true => all.fill(f64::NAN),
             false => {
                 let charts = &self.robot().shared.charts;
-                crate::space::tangent_rate(charts, dv.as_slice(), v.as_slice(), all.as_mut_slice());
+                crate::configuration_space::tangent_rate(
+                    charts,
+                    dv.as_slice(),
+                    v.as_slice(),
+                    all.as_mut_slice(),
+                );
             }
         }
         all
@@ -513,7 +527,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
     }
 
     fn kinetic_energy(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
-        let further: f64 = v.iter().skip(self.velocity_and_state_counts()[1]).map(|v| 0.5 * v * v).sum();
+        let further: f64 = v.iter().skip(self.velocity_and_total_counts()[1]).map(|v| 0.5 * v * v).sum();
         let mut energy = [f64::NAN];
         self.call_function(InternalFunction::KineticEnergy, self.state_with_velocity(t, q, v), &mut energy);
         energy[0] + further

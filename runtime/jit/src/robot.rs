@@ -394,7 +394,7 @@ impl Robot {
     ///
     /// A slice has the wrong length, a parameter has no value, or the function belongs to another mechanism.
     pub fn evaluate_into(&self, f: &Function, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
-        let entry = self.own_entry(f)?;
+        let entry = self.entry_of_function(f)?;
         self.call_entry(entry, &self.parameters, arguments, out)
     }
 
@@ -422,7 +422,7 @@ impl Robot {
         arguments: &[&[f64]],
         out: &mut [f64],
     ) -> Result<(), Error> {
-        let entry = self.own_entry(f)?;
+        let entry = self.entry_of_function(f)?;
         let has_length_of_argument =
             |(list, length): (&&[f64], &usize)| list.len() == *length || list.len() == length * count;
         let fit = arguments.len() == entry.lengths.len()
@@ -441,7 +441,7 @@ impl Robot {
 
     /// Returns the entry of a function of this mechanism.
     #[inline]
-    fn own_entry(&self, f: &Function) -> Result<&Entry, Error> {
+    fn entry_of_function(&self, f: &Function) -> Result<&Entry, Error> {
         match Arc::ptr_eq(&self.shared, &f.shared) {
             true => Ok(&self.shared.entries[f.index]),
             false => Err(Error::OtherMechanism(f.name().to_string())),
@@ -468,12 +468,12 @@ impl Robot {
         {
             return Ok(());
         }
-        self.call_any_entry(entry, parameters, arguments, out)
+        self.call_checked_entry(entry, parameters, arguments, out)
     }
 
     /// Evaluates a function for one set of arguments, after a check of their lengths.
     #[inline(never)]
-    fn call_any_entry(
+    fn call_checked_entry(
         &self,
         entry: &Entry,
         parameters: &[f64],

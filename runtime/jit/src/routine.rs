@@ -75,13 +75,13 @@ impl Routine {
             Some(code) if !values.interpreted => {
                 code.call(values.parameters, values.arguments, values.tables, results, more);
             }
-            _ => self.run_without_code(values, results, more),
+            _ => self.compile_or_interpret(values, results, more),
         }
     }
 
     /// Evaluates a program that is interpreted or that has no machine code yet.
     #[cold]
-    fn run_without_code(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
+    fn compile_or_interpret(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
         match !values.interpreted && self.prepare() {
             true => self.run(values, results, more),
             false => self.interpret_program(values, results, more),
@@ -103,7 +103,7 @@ impl Routine {
                 table.value_or_derivative(x, [0, 1, 2].map(|k| lookup.derivative_order(k) as u8))
             })
         };
-        let outputs = program.run_with(&value_of_symbol, &value_of_table);
+        let outputs = program.interpret_with_tables(&value_of_symbol, &value_of_table);
         let places = results[..self.results].iter_mut().chain(more);
         places.zip(outputs).for_each(|(place, value)| *place = value);
     }

@@ -234,12 +234,12 @@ impl Stepper {
             let c = h * fraction;
             let (displacement, v) = match stages.last() {
                 None => (
-                    TangentVectorDerivatives::zero_displacement_derivatives(n, m),
-                    TangentVectorDerivatives::velocity_derivatives(n, m),
+                    TangentVectorDerivatives::initial_displacement_derivatives(n, m),
+                    TangentVectorDerivatives::initial_velocity_derivatives(n, m),
                 ),
                 Some([rate, acceleration]) => (
                     rate.scaled_derivatives(c),
-                    TangentVectorDerivatives::velocity_derivatives(n, m).plus_scaled(c, acceleration),
+                    TangentVectorDerivatives::initial_velocity_derivatives(n, m).plus_scaled(c, acceleration),
                 ),
             };
             let rate = match i {
@@ -272,8 +272,8 @@ impl Stepper {
             all
         };
         let motion = end_configuration_derivatives(&charts, &self.displacement, &weighted_sum_of_stages(0));
-        let v =
-            TangentVectorDerivatives::velocity_derivatives(n, m).plus_scaled(1.0, &weighted_sum_of_stages(1));
+        let v = TangentVectorDerivatives::initial_velocity_derivatives(n, m)
+            .plus_scaled(1.0, &weighted_sum_of_stages(1));
         Ok(Jacobians { q: [motion.by_q, motion.by_v, motion.by_u], v: [v.by_q, v.by_v, v.by_u] })
     }
 }
@@ -297,12 +297,12 @@ impl TangentVectorDerivatives {
 
     /// Returns the derivatives of the velocity at the start of the step: the identity with respect to itself,
     /// otherwise zero.
-    fn velocity_derivatives(n: usize, m: usize) -> TangentVectorDerivatives {
+    fn initial_velocity_derivatives(n: usize, m: usize) -> TangentVectorDerivatives {
         TangentVectorDerivatives { by_v: DMatrix::identity(n, n), ..TangentVectorDerivatives::zero(n, m) }
     }
 
     /// Returns the derivatives of a zero displacement, which moves with the configuration at the start.
-    fn zero_displacement_derivatives(n: usize, m: usize) -> TangentVectorDerivatives {
+    fn initial_displacement_derivatives(n: usize, m: usize) -> TangentVectorDerivatives {
         TangentVectorDerivatives { by_q: DMatrix::identity(n, n), ..TangentVectorDerivatives::zero(n, m) }
     }
 
@@ -404,7 +404,7 @@ impl Robot {
     ///
     /// The slice has the wrong length, or the mechanism has generalized speeds.
     pub fn integrate_derivatives(&self, dv: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
-        self.check_joint_displacement(dv)?;
+        self.check_joint_velocity(dv)?;
         Ok(integrate_derivatives(&self.shared.charts, dv))
     }
 
@@ -414,12 +414,12 @@ impl Robot {
     ///
     /// A slice has the wrong length, or the mechanism has generalized speeds.
     pub fn tangent_rate_derivatives(&self, dv: &[f64], v: &[f64]) -> Result<[DMatrix<f64>; 2], Error> {
-        self.check_joint_displacement(dv)?;
-        self.check_joint_displacement(v)?;
+        self.check_joint_velocity(dv)?;
+        self.check_joint_velocity(v)?;
         Ok(tangent_rate_derivatives(&self.shared.charts, dv, v))
     }
 
-    fn check_joint_displacement(&self, dv: &[f64]) -> Result<(), Error> {
+    fn check_joint_velocity(&self, dv: &[f64]) -> Result<(), Error> {
         if self.shared.has_speeds {
             return Err(Error::Value(format!("the velocities of `{}` are generalized speeds", self.name())));
         }

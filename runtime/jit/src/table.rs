@@ -38,11 +38,12 @@ impl AnyTable {
     /// The errors of [`Table::new`]. Other numbers of axes than one, two and three are
     /// [`TableError::Size`].
     pub fn from_grid(axes: &[impl AsRef<[f64]>], values: &[f64]) -> Result<AnyTable, TableError> {
-        let list = |axis: &dyn AsRef<[f64]>| Arc::<[f64]>::from(axis.as_ref());
+        let shared_axis = |axis: &dyn AsRef<[f64]>| Arc::<[f64]>::from(axis.as_ref());
         match axes {
-            [a] => Table::from_storage([list(a)], values.into()).map(AnyTable::One),
-            [a, b] => Table::from_storage([list(a), list(b)], values.into()).map(AnyTable::Two),
-            [a, b, c] => Table::from_storage([list(a), list(b), list(c)], values.into()).map(AnyTable::Three),
+            [a] => Table::from_storage([shared_axis(a)], values.into()).map(AnyTable::One),
+            [a, b] => Table::from_storage([shared_axis(a), shared_axis(b)], values.into()).map(AnyTable::Two),
+            [a, b, c] => Table::from_storage([shared_axis(a), shared_axis(b), shared_axis(c)], values.into())
+                .map(AnyTable::Three),
             _ => Err(TableError::Size { expected: 3, found: axes.len() }),
         }
     }

@@ -222,9 +222,9 @@ fn change_text(text: &mut String, other: &str, random: &mut Random) {
         }
         6 | 7 => {
             // A number becomes a hostile one.
-            let is_number = |c: char| c.is_ascii_digit() || c == '.';
+            let is_number_character = |c: char| c.is_ascii_digit() || c == '.';
             if let Some(start) = text[a..].find(|c: char| c.is_ascii_digit()).map(|k| a + k) {
-                let end = text[start..].find(|c| !is_number(c)).map_or(text.len(), |k| start + k);
+                let end = text[start..].find(|c| !is_number_character(c)).map_or(text.len(), |k| start + k);
                 text.replace_range(start..end, random.choose_from_list(&WORDS[..10]));
             }
         }

@@ -4,7 +4,7 @@ use linkwork_jit::{Error, Inputs, Loader, Method, Robot};
 use std::fmt::Write;
 
 /// Returns a chain of equal pendulums that hang in series.
-fn pendulum_chain(count: usize, options: &str) -> Result<Robot, Error> {
+fn load_pendulum_chain(count: usize, options: &str) -> Result<Robot, Error> {
     let mut text = String::from("#[mechanism(gravity = -9.81 * y)] struct Chain {");
     let mut before = "ground".to_string();
     for k in 0..count {
@@ -22,7 +22,7 @@ fn pendulum_chain(count: usize, options: &str) -> Result<Robot, Error> {
 #[test]
 fn energy_of_a_long_chain_is_constant() -> Result<(), Error> {
     const N: usize = 80;
-    let chain = pendulum_chain(N, "")?;
+    let chain = load_pendulum_chain(N, "")?;
     let (mut q, v) = ([0.0; N], [0.0; N]);
     q[0] = 0.3;
     let energy = |q: &[f64], v: &[f64]| -> Result<f64, Error> {

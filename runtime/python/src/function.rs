@@ -52,7 +52,7 @@ impl Output {
 
 /// Method by which the results of a function are computed.
 #[derive(Clone)]
-enum Kind {
+enum EvaluationMethod {
     Generated(linkwork_jit::Function),
     /// Function of a frame: one compiled function for each frame.
     Frames(Vec<linkwork_jit::Function>),
@@ -62,12 +62,12 @@ enum Kind {
     Transition,
     IntegrateDerivatives,
     TangentRateDerivatives,
-    Constraint(ConstraintProjection),
+    Constraint(ConstraintSolverFunction),
 }
 
 /// Function that finds a configuration or velocity which satisfies the constraints.
 #[derive(Clone, Copy)]
-pub enum ConstraintProjection {
+pub enum ConstraintSolverFunction {
     Assemble,
     ProjectConfiguration,
     ProjectVelocity,
@@ -75,26 +75,26 @@ pub enum ConstraintProjection {
 }
 
 /// Name, documentation, arguments, results and computation of a function, which its objects share.
-struct Signature {
+struct FunctionDefinition {
     name: String,
     documentation: String,
     arguments: Vec<Argument>,
     results: Vec<Output>,
     /// Index of each frame by its name; empty if the function takes no frame.
     frames: HashMap<String, usize>,
-    kind: Kind,
+    kind: EvaluationMethod,
 }
 
 /// Function of a mechanism, which is a method of the mechanism's Python class.
 #[pyclass(frozen, dict, module = "linkwork._native")]
 pub struct Function {
-    signature: Arc<Signature>,
+    signature: Arc<FunctionDefinition>,
 }
 
 // A function of a mechanism with values of its parameters. Its documentation is that of the function.
 #[pyclass(frozen, module = "linkwork._native")]
 pub struct BoundFunction {
-    signature: Arc<Signature>,
+    signature: Arc<FunctionDefinition>,
     function: Py<Function>,
     robot: Py<Robot>,
     class: Py<PyType>,
@@ -161,9 +161,9 @@ impl BoundFunction {
             }
             let results = &mut results[..length];
             let done = match &signature.kind {
-                Kind::Generated(f) => robot.robot.evaluate_into(f, slices, results),
-                Kind::Frames(all) => robot.robot.evaluate_into(&all[frame], slices, results),
-                Kind::Placements(all) => placement(&robot.robot, &all[frame], slices, results),
+                EvaluationMethod::Generated(f) => robot.robot.evaluate_into(f, slices, results),
+                EvaluationMethod::Frames(all) => robot.robot.evaluate_into(&all[frame], slices, results),
+                EvaluationMethod::Placements(all) => placement(&robot.robot, &all[frame], slices, results),
                 _ => signature.evaluator(&robot.robot, frame).and_then(|mut e| e.evaluate(slices, results)),
             };
             done.map_err(|error| python_exception_of_error(py, &error, None))?;
@@ -317,7 +317,7 @@ impl Function {
     }
 }
 
-impl Signature {
+impl FunctionDefinition {
     /// Evaluates the function for a range of consecutive states.
     fn evaluate_state_range(
         &self,

@@ -57,7 +57,7 @@ pub fn write_page(
                 [("Coordinates", robot.configuration(), q), ("Inputs", robot.inputs(), u)]
             {
                 if many && list.len() <= PLOTTED {
-                    motion = motion.plots(title, plot_curves_of_quantities(list, values))?;
+                    motion = motion.plots(title, quantity_curves(list, values))?;
                 }
             }
             Page::new(robot.name()).text(robot.documentation()).motion(motion).write(&path)
@@ -74,7 +74,7 @@ fn placement(robot: &linkwork_jit::Robot, frame: &str, q: &[f64]) -> Result<Isom
 }
 
 /// Returns the unit, the name and the values of each quantity, as curves of a plot.
-fn plot_curves_of_quantities<'a>(list: &'a [Quantity], values: &[f64]) -> Vec<(&'a str, &'a str, Vec<f64>)> {
+fn quantity_curves<'a>(list: &'a [Quantity], values: &[f64]) -> Vec<(&'a str, &'a str, Vec<f64>)> {
     let column_of_values =
         |k: usize| values.iter().skip(k).step_by(list.len()).copied().collect::<Vec<f64>>();
     let all = list

@@ -109,7 +109,7 @@ impl Robot {
 
     /// Returns the number of parameter sets, if each state of a batch has its own values of the parameters.
     #[getter]
-    fn sets(&self) -> Option<usize> {
+    fn parameter_set_count(&self) -> Option<usize> {
         self.sets.as_ref().map(|(count, _)| *count)
     }
 

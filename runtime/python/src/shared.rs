@@ -40,15 +40,15 @@ pub fn process_shares_in_parallel<P: Send>(
             .into_iter()
             .map(|(first, count, own)| scope.spawn(move || work(first, count, own)))
             .collect();
-        let ends = all
-            .into_iter()
-            .map(|thread| thread.join().unwrap_or_else(|panic| Some((0, Error::Internal(message(&*panic))))));
+        let ends = all.into_iter().map(|thread| {
+            thread.join().unwrap_or_else(|panic| Some((0, Error::Internal(panic_message(&*panic)))))
+        });
         ends.collect::<Vec<_>>().into_iter().flatten().min_by_key(|(state, _)| *state)
     })
 }
 
 /// Returns the message of a caught panic.
-fn message(panic: &(dyn Any + Send)) -> String {
+fn panic_message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic".to_string())
 }

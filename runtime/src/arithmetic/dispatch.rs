@@ -42,7 +42,7 @@ pub fn dispatch_in_any_build<const K: usize, T: Real, M: Evaluate<K, Arguments>,
         target_arch = "x86_64",
         not(all(target_feature = "avx2", target_feature = "fma"))
     ))]
-    if crate::lanes::x86::avx2::has_faster_instructions::<T>() && crate::lanes::x86::avx2::is_available() {
+    if crate::lanes::x86::avx2::speeds_up_scalar_type::<T>() && crate::lanes::x86::avx2::is_available() {
         #[expect(unsafe_code, reason = "calls of functions with target features are")]
         // SAFETY: the processor has the features.
         return unsafe { with_avx2(mechanism, arguments) };

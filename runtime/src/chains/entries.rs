@@ -40,19 +40,19 @@ impl<T: Real> Factors<T> {
     /// Returns the entries of the column in the rows of ancestors, for both derivatives.
     #[inline(always)]
     fn entries_of_ancestors<A: Arithmetic>(&self, ancestors: &LinkRows<T>) -> [Eight<A, T>; 2] {
-        products(ancestors, 0, &self.wrenches)
+        weighted_row_sums(ancestors, 0, &self.wrenches)
     }
 
     /// Returns the entries of the column in the rows of descendants, for both derivatives.
     #[inline(always)]
     fn entries_of_descendants<A: Arithmetic>(&self, descendants: &Rows<T, LINK_ROWS>) -> [Eight<A, T>; 2] {
-        products(descendants, MOMENTUM, &self.changes)
+        weighted_row_sums(descendants, MOMENTUM, &self.changes)
     }
 }
 
 /// Returns sums of products of rows from `first` on with two lists of factors.
 #[inline(always)]
-fn products<A: Arithmetic, T: Real, const K: usize, const M: usize>(
+fn weighted_row_sums<A: Arithmetic, T: Real, const K: usize, const M: usize>(
     rows: &Rows<T, K>,
     first: usize,
     [a, b]: &[[T; M]; 2],

@@ -143,7 +143,7 @@ impl<T: Real, const B: usize> Work<T, B> {
         };
         write_vectors::<A, T, LINK_ROWS>(links, RATE_LINEAR, &rate.linear);
         write_vectors::<A, T, LINK_ROWS>(links, RATE_ANGULAR, &rate.angular);
-        let map = VelocityMaps::read(sums);
+        let map = VelocityForceDerivatives::read(sums);
         let mut by_displacement = map.apply(&first.angular);
         if !free {
             by_displacement = s.cross_force_add(&Spatials::read(sums, WRENCH), &by_displacement);
@@ -157,13 +157,13 @@ impl<T: Real, const B: usize> Work<T, B> {
 
 /// Linear maps from motions to wrenches that give the change of the forces with the velocity, in the form
 /// `x ↦ (x × p, (tr K − K) x)` for angular components `x`.
-struct VelocityMaps<A, T> {
+struct VelocityForceDerivatives<A, T> {
     vector: Vectors<A, T>,
     /// Matrices `tr K − K`.
     matrix: Matrices<A, T>,
 }
 
-impl<A: Arithmetic, T: Real> VelocityMaps<A, T> {
+impl<A: Arithmetic, T: Real> VelocityForceDerivatives<A, T> {
     #[inline(always)]
     fn read(sums: &Rows<T, SUMS>) -> Self {
         let column = |k: usize| read_vectors::<A, T, SUMS>(sums, MAP_MATRIX + 3 * k);
@@ -173,7 +173,7 @@ impl<A: Arithmetic, T: Real> VelocityMaps<A, T> {
             [-k[1][0], k[2][2] + k[0][0], -k[1][2]],
             [-k[2][0], -k[2][1], k[0][0] + k[1][1]],
         ];
-        VelocityMaps { vector: read_vectors::<A, T, SUMS>(sums, MAP_VECTOR), matrix }
+        VelocityForceDerivatives { vector: read_vectors::<A, T, SUMS>(sums, MAP_VECTOR), matrix }
     }
 
     #[inline(always)]

@@ -35,7 +35,8 @@ impl Link {
     fn random(parent: Option<usize>, next: &mut Sequence) -> Link {
         let (mass, center) = (1.5 + next.number(), next.vector());
         let inner = Matrix3::from_fn(|_, _| next.number());
-        let point = |c: Vector3<f64>| Matrix3::identity() * c.norm_squared() - c * c.transpose();
+        let inertia_of_unit_mass =
+            |c: Vector3<f64>| Matrix3::identity() * c.norm_squared() - c * c.transpose();
         Link {
             parent,
             rotation: Rotation3::new(next.vector() * 3.0),
@@ -44,7 +45,7 @@ impl Link {
             pitch: next.number(),
             mass,
             moment: center * mass,
-            tensor: inner * inner.transpose() + point(center) * mass,
+            tensor: inner * inner.transpose() + inertia_of_unit_mass(center) * mass,
         }
     }
 }
@@ -86,7 +87,7 @@ impl Tree {
     }
 
     /// Returns the index of the first velocity of a link.
-    fn velocity(&self, link: usize) -> usize {
+    fn first_velocity_index(&self, link: usize) -> usize {
         if self.free && link > 0 { link + FREE_VELOCITIES - 1 } else { link }
     }
 
@@ -101,7 +102,7 @@ impl Tree {
                 all.push(PlacedTestLink { rotation, position, subspace: Vector6::zeros() });
                 continue;
             }
-            let angle = q[self.velocity(k)];
+            let angle = q[self.first_velocity_index(k)];
             let own = rotation * link.rotation.matrix();
             let axis = own * link.axis.into_inner();
             let position = position + rotation * link.translation + axis * (link.pitch * angle);
@@ -136,7 +137,7 @@ impl Tree {
                 twist += Vector6::from_column_slice(&v[..6]);
                 change += Vector6::from_column_slice(&a[..6]);
             } else {
-                let (s, i) = (place.subspace, self.velocity(k));
+                let (s, i) = (place.subspace, self.first_velocity_index(k));
                 change += s * a[i] + cross_motion(&twist, &s) * v[i];
                 twist += s * v[i];
             }
@@ -150,7 +151,7 @@ impl Tree {
             if k < self.first_joint() {
                 tau[..6].copy_from_slice(wrench.as_slice());
             } else {
-                tau[self.velocity(k)] = places[k].subspace.dot(&wrench);
+                tau[self.first_velocity_index(k)] = places[k].subspace.dot(&wrench);
             }
             if let Some(p) = link.parent {
                 wrenches[p] += wrench;
@@ -160,9 +161,9 @@ impl Tree {
     }
 
     /// Returns the quantities of the lane of a velocity: those of its link, and its mass properties.
-    fn lane(&self, i: usize, q: &[f64], v: &[f64], a: &[f64]) -> ([f64; 20], [f64; 10]) {
+    fn lane_quantities(&self, i: usize, q: &[f64], v: &[f64], a: &[f64]) -> ([f64; 20], [f64; 10]) {
         let root_lane = self.free && i < FREE_VELOCITIES;
-        let k = if root_lane { 0 } else { i - (self.velocity(1) - 1) };
+        let k = if root_lane { 0 } else { i - (self.first_velocity_index(1) - 1) };
         let (place, link) = (&self.place(q)[k], &self.links[k]);
         let subspace = if root_lane { Vector6::ith(i, 1.0) } else { place.subspace };
         let mut lane = [0.0; 20];

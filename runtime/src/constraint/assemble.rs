@@ -1,8 +1,7 @@
 //! Assembly: search for a configuration that satisfies the constraints, and its assembly mode.
 
 use super::{
-    ConstraintError, complete, index_of_largest_entry, is_residual_acceptable,
-    unsatisfied_configuration_error,
+    ConstraintError, complete, is_residual_acceptable, largest_entry, unsatisfied_configuration_error,
 };
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -59,7 +58,7 @@ pub fn assemble<
     held: &[usize],
     mode: Option<i8>,
 ) -> Result<SVector<T, NQ>, ConstraintError> {
-    complete::check_fixed_coordinate_indices::<NV>(held)?;
+    complete::check_held_velocity_indices::<NV>(held)?;
     let is_wanted = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
     // First configuration found whose angles differ by more than half a revolution, as gears may require.
     let mut far = None;
@@ -141,8 +140,7 @@ fn remove_whole_revolutions<
         q
     };
     let satisfies_constraints = |q: &SVector<T, NQ>| {
-        index_of_largest_entry(&(loops.residuals)(q))
-            .is_ok_and(|(_, residual)| is_residual_acceptable(residual, q))
+        largest_entry(&(loops.residuals)(q)).is_ok_and(|(_, residual)| is_residual_acceptable(residual, q))
     };
     let all = subtract_revolutions_from_guess(q, loops.angles);
     if all == q || satisfies_constraints(&all) {
@@ -170,7 +168,7 @@ fn descend_to_configuration<
     held: &[usize],
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     let q = least_violation(loops, q, held)?;
-    let (worst, size) = index_of_largest_entry(&(loops.residuals)(&q))?;
+    let (worst, size) = largest_entry(&(loops.residuals)(&q))?;
     is_residual_acceptable(size, &q)
         .then_some(q)
         .ok_or_else(|| unsatisfied_configuration_error(loops.names, worst, size))
@@ -195,10 +193,10 @@ pub fn least_violation<
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     let mut q = *q;
     let mut residuals = (loops.residuals)(&q);
-    index_of_largest_entry(&residuals)?;
+    largest_entry(&residuals)?;
     let mut damping = constant::<T>(1e-3);
     for _ in 0..MOST_STEPS {
-        let (_, size) = index_of_largest_entry(&residuals)?;
+        let (_, size) = largest_entry(&residuals)?;
         if size <= constant::<T>(4.0) * epsilon() {
             break;
         }

@@ -153,7 +153,7 @@ where
     // If positions have the error ε, a row of relative magnitude σ has a direction error of ε / σ².
     let reach = q.iter().fold(T::one(), |most, q| most.max(q.abs()));
     let (known, root) = (constant::<T>(16.0) * epsilon::<T>() * reach, epsilon::<T>().sqrt());
-    let turned = if is_place && gap > root { T::zero() } else { minimum_magnitude(&left) };
+    let turned = if is_place && gap > root { T::zero() } else { minimum_reliable_row_magnitude(&left) };
     let rounded = if is_place || gap > root { T::zero() } else { known / gap };
     let least = root.max(rounded).max(turned);
     let weak = if least < well_conditioned_threshold() {
@@ -183,7 +183,7 @@ where
 /// configuration, for the constraint residuals `left`. With a residual `r`, the configuration is off its
 /// branch by `r` / σ. Directions rotate by one radian over the distance σ to the other branch, so their error
 /// is `r` / σ².
-pub(super) fn minimum_magnitude<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
+pub(super) fn minimum_reliable_row_magnitude<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
     (constant::<T>(64.0) * largest_magnitude(left).max(epsilon())).sqrt()
 }
 
@@ -211,7 +211,7 @@ where
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let still = DynamicsEquations { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
-    let metric = MassFactorisation::new(&still.weighted_mass_and_forces(structure).0);
+    let metric = MassFactorisation::new(&still.augmented_mass_and_forces(structure).0);
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
     let weighted_column_length = |j: &SMatrix<T, NC, NV>, k: usize| {
         norm(&metric.solve_half(core::array::from_fn(|i| entry_or_zero(&j.data.0[i], k))))
@@ -324,7 +324,7 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
         clear: T,
         weak: DependentRowTreatment<T, NV>,
     ) -> (Solution<T, NV, NC>, bool) {
-        let (mass, force) = self.weighted_mass_and_forces(structure);
+        let (mass, force) = self.augmented_mass_and_forces(structure);
         let metric = MassFactorisation::new(&mass);
         let mut span = ColumnSpan::new(&metric, &self.jacobian, &structure.groups);
         span.extend_basis(clear, structure.rank);
@@ -364,7 +364,7 @@ impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
 
     /// Returns mass matrix and forces, extended for coordinates without inertia. With the rows `J` that
     /// determine these, `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
-    fn weighted_mass_and_forces(&self, structure: &Structure<'_, NC>) -> ([[T; NV]; NV], [T; NV]) {
+    fn augmented_mass_and_forces(&self, structure: &Structure<'_, NC>) -> ([[T; NV]; NV], [T; NV]) {
         let (mut mass, mut force) = (self.mass.data.0, self.force);
         let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
         for (row, bias) in self.bias.iter().enumerate().filter(|(row, _)| structure.determining.contains(row))

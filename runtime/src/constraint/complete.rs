@@ -2,7 +2,7 @@
 //! constraints. Also computes the drive forces for such a motion.
 
 use super::{
-    Constrained, ConstraintError, acceptable_residual, index_of_largest_entry, is_residual_acceptable,
+    Constrained, ConstraintError, acceptable_residual, is_residual_acceptable, largest_entry,
     largest_jacobian_entry, largest_magnitude_or_one,
 };
 use crate::Real;
@@ -14,7 +14,7 @@ use nalgebra::{SMatrix, SVector};
 const MAX_CORRECTIONS: usize = 3;
 
 /// Returns an error for the first of the indices `held` that is not less than `NV`.
-pub(super) fn check_fixed_coordinate_indices<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
+pub(super) fn check_held_velocity_indices<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
     let outside = held.iter().copied().find(|index| *index >= NV);
     outside.map_or(Ok(()), |index| Err(ConstraintError::Held { index, velocities: NV }))
 }
@@ -32,14 +32,14 @@ fn correct_free_entries<T: Real, const NV: usize, const NC: usize>(
 ) -> Result<(SVector<T, NV>, (usize, T)), ConstraintError> {
     for _ in 0..MAX_CORRECTIONS {
         let found = gap(&x);
-        let worst = index_of_largest_entry(&found)?;
+        let worst = largest_entry(&found)?;
         if is_exact(worst.1, &x) {
             return Ok((x, worst));
         }
         x += least_energy_correction(mass, jacobian, held, &found);
-        index_of_largest_entry(&x)?;
+        largest_entry(&x)?;
     }
-    let worst = index_of_largest_entry(&gap(&x))?;
+    let worst = largest_entry(&gap(&x))?;
     Ok((x, worst))
 }
 
@@ -61,7 +61,7 @@ pub(super) fn completed_velocity<
 where
     M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
 {
-    check_fixed_coordinate_indices::<NV>(held)?;
+    check_held_velocity_indices::<NV>(held)?;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let constraint_rates_of_velocity = |v: &SVector<M::Scalar, NV>| mechanism.constraint_rates(t, q, v);
     let (v, (worst, size)) =
@@ -96,7 +96,7 @@ pub(super) fn complete_acceleration<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    check_fixed_coordinate_indices::<NV>(held)?;
+    check_held_velocity_indices::<NV>(held)?;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let bias = mechanism.constraint_bias(t, q, v);
     // Magnitude of the terms of the gap, relative to which it is rounded.
@@ -144,14 +144,14 @@ pub(super) fn driving_forces<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    check_fixed_coordinate_indices::<NV>(driven)?;
-    let (worst, rate) = index_of_largest_entry(&mechanism.constraint_rates(t, q, v))?;
+    check_held_velocity_indices::<NV>(driven)?;
+    let (worst, rate) = largest_entry(&mechanism.constraint_rates(t, q, v))?;
     let name = constraint_name::<M, NQ, NV, NU, NH, NC>;
     if !is_residual_acceptable(rate, v) {
         return Err(ConstraintError::Velocity { constraint: name(worst), rate: to_f64(rate) });
     }
     let (jacobian, bias) = (mechanism.constraint_jacobian(t, q), mechanism.constraint_bias(t, q, v));
-    let (worst, left) = index_of_largest_entry(&(jacobian * a + bias))?;
+    let (worst, left) = largest_entry(&(jacobian * a + bias))?;
     if left
         > epsilon::<T>().sqrt()
             * largest_magnitude_or_one(&bias)

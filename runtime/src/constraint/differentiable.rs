@@ -89,7 +89,7 @@ impl<T, const NV: usize, const NC: usize> From<MotionDerivatives<T, NV, NC>>
 }
 
 /// Derivatives of accelerations, and derivatives of constraint multipliers.
-type MotionSensitivity<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
+type SolutionDerivatives<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
 
 /// Accelerations and multipliers of constrained motion, with their derivatives.
 pub(crate) struct ConstrainedMotionDerivatives<T, const NV: usize, const NC: usize> {
@@ -97,7 +97,7 @@ pub(crate) struct ConstrainedMotionDerivatives<T, const NV: usize, const NC: usi
     pub(crate) lambda: SVector<T, NC>,
     /// Derivatives of accelerations and multipliers with respect to configuration, velocity and generalized
     /// force.
-    pub(crate) by: [MotionSensitivity<T, NV, NC>; 3],
+    pub(crate) by: [SolutionDerivatives<T, NV, NC>; 3],
 }
 
 /// Returns the accelerations and multipliers of [`constrained_dynamics`](Constrained::constrained_dynamics)

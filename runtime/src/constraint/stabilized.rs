@@ -58,7 +58,7 @@ where
 
 impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> {
     /// Returns the acceleration that stabilisation adds so that constraint violations decay.
-    fn correction_of_violations<const NQ: usize, const NV: usize, const NU: usize>(
+    fn stabilization_acceleration<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -181,7 +181,7 @@ where
         v: &SVector<M::Scalar, NV>,
         tau: &SVector<M::Scalar, NV>,
     ) -> SVector<M::Scalar, NV> {
-        self.mechanism.forward_dynamics(t, q, v, tau) + self.correction_of_violations(t, q, v)
+        self.mechanism.forward_dynamics(t, q, v, tau) + self.stabilization_acceleration(t, q, v)
     }
 
     fn try_forward_dynamics(
@@ -191,7 +191,7 @@ where
         v: &SVector<M::Scalar, NV>,
         tau: &SVector<M::Scalar, NV>,
     ) -> Result<SVector<M::Scalar, NV>, ConstraintError> {
-        Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.correction_of_violations(t, q, v))
+        Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.stabilization_acceleration(t, q, v))
     }
 }
 

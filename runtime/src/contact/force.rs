@@ -41,21 +41,21 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     check_positive("the time", h)?;
-    let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
+    let add_time_to_error = |reason| Error::Constraint { t: to_f64(t), reason };
     let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
     let mut system = System::new(mechanism, held);
     let start = State { t, q: *q, v: *v };
     let at_start = system.acceleration(t, q, v);
     let (rate, impulses) =
         acceleration_from_closed_contacts(&mut system, &start, &at_start, &Impulses::none(), h)
-            .map_err(constraint_error)?;
+            .map_err(add_time_to_error)?;
     let (free, given) = rk4_step_with_contacts(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = project_end_of_step(&system, free, t)?;
     let came = StepStart::from_state((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
     let velocities = ContactVelocities::unevaluated_in_configuration(mechanism, t + h, &free.q);
     let closed = closed_contacts(mechanism, t + h, (&free.q, &end), Some((&came, &velocities)))
-        .map_err(constraint_error)?;
+        .map_err(add_time_to_error)?;
     let Some(closed) = closed else { return Ok(SVector::zeros()) };
     let selection =
         ContactSelection::<NK, NR>::select_closed_contacts(ContactLayout::of_mechanism(mechanism), &closed);
@@ -75,7 +75,7 @@ where
         (contact_velocities_before_impulses, Some(((&given, &impulses), true))),
         &mut acted,
     );
-    Ok(solved.map_err(constraint_error)?.impulses / h)
+    Ok(solved.map_err(add_time_to_error)?.impulses / h)
 }
 
 /// Returns the contact forces in a state under inputs `u`, N, or N·m for stops of revolute joints: for each

@@ -56,20 +56,20 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
         all: &SVector<T, CR>,
     ) -> Self {
         let (layout, mut recorded) = (selection.contact_layout(), Self::none());
-        let stored_impulse_or_zero = |k: usize, i: usize| {
+        let contact_impulse_or_zero = |k: usize, i: usize| {
             let rows = layout.rows(k);
             if i < rows.count { entry_or_zero(all, rows.first + i) } else { T::zero() }
         };
         let pressed = (0..selection.contact_count())
-            .filter(|k| (0..3).any(|i| stored_impulse_or_zero(*k, i) != T::zero()));
+            .filter(|k| (0..3).any(|i| contact_impulse_or_zero(*k, i) != T::zero()));
         let places = (0..CONTACTS).flat_map(|list| (0..NV).map(move |place| (list, place)));
         for (k, (list, place)) in pressed.zip(places) {
             let number: u32 = selection.index_of_contact(k).try_into().unwrap_or(u32::MAX);
             let values = [
                 constant(f64::from(number) + 1.0),
-                stored_impulse_or_zero(k, 0),
-                stored_impulse_or_zero(k, 1),
-                stored_impulse_or_zero(k, 2),
+                contact_impulse_or_zero(k, 0),
+                contact_impulse_or_zero(k, 1),
+                contact_impulse_or_zero(k, 2),
             ];
             let lists = recorded.0.get_mut(list).into_iter().flatten();
             for (list, value) in lists.zip(values) {

@@ -250,7 +250,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
     }
 
     /// Returns the time until the first of the low flights ends, if accelerations stay constant.
-    pub(crate) fn time_to_touchdown(&self) -> Option<T> {
+    pub(crate) fn time_to_first_touchdown(&self) -> Option<T> {
         let landings = self.flights.iter().flatten().filter_map(SeparatedGapMotion::time_until_touchdown);
         landings.fold(None, |first, time| Some(first.map_or(time, |first: T| first.min(time))))
     }

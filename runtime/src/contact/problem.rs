@@ -23,7 +23,7 @@ mod sensitivity;
 mod transport;
 mod trial;
 
-pub(super) use basis::{ImpulseBasisRows, UsedColumns, dot};
+pub(super) use basis::{DelassusFactor, UsedColumns, dot};
 pub(super) use linear::ImpulseEquations;
 pub(super) use sensitivity::LinearisedImpulses;
 use trial::ContactMode;
@@ -73,7 +73,7 @@ pub(super) struct ContactProblem<T, const NK: usize, const NR: usize> {
     /// Matrix `W` of the velocity changes by unit impulses; `None` if it equals `B Bᵀ` with an exact `B`.
     weights: Option<ContactRowMatrix<T, NR>>,
     /// Factor `B` of `W = B Bᵀ`, if it is known.
-    pub(super) basis: ImpulseBasisRows<T, NR>,
+    pub(super) basis: DelassusFactor<T, NR>,
     /// Smallest permitted normal velocity after the impulses, of each contact.
     least: TotalArray<T, NK>,
     /// Part of `base` that is an impulse of restitution; it bounds friction as well.
@@ -116,7 +116,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             base: TotalArray::repeat_entry(T::zero()),
             free: TotalArray::repeat_entry(T::zero()),
             weights: None,
-            basis: ImpulseBasisRows::uncomputed_basis(),
+            basis: DelassusFactor::uncomputed_basis(),
             least: TotalArray::repeat_entry(T::zero()),
             floor: TotalArray::repeat_entry(T::zero()),
             friction: TotalArray::repeat_entry(T::zero()),
@@ -479,14 +479,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let normals = (0..self.count).filter(|k| self.has_gap_function(*k)).count();
         // Matrices of normal impulses are smaller.
         match const { NR > FEW && NK > FEW } && normals <= FEW {
-            true => self.gap_closing_impulses_in::<FEW, FEW>(impulses, gaps, distances),
-            false => self.gap_closing_impulses_in::<NK, NR>(impulses, gaps, distances),
+            true => self.gap_closing_impulses_with_capacity::<FEW, FEW>(impulses, gaps, distances),
+            false => self.gap_closing_impulses_with_capacity::<NK, NR>(impulses, gaps, distances),
         }
     }
 
     /// [`gap_closing_impulses`](Self::gap_closing_impulses) in arrays for up to `GK` contacts and `GR` normal
     /// impulses.
-    fn gap_closing_impulses_in<const GK: usize, const GR: usize>(
+    fn gap_closing_impulses_with_capacity<const GK: usize, const GR: usize>(
         &self,
         impulses: &RowList<T, NR>,
         gaps: &SVector<T, NK>,

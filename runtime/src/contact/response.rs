@@ -1,6 +1,6 @@
 //! Responses of velocities to contact impulses.
 
-use super::problem::ImpulseBasisRows;
+use super::problem::DelassusFactor;
 use super::{Contacts, Responses, Rows};
 use crate::Real;
 use crate::blocks::transposed;
@@ -63,7 +63,7 @@ impl<T: Real, const NV: usize, const CR: usize> ImpulseEffects<T, NV, CR> {
     /// Returns the change of the velocity by impulses at the selected contacts.
     pub(super) fn velocity_change(
         &self,
-        basis: &ImpulseBasisRows<T, CR>,
+        basis: &DelassusFactor<T, CR>,
         impulses: &SVector<T, CR>,
     ) -> SVector<T, NV> {
         match self {

@@ -1,7 +1,7 @@
 //! Contacts that take part in a step, numbered among themselves.
 
 use super::layout::ContactLayout;
-use super::problem::{ContactProblem, ImpulseBasisRows, UsedColumns, dot, entry_or_zero, set_entry};
+use super::problem::{ContactProblem, DelassusFactor, UsedColumns, dot, entry_or_zero, set_entry};
 use super::response::{CholeskyFactor, ImpulseEffects};
 use super::total::TotalArray;
 use super::velocities::ContactVelocities;
@@ -194,7 +194,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
         jacobian: &SMatrix<T, NR, NV>,
         reach: [(usize, usize); NK],
         factor: &CholeskyFactor<T, NV>,
-        basis: &mut ImpulseBasisRows<T, CR>,
+        basis: &mut DelassusFactor<T, CR>,
     ) -> bool {
         // Columns of each contact that are not zero, with the whole blocks of the bodies that move.
         let (mut is_used, mut own) = ([false; NV], TotalArray::<_, CK>::repeat_entry((NV, 0)));

@@ -77,7 +77,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     {
         let all = (NR <= FEW).then(|| self.mechanism.contact_rates(self.t, self.q, v));
         let drift = if NR <= FEW { None } else { self.contact_velocities_at_rest() };
-        let change = self.changes_from_jacobian(v);
+        let change = self.rate_change_function_from_jacobian(v);
         move |k, row| match (&all, drift) {
             (Some(all), _) => entry_or_zero(all, row),
             (None, Some(drift)) => change(k, row) + entry_or_zero(drift, row),
@@ -101,13 +101,13 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
                 None => contact_velocities_of_change(change),
             }
         });
-        let change = self.changes_from_jacobian(change);
+        let change = self.rate_change_function_from_jacobian(change);
         move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry_or_zero(all, row))
     }
 
     /// Computes [`rate_changes`](Self::rate_changes) from the contact Jacobian, which the first call of the
     /// returned function evaluates.
-    fn changes_from_jacobian<const NU: usize, const NK: usize>(
+    fn rate_change_function_from_jacobian<const NU: usize, const NK: usize>(
         &self,
         change: &SVector<T, NV>,
     ) -> impl Fn(usize, usize) -> T

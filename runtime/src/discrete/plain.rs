@@ -30,7 +30,7 @@ impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU>
 /// Returns the acceleration of a Runge–Kutta stage `after` seconds after the start, with derivatives.
 /// Multiples of the earlier accelerations `near` and `far` are added to the velocity and to the displacement
 /// of the stage.
-fn stage_acceleration_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn stage_acceleration_with_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &DifferentiatedStepStart<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     after: T,
@@ -75,10 +75,10 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let half = h * constant(0.5);
-    let k1 = stage_acceleration_derivatives(start, v, T::zero(), None, None);
-    let k2 = stage_acceleration_derivatives(start, v, half, Some((half, &k1)), None);
-    let k3 = stage_acceleration_derivatives(start, v, half, Some((half, &k2)), Some((half * half, &k1)));
-    let k4 = stage_acceleration_derivatives(start, v, h, Some((h, &k3)), Some((h * half, &k2)));
+    let k1 = stage_acceleration_with_derivatives(start, v, T::zero(), None, None);
+    let k2 = stage_acceleration_with_derivatives(start, v, half, Some((half, &k1)), None);
+    let k3 = stage_acceleration_with_derivatives(start, v, half, Some((half, &k2)), Some((half * half, &k1)));
+    let k4 = stage_acceleration_with_derivatives(start, v, h, Some((h, &k3)), Some((h * half, &k2)));
     // q⁺ = q + h v + h²/6 (a₁ + a₂ + a₃), v⁺ = v + h/6 (a₁ + 2 a₂ + 2 a₃ + a₄).
     let sixth = h / constant(6.0);
     let change = weighted_sum(sixth, [(1.0, &k1), (2.0, &k2), (2.0, &k3), (1.0, &k4)]);

@@ -152,8 +152,8 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
-    let (q, v) = m.project(t, &free.q, &free.v).map_err(constraint_error)?;
+    let add_time_to_error = |reason| Error::Constraint { t: to_f64(t), reason };
+    let (q, v) = m.project(t, &free.q, &free.v).map_err(add_time_to_error)?;
     m.check_full_rank(t, &q)?;
     let mut near = free.q;
     let mut moved = SMatrix::<T, NV, NV>::identity();

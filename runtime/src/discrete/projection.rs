@@ -140,8 +140,8 @@ where
     T: Real,
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
-    let (q, v) = m.project(t, q_free, v_free).map_err(constraint_error)?;
+    let add_time_to_error = |reason| Error::Constraint { t: to_f64(t), reason };
+    let (q, v) = m.project(t, q_free, v_free).map_err(add_time_to_error)?;
     m.check_full_rank(t, &q)?;
     // Intermediate configurations of the projection, with their derivatives with respect to the first. In
     // coordinates that are a vector space, the derivative of a displacement is the identity.

@@ -3,7 +3,7 @@
 
 use super::curvature::{SecondOrderDisplacement, TwoVectorSecondDerivatives};
 use super::explicit::{DifferentiatedStepStart, VectorWithDerivatives};
-use super::{ContactStepVisitor, DifferentiableStep, projection};
+use super::{ConstrainedStepVisitor, DifferentiableStep, projection};
 use crate::constraint::{ConstrainedSecondDerivatives, ConstraintError, CurvatureVisitor};
 use crate::derivatives::LinearMotion;
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -83,7 +83,7 @@ where
     let found = if M::CONSTRAINED {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
         let through =
-            ConstrainedHessianArguments { through: ContactStepVisitor { method, t, q, v, u }, factors };
+            ConstrainedHessianArguments { through: ConstrainedStepVisitor { method, t, q, v, u }, factors };
         mechanism.visit_constraint_curvature(through).unwrap_or(Err(undetermined))?
     } else {
         method.differentiate_twice(mechanism, t, q, v, u, factors)
@@ -95,7 +95,7 @@ where
 /// Arguments of a step with constraints, and the factors of the state after it in the contracted second
 /// derivatives.
 struct ConstrainedHessianArguments<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
-    through: ContactStepVisitor<'a, S, T, NQ, NV, NU>,
+    through: ConstrainedStepVisitor<'a, S, T, NQ, NV, NU>,
     factors: (&'a SVector<T, NV>, &'a SVector<T, NV>),
 }
 
@@ -113,7 +113,7 @@ where
     where
         M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let ContactStepVisitor { method, t, q, v, u } = self.through;
+        let ConstrainedStepVisitor { method, t, q, v, u } = self.through;
         let free = method.differentiate_step(mechanism, t, q, v, u)?;
         let end = t + method.step_length();
         let added = projection::curvature_of_projection(mechanism, end, (&free.q, &free.v), self.factors)?;

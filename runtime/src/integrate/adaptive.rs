@@ -55,7 +55,7 @@ impl<T: Real, const NV: usize> AdaptiveMemory<T, NV> {
 }
 
 /// Trial step of an adaptive method, before the error test accepts or rejects it.
-pub(super) struct StepTrial<T, const NQ: usize, const NV: usize> {
+pub(super) struct TrialStepResult<T, const NQ: usize, const NV: usize> {
     pub step: Step<T, NQ, NV>,
     /// Acceleration at the end, if the method computes it.
     pub acceleration: Option<SVector<T, NV>>,
@@ -65,7 +65,7 @@ pub(super) struct StepTrial<T, const NQ: usize, const NV: usize> {
 }
 
 /// Start, length and end of a trial step.
-pub(super) struct TrialStep<'a, T, const NQ: usize, const NV: usize> {
+pub(super) struct TrialStepArguments<'a, T, const NQ: usize, const NV: usize> {
     pub start: &'a State<T, NQ, NV>,
     pub acceleration: &'a SVector<T, NV>,
     pub scale: &'a ErrorScale<T>,
@@ -147,7 +147,10 @@ impl<T: Real> AdaptiveSettings<T> {
         system: &mut D,
         start: &State<T, NQ, NV>,
         until: Option<T>,
-        mut attempt: impl FnMut(&mut D, &TrialStep<'_, T, NQ, NV>) -> Result<StepTrial<T, NQ, NV>, Error>,
+        mut attempt: impl FnMut(
+            &mut D,
+            &TrialStepArguments<'_, T, NQ, NV>,
+        ) -> Result<TrialStepResult<T, NQ, NV>, Error>,
     ) -> Result<Step<T, NQ, NV>, Error> {
         let known = memory.acceleration.take();
         let acceleration = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
@@ -163,8 +166,10 @@ impl<T: Real> AdaptiveSettings<T> {
             let (h, t) = self.fit_step_length(wanted, start.t, until);
             self.check_step_size([start.t, t], h, wanted, finite, system.time(start.t))?;
             memory.count_trial_step(self, start.t)?;
-            let trial =
-                attempt(system, &TrialStep { start, acceleration: &acceleration, scale: &scale, h, t })?;
+            let trial = attempt(
+                system,
+                &TrialStepArguments { start, acceleration: &acceleration, scale: &scale, h, t },
+            )?;
             let error = trial.error;
             finite = error.is_finite() && is_finite(&trial.step.end.q);
             let (larger, smaller) = Self::next_step_sizes(control, h, error, memory.error);

@@ -1,6 +1,8 @@
 //! The method of Dormand and Prince of order 8 with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, StepTrial, TrialStep, adaptive};
+use super::adaptive::{
+    AdaptiveMemory, AdaptiveSettings, StepControl, TrialStepArguments, TrialStepResult, adaptive,
+};
 use super::stages::{RungeKuttaRates, rates_at_stage, weighted_stage_rates};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
@@ -43,10 +45,10 @@ adaptive!(DormandPrince8, CONTROL, trial_step);
 /// Returns a step, with its interpolating polynomial if `dense`.
 pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &TrialStep<'_, T, NQ, NV>,
+    attempt: &TrialStepArguments<'_, T, NQ, NV>,
     dense: bool,
-) -> StepTrial<T, NQ, NV> {
-    let TrialStep { start, acceleration, scale, h, t } = *attempt;
+) -> TrialStepResult<T, NQ, NV> {
+    let TrialStepArguments { start, acceleration, scale, h, t } = *attempt;
     let mut k = [RungeKuttaRates { displacement: start.v, velocity: *acceleration }; 16];
     let mut reach = |k: &mut [RungeKuttaRates<T, NV>; 16], stages: core::ops::Range<usize>| {
         let mut end = *start;
@@ -85,5 +87,5 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
             .velocity
             .with_coefficients_from_third([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);
     }
-    StepTrial { step, acceleration: Some(after.velocity), error }
+    TrialStepResult { step, acceleration: Some(after.velocity), error }
 }

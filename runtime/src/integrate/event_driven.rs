@@ -1,6 +1,6 @@
 //! Motion with contacts in which every event is located.
 
-use super::adaptive::{AdaptiveMemory, AdaptiveSettings, TrialStep, adaptive};
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, TrialStepArguments, adaptive};
 use super::control::ErrorScale;
 use super::eighth::{CONTROL, trial_step};
 use super::local::TimeShiftedSystem;
@@ -117,7 +117,7 @@ impl<T: Real, const NV: usize> EventMemory<T, NV> {
 
     /// Returns whether very short steps accumulate, so that the next step uses time stepping; if so,
     /// decreases their count below the threshold.
-    fn is_slowed_by_short_steps(&mut self) -> bool {
+    fn take_slowdown_by_short_steps(&mut self) -> bool {
         let is_slowed_by_short_steps = self.short > SHORT_STEPS;
         if is_slowed_by_short_steps {
             self.short = SHORT_STEPS - 1;
@@ -189,13 +189,13 @@ impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
 }
 
 /// Event-located step of a mechanism with contacts: arguments of the step, and the inputs.
-pub(super) struct EventLocatedStep<'a, T, I, const NQ: usize, const NV: usize> {
+pub(super) struct EventLocatedStepVisitor<'a, T, I, const NQ: usize, const NV: usize> {
     pub(super) section: Section<'a, T, NQ, NV>,
     pub(super) inputs: &'a mut I,
 }
 
 impl<T, I, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
-    for EventLocatedStep<'_, T, I, NQ, NV>
+    for EventLocatedStepVisitor<'_, T, I, NQ, NV>
 where
     T: Real,
     I: Inputs<T, NQ, NV, NU>,
@@ -208,8 +208,8 @@ where
     {
         let Self { section: Section { settings, memory, start, until, origin }, inputs } = self;
         let now = origin + start.t;
-        let constraint_error = |reason| Error::Constraint { t: to_f64(start.t), reason };
-        let v = velocity_after_impact(mechanism, now, &start.q, &start.v).map_err(constraint_error)?;
+        let add_time_to_error = |reason| Error::Constraint { t: to_f64(start.t), reason };
+        let v = velocity_after_impact(mechanism, now, &start.q, &start.v).map_err(add_time_to_error)?;
         let begin = State { v, ..*start };
         memory.has_struck = v != start.v && !memory.has_struck;
         if memory.has_struck {
@@ -218,7 +218,7 @@ where
         }
         let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.evaluate(now, &begin.q, &v));
         let (mut located, mut shared) = (None, false);
-        if memory.is_slowed_by_short_steps() {
+        if memory.take_slowdown_by_short_steps() {
             // The next step locates events again.
         } else if let Ok((phase, acceleration)) =
             ContactPhase::contact_phase_of_state(mechanism, now, &begin.q, &v, &tau)
@@ -292,7 +292,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
     {
         let Self { phased, origin, begin, .. } = *self;
-        let landing = phased.phase.time_to_touchdown();
+        let landing = phased.phase.time_to_first_touchdown();
         let near = landing.map(|s| begin.t + s * constant(1.5));
         let until = match (near, until) {
             (Some(near), Some(until)) => Some(near.min(until)),
@@ -378,8 +378,13 @@ where
         let mut local = TimeShiftedSystem { system: &mut system, origin };
         let dimensions = phased.mechanism.features().dimensions;
         let scale = ErrorScale { relative: settings.relative, absolute: settings.absolute, dimensions };
-        let attempt =
-            TrialStep { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
+        let attempt = TrialStepArguments {
+            start: &begin,
+            acceleration: &self.acceleration,
+            scale: &scale,
+            h,
+            t: begin.t + h,
+        };
         trial_step(&mut local, &attempt, dense).step
     }
 

@@ -1,6 +1,8 @@
 //! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, StepTrial, TrialStep, adaptive};
+use super::adaptive::{
+    AdaptiveMemory, AdaptiveSettings, StepControl, TrialStepArguments, TrialStepResult, adaptive,
+};
 use super::rosenbrock::{
     AccelerationJacobian, JacobianDirections, derivatives_at_step_start, elapsed_time, sampling_delay,
 };
@@ -149,10 +151,10 @@ struct LinearisedStep<T, const NV: usize> {
 
 fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &TrialStep<'_, T, NQ, NV>,
+    attempt: &TrialStepArguments<'_, T, NQ, NV>,
     before: Option<AccelerationJacobian<T, NV>>,
 ) -> LinearisedStep<T, NV> {
-    let TrialStep { start, acceleration, h, .. } = *attempt;
+    let TrialStepArguments { start, acceleration, h, .. } = *attempt;
     let mut slopes = derivatives_at_step_start(system, start, acceleration, h, JacobianDirections::All)
         .or(before)
         .unwrap_or(AccelerationJacobian::zero_jacobian());
@@ -195,10 +197,10 @@ fn weighted_sum_of_stages<T: Real, const NV: usize>(
 /// Returns a trial step of RODAS; `None` if the matrix of the step is singular.
 fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &TrialStep<'_, T, NQ, NV>,
+    attempt: &TrialStepArguments<'_, T, NQ, NV>,
     linear: &LinearisedStep<T, NV>,
-) -> Option<StepTrial<T, NQ, NV>> {
-    let TrialStep { start, acceleration, scale, h, t } = *attempt;
+) -> Option<TrialStepResult<T, NQ, NV>> {
+    let TrialStepArguments { start, acceleration, scale, h, t } = *attempt;
     let LinearisedStep { slopes, turn } = linear;
     // (c − P) a − b = r and (c − Fv) b − Fφ a = s are reduced to one system for a.
     let c = T::one() / (h * constant(GAMMA));
@@ -241,7 +243,7 @@ fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>
         step.displacement.with_coefficients_from_third([square.displacement, cube.displacement]);
     step.velocity = step.velocity.with_coefficients_from_third([square.velocity, cube.velocity]);
     let error = scale.relative_error(&step, &displacement, &error);
-    Some(StepTrial { step, acceleration: None, error })
+    Some(TrialStepResult { step, acceleration: None, error })
 }
 
 /// LU factorisation of a matrix with row pivoting.

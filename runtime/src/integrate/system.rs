@@ -1,6 +1,6 @@
 //! A mechanism with its inputs: the ordinary differential equation to be integrated.
 
-use super::event_driven::{EventLocatedStep, Section};
+use super::event_driven::{EventLocatedStepVisitor, Section};
 use super::local::TimeShiftedSystem;
 use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
@@ -464,7 +464,7 @@ where
     }
 
     fn follow(&mut self, section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
-        self.mechanism.visit_contacts(EventLocatedStep { section, inputs: &mut self.inputs })
+        self.mechanism.visit_contacts(EventLocatedStepVisitor { section, inputs: &mut self.inputs })
     }
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
@@ -487,9 +487,11 @@ where
         let root = epsilon::<T>().sqrt();
         for k in 0..self.mechanism.features().dimensions[1].min(NV) {
             let size = root * v[k].abs().max(T::one());
-            let unit_step = |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
-            let moved = self.inputs.evaluate(t, &self.mechanism.integrate(q, &unit_step(root)), v);
-            let faster = self.inputs.evaluate(t, q, &(v + unit_step(size)));
+            let step_along_coordinate =
+                |size: T| SVector::<T, NV>::from_fn(|i, _| if i == k { size } else { T::zero() });
+            let moved =
+                self.inputs.evaluate(t, &self.mechanism.integrate(q, &step_along_coordinate(root)), v);
+            let faster = self.inputs.evaluate(t, q, &(v + step_along_coordinate(size)));
             by_q.column_mut(k).gemv(T::one() / root, &by_u, &(moved - u), T::one());
             by_v.column_mut(k).gemv(T::one() / size, &by_u, &(faster - u), T::one());
         }

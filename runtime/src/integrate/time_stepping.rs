@@ -244,7 +244,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         _dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step_length_and_end(self.step, start.t, until)?;
-        let constraint_error = |reason| match reason {
+        let add_time_to_error = |reason| match reason {
             ConstraintError::NotFinite => Error::NotFinite { t: to_f64(start.t) },
             reason => Error::Constraint { t: to_f64(start.t), reason },
         };
@@ -261,7 +261,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         let (rate, impulses) = match memory.steady {
             true => (memory.rate, memory.impulses),
             false => acceleration_from_closed_contacts(system, start, &before, &memory.impulses, h)
-                .map_err(constraint_error)?,
+                .map_err(add_time_to_error)?,
         };
         let (free, given) = match self.stages {
             TimeStepVariant::RungeKutta => rk4_step_with_contacts(system, start, (&before, &rate), h, t),
@@ -276,7 +276,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         let v = free.v - given;
         let Touched { q, v, held, impulses, violation } = system
             .contact_step(t, (&start.q, &start.v), (&free.q, &v), (&given, &impulses), h)
-            .map_err(constraint_error)?;
+            .map_err(add_time_to_error)?;
         memory.record_contact_step(held / h, impulses, violation);
         let end = State { q, v, ..free };
         let end = if end == free { end } else { project_end_of_step(system, end, start.t)? };

@@ -212,8 +212,8 @@ fn vectors_compute_lane_by_lane() {
     {
         use x86::{avx2, avx512};
         if avx2::is_available()
-            && avx2::has_faster_instructions::<f64>()
-            && avx2::has_faster_instructions::<f32>()
+            && avx2::speeds_up_scalar_type::<f64>()
+            && avx2::speeds_up_scalar_type::<f32>()
         {
             check_vectors_of_any_length::<avx2::Avx2>();
         }

@@ -202,14 +202,17 @@ mod tests {
     const SIZES: [f64; 9] = [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.57, 0.6, 1.0, 1.7];
 
     /// Columns of the derivatives of `tangent_rate(dv, v)` with respect to `dv` and `v`.
-    type FirstDerivatives<const N: usize> =
+    type FirstDerivativeFunction<const N: usize> =
         fn([f64; N], [f64; N]) -> (SquareBlock<f64, N>, SquareBlock<f64, N>);
 
     /// Second derivatives of `λᵀ tangent_rate(dv, v)`.
-    type SecondDerivatives<const N: usize> =
+    type SecondDerivativeFunction<const N: usize> =
         fn([f64; N], [f64; N], [f64; N]) -> (SquareBlock<f64, N>, SquareBlock<f64, N>);
 
-    fn check_second_derivatives<const N: usize>(first: FirstDerivatives<N>, second: SecondDerivatives<N>) {
+    fn check_second_derivatives<const N: usize>(
+        first: FirstDerivativeFunction<N>,
+        second: SecondDerivativeFunction<N>,
+    ) {
         for (seed, size) in SIZES.into_iter().enumerate() {
             let (dv, v, lambda) = (
                 pseudorandom_numbers(seed, size),

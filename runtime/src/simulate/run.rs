@@ -160,7 +160,7 @@ where
         }
         self.events.begin(&node).map_err(|reason| event_search_error(reason, t))?;
         Ok(RunProgress {
-            clock: self.clock_of_run(),
+            clock: self.times_of_run(),
             node,
             elapsed: 0.0,
             ahead: (0.0, node.t),
@@ -184,9 +184,9 @@ where
             return Ok(start);
         }
         let (mechanism, State { t, q, v }) = (self.system.mechanism, start);
-        let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
+        let add_time_to_error = |reason| Error::Constraint { t: to_f64(t), reason };
         let parted =
-            mechanism.contact_start(t, &q, self.overlaps == Overlaps::Part).map_err(constraint_error)?;
+            mechanism.contact_start(t, &q, self.overlaps == Overlaps::Part).map_err(add_time_to_error)?;
         if parted == q {
             return Ok(start);
         }
@@ -231,7 +231,7 @@ where
         }
     }
 
-    fn clock_of_run(&self) -> RunTimes {
+    fn times_of_run(&self) -> RunTimes {
         let (every, last) = match self.samples {
             SampleTimes::Steps => (None, None),
             SampleTimes::Every(interval) => (Some(interval), None),

@@ -8,7 +8,7 @@ mod machines;
 use branch::{Branch, flat_branch_angles};
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
-use machines::{FourBar, Row, StackedWindows, Style, Tilted};
+use machines::{FourBar, MagnitudeRanges, Row, StackedWindows, Tilted};
 use std::f64::consts::PI;
 use support::random::Random;
 
@@ -33,11 +33,11 @@ fn test_case_seeds(usual: u64) -> std::ops::Range<u64> {
     from.parse().unwrap_or(0)..to.parse().unwrap_or(usual)
 }
 
-const STYLES: [Style; 4] = [
-    Style { masses: 0.5, springs: 1.0 },
-    Style { masses: 0.5, springs: 6.0 },
-    Style { masses: 3.0, springs: 3.0 },
-    Style { masses: 6.0, springs: 6.0 },
+const MAGNITUDE_RANGES: [MagnitudeRanges; 4] = [
+    MagnitudeRanges { masses: 0.5, springs: 1.0 },
+    MagnitudeRanges { masses: 0.5, springs: 6.0 },
+    MagnitudeRanges { masses: 3.0, springs: 3.0 },
+    MagnitudeRanges { masses: 6.0, springs: 6.0 },
 ];
 
 /// Returns an angle and its rate. The angle is far from the singular configuration, near it, in it up to
@@ -93,10 +93,14 @@ fn singular_linkage_branch(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64
 const HARD: [u64; 8] = [4_647, 4_958, 17_407, 66_896, 862_310, 962_679, 1_187_227, 1_242_381];
 
 /// Checks accelerations at random points of the assembly modes, with all styles of masses and springs.
-fn check_random_branches(kind: &str, usual: u64, case: impl Fn(&mut Random, &Style) -> (f64, String)) {
+fn check_random_branches(
+    kind: &str,
+    usual: u64,
+    case: impl Fn(&mut Random, &MagnitudeRanges) -> (f64, String),
+) {
     for seed in test_case_seeds(usual).chain(HARD) {
         let mut random = Random::new(seed);
-        let style = &STYLES[seed as usize % 4];
+        let style = &MAGNITUDE_RANGES[seed as usize % 4];
         let (off, what) = case(&mut random, style);
         assert!(off < 1e1, "{kind}, seed {seed}: off by {off} times what is expected, {what}");
     }
@@ -157,7 +161,7 @@ fn row_of_parallelograms_accelerates_like_a_pendulum() {
     });
 }
 
-fn random_stacked_windows(random: &mut Random, style: &Style) -> StackedWindows {
+fn random_stacked_windows(random: &mut Random, style: &MagnitudeRanges) -> StackedWindows {
     let mut length = || 1.0 + random.uniform_number(0.7);
     let (low, high, width, shelf) = (length(), length(), length(), length());
     let turn = random.uniform_number(PI);
@@ -178,7 +182,7 @@ fn stacked_windows_accelerate_like_two_pendulums() {
     check_random_branches("stack", 2000, |random, style| {
         // If the posts are in line, the heavy bodies move almost equally: two coordinates are then nearly
         // dependent.
-        let style = &Style { masses: style.masses.min(1.0), springs: style.springs };
+        let style = &MagnitudeRanges { masses: style.masses.min(1.0), springs: style.springs };
         let (low, first) = random_angle_near_singularity(random, 0.0);
         let (near, second) = random_angle_near_singularity(random, PI);
         let high = if random.uniform_number(1.0) > 0.0 { near } else { random.uniform_number(1.0) };
@@ -220,7 +224,8 @@ const HARD_MOTIONS: [u64; 6] = [836, 2_353, 7_612, 10_079, 14_783, 17_831];
 fn random_linkages_conserve_energy_through_singularities() {
     for seed in test_case_seeds(60).chain(HARD_MOTIONS) {
         let mut random = Random::new(1000 + seed);
-        let style = Style { masses: 0.3 + (seed % 3) as f64, springs: 2.0 + 2.0 * (seed % 3) as f64 };
+        let style =
+            MagnitudeRanges { masses: 0.3 + (seed % 3) as f64, springs: 2.0 + 2.0 * (seed % 3) as f64 };
         let (lengths, at_pi, angle) = lengths_of_singular_linkage(&mut random);
         let side = random.uniform_number(1.0).signum();
         let m = FourBar::random_instance(&mut random, &style, lengths);
@@ -264,7 +269,7 @@ fn random_linkages_conserve_energy_through_singularities() {
 fn slightly_inconsistent_states_keep_the_mode_velocity() {
     for seed in test_case_seeds(300) {
         let mut random = Random::new(2000 + seed);
-        let style = &STYLES[seed as usize % 4];
+        let style = &MAGNITUDE_RANGES[seed as usize % 4];
         let (lengths, at_pi, angle) = lengths_of_singular_linkage(&mut random);
         let side = random.uniform_number(1.0).signum();
         let m = FourBar::random_instance(&mut random, style, lengths);

@@ -1,4 +1,4 @@
-//! Derives above the attribute, one for each struct: every struct has one error, for any use.
+//! Derives above the attribute: each struct gives exactly one error, and uses of the struct give none.
 
 use linkwork::prelude::*;
 

@@ -27,14 +27,14 @@ struct State {
     lack: Vec<f64>,
 }
 
-enum Kind {
+enum AnyRobot {
     Fixed(Robot),
     Free(FloatingRobot),
 }
 
 /// Robot of a Rust peer with the states at which it is evaluated.
 pub struct Peer {
-    kind: Kind,
+    kind: AnyRobot,
     states: Vec<State>,
     /// Index of each joint of dynibo among the joints of the other peer libraries.
     order: Vec<usize>,
@@ -55,7 +55,7 @@ impl Peer {
         };
         let order = (0..model.joint_count()).map(index_of_joint_name).collect::<Result<Vec<_>, Failure>>()?;
         let free = folder.join("free").exists();
-        let kind = if free { Kind::Free(model.floating_robot()?) } else { Kind::Fixed(model.robot()) };
+        let kind = if free { AnyRobot::Free(model.floating_robot()?) } else { AnyRobot::Fixed(model.robot()) };
         let nv = names.len() + if free { 6 } else { 0 };
         let mut peer = Peer { kind, states: Vec::new(), order, out: vec![0.0; nv * nv] };
         for row in numbers.chunks_exact(numbers.len() / count) {
@@ -83,8 +83,8 @@ impl Peer {
             base,
         };
         match &mut self.kind {
-            Kind::Fixed(robot) => robot.gravity(&state.q, &[], &mut state.lack)?,
-            Kind::Free(robot) => robot.gravity(&state.base, &state.q, &[], &mut state.lack)?,
+            AnyRobot::Fixed(robot) => robot.gravity(&state.q, &[], &mut state.lack)?,
+            AnyRobot::Free(robot) => robot.gravity(&state.base, &state.q, &[], &mut state.lack)?,
         }
         state.lack.iter_mut().for_each(|x| *x *= (G - G_OF_DYNIBO) / G_OF_DYNIBO);
         if free {
@@ -114,7 +114,7 @@ impl Peer {
         change
     }
 
-    fn evaluate_function(&self, function: usize, state: &State) -> DMatrix<f64> {
+    fn result_in_peer_convention(&self, function: usize, state: &State) -> DMatrix<f64> {
         let nv = state.lack.len();
         let change = self.force_conversion_matrix(state);
         let vector = DVectorView::from_slice(&self.out, nv);
@@ -158,8 +158,8 @@ extern "C" fn inverse(peer: &mut Peer, k: usize) {
     let s = &peer.states[k];
     let out = &mut peer.out[..s.lack.len()];
     let done = match &mut peer.kind {
-        Kind::Fixed(robot) => robot.inverse_dynamics(&s.q, &s.v, &s.a, &[], out),
-        Kind::Free(robot) => robot.inverse_dynamics(&s.base, &s.q, &s.v, &s.a, &[], out),
+        AnyRobot::Fixed(robot) => robot.inverse_dynamics(&s.q, &s.v, &s.a, &[], out),
+        AnyRobot::Free(robot) => robot.inverse_dynamics(&s.base, &s.q, &s.v, &s.a, &[], out),
     };
     debug_assert!(done.is_ok());
 }
@@ -167,8 +167,8 @@ extern "C" fn inverse(peer: &mut Peer, k: usize) {
 extern "C" fn evaluate_mass_matrix(peer: &mut Peer, k: usize) {
     let s = &peer.states[k];
     let done = match &mut peer.kind {
-        Kind::Fixed(robot) => robot.mass_matrix(&s.q, &mut peer.out),
-        Kind::Free(robot) => robot.mass_matrix(&s.base, &s.q, &mut peer.out),
+        AnyRobot::Fixed(robot) => robot.mass_matrix(&s.q, &mut peer.out),
+        AnyRobot::Free(robot) => robot.mass_matrix(&s.base, &s.q, &mut peer.out),
     };
     debug_assert!(done.is_ok());
 }
@@ -177,8 +177,8 @@ extern "C" fn evaluate_forward_dynamics(peer: &mut Peer, k: usize) {
     let s = &peer.states[k];
     let out = &mut peer.out[..s.lack.len()];
     let done = match &mut peer.kind {
-        Kind::Fixed(robot) => robot.forward_dynamics(&s.q, &s.v, &s.tau, &[], out),
-        Kind::Free(robot) => robot.forward_dynamics(&s.base, &s.q, &s.v, &s.tau, &[], out),
+        AnyRobot::Fixed(robot) => robot.forward_dynamics(&s.q, &s.v, &s.tau, &[], out),
+        AnyRobot::Free(robot) => robot.forward_dynamics(&s.base, &s.q, &s.v, &s.tau, &[], out),
     };
     debug_assert!(done.is_ok());
 }
@@ -208,7 +208,7 @@ pub unsafe extern "C" fn peer_open(
 
 /// Returns the function that evaluates a peer library at one state.
 #[unsafe(no_mangle)]
-pub extern "C" fn peer_step(
+pub extern "C" fn peer_step_fn(
     _: &Peer,
     function: usize,
     variant: usize,
@@ -228,7 +228,7 @@ pub extern "C" fn peer_step(
 /// `out` must have room for the result.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn peer_result(peer: &Peer, function: usize, state: usize, out: *mut f64) {
-    let result = peer.evaluate_function(function, &peer.states[state]);
+    let result = peer.result_in_peer_convention(function, &peer.states[state]);
     // SAFETY: the caller guarantees the size of `out`.
     unsafe { std::ptr::copy_nonoverlapping(result.as_ptr(), out, result.len()) };
 }

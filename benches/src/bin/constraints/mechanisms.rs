@@ -3,7 +3,7 @@
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::{Constrained, Rk4, simulate};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::own::{Flat, GeneratedContender};
+use linkwork_benches::peers::own::{GeneratedContender, ToNumberList};
 use linkwork_benches::random::Random;
 use linkwork_benches::states::{STATES, State};
 use linkwork_models::{
@@ -38,9 +38,9 @@ pub struct Mechanism {
 /// Accelerations and multipliers. Peers compute both but return only the accelerations.
 struct Solution<const NV: usize, const NC: usize>(SVector<f64, NV>, SVector<f64, NC>);
 
-impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
-    fn to_number_list(&self) -> Vec<f64> {
-        self.0.to_number_list()
+impl<const NV: usize, const NC: usize> ToNumberList for Solution<NV, NC> {
+    fn flatten(&self) -> Vec<f64> {
+        self.0.flatten()
     }
 }
 

@@ -34,11 +34,11 @@ pub fn write_mechanism_files(folder: &Path) -> io::Result<()> {
         let m = make();
         let folder = folder.join(m.name);
         fs::create_dir_all(&folder)?;
-        let format_table_line = |row: &[f64]| {
+        let format_state_line = |row: &[f64]| {
             let numbers: Vec<String> = row[..m.nq + 2 * m.nv].iter().map(|x| format!("{x:e}")).collect();
             numbers.join(" ") + "\n"
         };
-        let lines: String = m.numbers.chunks_exact(m.nq + 3 * m.nv).map(format_table_line).collect();
+        let lines: String = m.numbers.chunks_exact(m.nq + 3 * m.nv).map(format_state_line).collect();
         fs::write(folder.join("states"), lines)?;
         println!("{}", m.name);
     }
@@ -77,11 +77,11 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
             } else {
                 &mut mechanism.accelerations
             };
-            let own = std::mem::replace(own, Box::new(EmptyContender));
+            let own = std::mem::replace(own, Box::new(PlaceholderContender));
             let (mut exact, mut others) = (vec![own], Vec::new());
             for peer in folder
                 .into_iter()
-                .flat_map(|folder| peers_with_mechanism(folder, mechanism.name, function, rows))
+                .flat_map(|folder| contenders_of_peers(folder, mechanism.name, function, rows))
             {
                 if peer.owner() == Owner::Mujoco { others.push(peer) } else { exact.push(peer) }
             }
@@ -104,7 +104,7 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
 }
 
 /// Returns the implementations of this function by all peers that have the mechanism.
-fn peers_with_mechanism(
+fn contenders_of_peers(
     folder: &Path,
     name: &str,
     function: Function,
@@ -173,14 +173,14 @@ fn format_significant_digits(value: Option<f64>, digits: i32) -> String {
 }
 
 /// Placeholder in the list for a contender that has been moved out of the list.
-struct EmptyContender;
+struct PlaceholderContender;
 
-impl Contender for EmptyContender {
+impl Contender for PlaceholderContender {
     fn owner(&self) -> Owner {
         Owner::Linkwork
     }
 
-    fn variant(&self) -> String {
+    fn variant_name(&self) -> String {
         String::new()
     }
 

@@ -241,11 +241,11 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
 
 fn main() {
     let method = SemiImplicitEuler::step(PERIOD);
-    let uniform_joint_vector = |x: f64| SVector::<f64, 7>::repeat(x);
+    let equal_joint_values = |x: f64| SVector::<f64, 7>::repeat(x);
     // Torques that hold the arm at rest in its initial configuration.
-    let held = Panda.inverse_dynamics(&uniform_joint_vector(0.1), &SVector::zeros(), &SVector::zeros());
-    let panda = Problem { mechanism: &Panda, method, goal: uniform_joint_vector(-0.2) }
-        .measure_optimal_control("panda", uniform_joint_vector(0.1), vec![held; NODES]);
+    let held = Panda.inverse_dynamics(&equal_joint_values(0.1), &SVector::zeros(), &SVector::zeros());
+    let panda = Problem { mechanism: &Panda, method, goal: equal_joint_values(-0.2) }
+        .measure_optimal_control("panda", equal_joint_values(0.1), vec![held; NODES]);
 
     // A flying body moves its legs and rotates by reaction.
     let neutral_with_joint_offset = |x: f64| {

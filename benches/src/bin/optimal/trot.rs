@@ -96,7 +96,7 @@ fn foot_jacobian(k: usize, q: &Configuration) -> SMatrix<f64, 3, 18> {
 }
 
 /// Returns two steps of diagonal pairs of feet; the first step has half the length.
-fn trot_gait(start: &Configuration) -> Vec<GaitNode> {
+fn trot_gait_nodes(start: &Configuration) -> Vec<GaitNode> {
     let mut feet: [SpacePosition; 4] = std::array::from_fn(|k| position_of_foot(k, start));
     let mut centre: SpacePosition = feet.iter().sum::<SpacePosition>() / 4.0;
     centre.z = Walker {}.center_of_mass(start).z;
@@ -166,12 +166,12 @@ fn violated_cone_rows(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> 
 
 /// Returns the weights of squares of configuration and velocity in a phase.
 fn state_cost_weights(phase: &GaitNode) -> [VelocityVector; 2] {
-    let weights_of_motion = |base: [f64; 2], joints: f64| {
+    let base_and_joint_weights = |base: [f64; 2], joints: f64| {
         VelocityVector::from_fn(|k, _| OF_STATES * if k < 6 { base[k / 3] } else { joints }.powi(2))
     };
     match phase.lands {
-        true => [weights_of_motion([1.0, 1.0], 10.0), weights_of_motion([10.0, 10.0], 10.0)],
-        false => [weights_of_motion([0.0, 500.0], 0.01), weights_of_motion([10.0, 10.0], 1.0)],
+        true => [base_and_joint_weights([1.0, 1.0], 10.0), base_and_joint_weights([10.0, 10.0], 10.0)],
+        false => [base_and_joint_weights([0.0, 500.0], 0.01), base_and_joint_weights([10.0, 10.0], 1.0)],
     }
 }
 
@@ -389,7 +389,7 @@ pub fn measure_trot() -> String {
     {
         start.fixed_rows_mut::<3>(7 + 3 * k).copy_from_slice(&angles);
     }
-    let phases = trot_gait(&start);
+    let phases = trot_gait_nodes(&start);
     let trot = TrotGait { start, weights: phases.iter().map(state_cost_weights).collect(), phases };
     let nodes = trot.phases.len() - 1;
     let mut plan = TrajectoryWithPolicies {

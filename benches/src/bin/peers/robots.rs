@@ -3,7 +3,7 @@
 use linkwork::nalgebra::{ArrayStorage, SMatrix};
 use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
-use linkwork_benches::peers::own::{Flat, GeneratedContender, MatrixContender, MechanismCall};
+use linkwork_benches::peers::own::{GeneratedContender, MatrixContender, MechanismCall, ToNumberList};
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
 use linkwork_benches::states::{State, random_states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
@@ -35,7 +35,7 @@ pub struct Robot {
 }
 
 /// Returns a generated function of Linkwork as a contender of the comparison.
-fn linkwork_contender<M: 'static, R: Flat + 'static, const NQ: usize, const NV: usize>(
+fn linkwork_contender<M: 'static, R: ToNumberList + 'static, const NQ: usize, const NV: usize>(
     (owner, mechanism): (Owner, M),
     states: &Rc<Vec<State<NQ, NV>>>,
     function: Function,

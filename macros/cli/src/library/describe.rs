@@ -21,7 +21,7 @@ pub fn description_as_json(known: &LibraryData<'_, '_>) -> String {
         m.units.outputs.get(at).cloned()
     };
     let functions: Vec<Value> =
-        known.functions.iter().map(|f| describe_function(f, unit_of_output(&f.name))).collect();
+        known.functions.iter().map(|f| function_as_json(f, unit_of_output(&f.name))).collect();
     let all = json!({
         "name": known.input.declaration.name,
         "prefix": known.prefix,
@@ -63,7 +63,7 @@ fn limits_as_json(limit: &Limit<'_>) -> Value {
     json!({ "index": limit.v.0, "lower": lower, "upper": upper, "velocity": velocity, "effort": effort })
 }
 
-fn describe_function(f: &Function, unit: Option<String>) -> Value {
+fn function_as_json(f: &Function, unit: Option<String>) -> Value {
     let (docs, errors) = super::functions::plain_docs(&f.docs);
     let arguments: Vec<Value> = f
         .arguments

@@ -51,7 +51,7 @@ pub fn header_text(known: &LibraryData<'_, '_>) -> String {
     );
     write_frame_number_enum(&mut text, known, &upper);
     for f in &known.functions {
-        write_function(&mut text, f, known, number);
+        write_function_declaration(&mut text, f, known, number);
     }
     write_common_declarations(&mut text, prefix, number, !m.parameters.is_empty());
     text.push_str("#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
@@ -72,7 +72,7 @@ fn write_frame_number_enum(text: &mut String, known: &LibraryData<'_, '_>, upper
     text.push_str("};\n\n");
 }
 
-fn write_function(text: &mut String, f: &Function, known: &LibraryData<'_, '_>, number: &str) {
+fn write_function_declaration(text: &mut String, f: &Function, known: &LibraryData<'_, '_>, number: &str) {
     let nv = known.model.nv();
     let (mut docs, errors) = super::functions::plain_docs(&f.docs);
     if !errors.is_empty() {

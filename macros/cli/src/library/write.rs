@@ -75,7 +75,7 @@ pub fn library_source_text(
             }}\n\n"
         );
     }
-    write_exports(&mut text, known);
+    write_common_exports(&mut text, known);
     for (k, f) in known.functions.iter().enumerate() {
         write_function_export(&mut text, k, f, prefix, number, !m.parameters.is_empty());
     }
@@ -169,7 +169,7 @@ fn parameter_check_code(known: &LibraryData<'_, '_>) -> &'static str {
 }
 
 /// Writes the exported C functions that every library has.
-fn write_exports(text: &mut String, known: &LibraryData<'_, '_>) {
+fn write_common_exports(text: &mut String, known: &LibraryData<'_, '_>) {
     let (prefix, kind, number, m) =
         (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
     let _ = write!(

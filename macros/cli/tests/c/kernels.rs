@@ -9,7 +9,7 @@ use std::process::Command;
 const STATES: usize = 3;
 
 /// Returns the C++ compilers that are installed.
-pub fn available_compilers() -> Vec<&'static str> {
+pub fn available_cpp_compilers() -> Vec<&'static str> {
     let is_compiler_available =
         |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
     ["g++", "clang++"].into_iter().filter(is_compiler_available).collect()
@@ -120,7 +120,7 @@ fn compile_and_run(compiler: &str, folder: &Path, p: &str, main: &str) -> Vec<Ve
 
 /// Exports CUDA kernels, compiles them as C++ for the processor and compares the results with Rust.
 pub fn check_exported_kernels(case: &Case, scalar: &str, arguments: &[&str]) {
-    let Some(compiler) = available_compilers().into_iter().next() else {
+    let Some(compiler) = available_cpp_compilers().into_iter().next() else {
         println!("skipped: there is no C++ compiler");
         return;
     };

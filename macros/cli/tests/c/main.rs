@@ -132,12 +132,12 @@ fn derivative_by_step_size<const NQ: usize, const NV: usize>(
         .iter()
         .map(|k| [change_after_displacement(k * d), change_after_displacement(-k * d)])
         .collect();
-    let finite_difference_over_length = |i: usize| {
+    let central_difference_of_entry = |i: usize| {
         let weighted_difference = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
         (weighted_difference(0, 45.0) + weighted_difference(1, -9.0) + weighted_difference(2, 1.0))
             / (60.0 * d)
     };
-    (0..2 * NV).map(finite_difference_over_length).collect()
+    (0..2 * NV).map(central_difference_of_entry).collect()
 }
 
 /// Expands to calls of discrete steps and of their Jacobians.

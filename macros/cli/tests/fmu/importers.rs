@@ -230,7 +230,7 @@ fn fmi_sim_simulates() {
                 let (left, start) = (0.5 - speed / g, 0.7 * speed);
                 vec![0.5, 0.1 + start * left - g * left * left / 2.0, start - g * left]
             }
-            _ => simulate_states(&case.arguments(), 0.5, 1).pop().expect("rows"),
+            _ => states_from_simulate_command(&case.arguments(), 0.5, 1).pop().expect("rows"),
         };
         for (mode, bound) in [(["co-simulation", "0.01"], 1e-6), (["model-exchange", "0.0001"], case.euler)] {
             let found = fmi_sim_states(&program, &path, mode, expected.len() - 1);

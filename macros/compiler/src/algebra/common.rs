@@ -159,7 +159,7 @@ fn replace_group(rules: &FactoringRules<'_>, mut items: Vec<Item>, group: Common
 /// depth.
 fn shortening_groups(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<CommonFactorGroup> {
     let printed_length_of_items = |items: &[Item]| rules.order.printed_length(items);
-    let combined_group = |members: Vec<usize>| {
+    let shortening_group_of_members = |members: Vec<usize>| {
         let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
         let whole = factored_sum_of_items(rules, &before, members.len() == items.len())?;
         let saved = printed_length_of_items(&before)
@@ -170,7 +170,7 @@ fn shortening_groups(rules: &FactoringRules<'_>, items: &[Item]) -> Vec<CommonFa
             saved,
         })
     };
-    candidate_item_sets(rules, items).into_iter().filter_map(combined_group).collect()
+    candidate_item_sets(rules, items).into_iter().filter_map(shortening_group_of_members).collect()
 }
 
 /// Returns the sets of at least two items that share an atom or a sum.

@@ -14,20 +14,20 @@ pub fn remove_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     let parameters = ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Parameter);
     let rates = ring.mask_of_selected_atoms(|_, rank| rank >= AtomRank::Rate);
     let accelerations = ring.mask_of_selected_atoms(|_, rank| rank == AtomRank::Acceleration);
-    let kind_of_term = |t: &Term| {
+    let parameters_and_degree_of_term = |t: &Term| {
         let rates = t.monomial.restrict_to_mask(rates);
         (t.monomial.restrict_to_mask(parameters), rates.degree(), rates.intersects_mask(accelerations))
     };
     let mut largest: Vec<((Monomial, u32, bool), f64)> = Vec::new();
     for term in &p.terms {
-        let (kind, size) = (kind_of_term(term), term.coefficient.abs());
+        let (kind, size) = (parameters_and_degree_of_term(term), term.coefficient.abs());
         match largest.iter_mut().find(|(k, _)| *k == kind) {
             Some((_, largest)) => *largest = largest.max(size),
             None => largest.push((kind, size)),
         }
     }
     let is_above_rounding_noise = |t: &&Term| {
-        let kind = kind_of_term(t);
+        let kind = parameters_and_degree_of_term(t);
         largest.iter().all(|(k, size)| *k != kind || t.coefficient.abs() > NOISE * size)
     };
     Polynomial { terms: p.terms.iter().filter(is_above_rounding_noise).copied().collect() }
@@ -49,7 +49,7 @@ pub fn items_of_polynomial(ring: &Ring, order: &PrintOrder, p: &Polynomial, scop
         groups.sort_by_key(|(functions, _)| *functions != Monomial::ONE);
         for (functions, terms) in groups {
             match functions {
-                Monomial::ONE => append_plain_items(order, terms, &mut items),
+                Monomial::ONE => append_rate_free_items(order, terms, &mut items),
                 _ => items.push(factored_item(order, &terms)),
             }
         }
@@ -72,7 +72,7 @@ fn group_by_mask(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
 
 /// Appends the items of terms in parameters and positions alone: first squares of linear forms, then groups
 /// with identical positions, then groups with any common factor.
-fn append_plain_items(order: &PrintOrder, mut terms: Vec<Term>, items: &mut Vec<Item>) {
+fn append_rate_free_items(order: &PrintOrder, mut terms: Vec<Term>, items: &mut Vec<Item>) {
     order.sort_terms_for_printing(&mut terms);
     while let Some(square) = terms.iter().find_map(|t| find_squared_sum(order, t, &terms)) {
         let all = expand_square(&square);
@@ -105,10 +105,10 @@ fn find_squared_sum(order: &PrintOrder, leading: &Term, terms: &[Term]) -> Optio
     let positions = leading.monomial.restrict_to_mask(order.positions);
     let (x, _) = positions.atoms_with_powers().find(|(_, power)| *power == 2)?;
     let rest = leading.monomial.quotient(Monomial::first_power_of_atom(x));
-    let mut sum = vec![Item::item_without_sums(1.0, Monomial::first_power_of_atom(x))];
+    let mut sum = vec![Item::from_monomial(1.0, Monomial::first_power_of_atom(x))];
     for t in terms.iter().filter(|t| *t != leading && rest.is_divisor_of(t.monomial)) {
         let coefficient = 0.5 * t.coefficient / leading.coefficient;
-        sum.push(Item::item_without_sums(coefficient, t.monomial.quotient(rest)));
+        sum.push(Item::from_monomial(coefficient, t.monomial.quotient(rest)));
     }
     let factor = rest.quotient(Monomial::first_power_of_atom(x));
     let sums = vec![SumFactor { items: sum, power: 2 }];
@@ -142,7 +142,7 @@ fn factored_item(order: &PrintOrder, terms: &[Term]) -> Item {
     let first = terms.first().map_or(Monomial::ONE, |t| t.monomial);
     let factor = terms.iter().fold(first, |m, t| m.greatest_common_divisor(t.monomial));
     if let [only] = terms {
-        return Item::item_without_sums(only.coefficient, factor);
+        return Item::from_monomial(only.coefficient, factor);
     }
     let mut terms = terms.to_vec();
     order.sort_terms_for_printing(&mut terms);
@@ -155,7 +155,7 @@ fn factored_item(order: &PrintOrder, terms: &[Term]) -> Item {
         if functions != Monomial::ONE && group.len() < terms.len() {
             sum.push(factored_item(order, &group));
         } else {
-            sum.extend(group.iter().map(|t| Item::item_without_sums(t.coefficient, t.monomial)));
+            sum.extend(group.iter().map(|t| Item::from_monomial(t.coefficient, t.monomial)));
         }
     }
     // A sum in parentheses starts with a positive term.

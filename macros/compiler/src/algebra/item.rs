@@ -28,7 +28,7 @@ pub struct SumFactor {
 
 impl Item {
     /// Returns a product of a number and atoms, without sums.
-    pub fn item_without_sums(coefficient: f64, factor: Monomial) -> Item {
+    pub fn from_monomial(coefficient: f64, factor: Monomial) -> Item {
         Item { coefficient, factor, sums: Vec::new() }
     }
 }

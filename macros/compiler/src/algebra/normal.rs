@@ -102,7 +102,7 @@ impl<'g> NormalFormCache<'g> {
                 return None;
             }
         };
-        Some(Polynomial::single_term(self.ring.monomial_of_atom(atom)?, 1.0))
+        Some(Polynomial::from_term(self.ring.intern_atom_as_monomial(atom)?, 1.0))
     }
 }
 
@@ -114,9 +114,9 @@ fn expand_sine_or_cosine(ring: &mut Ring, argument: &Polynomial, cosine: bool) -
         let size = term.coefficient.abs();
         let whole = size.fract() == 0.0 && size <= MULTIPLE && term.monomial != Monomial::ONE;
         let (scale, times) = if whole { (1.0, size as usize) } else { (size, 1) };
-        let angle = ring.index_of_angle(Term { coefficient: scale, ..*term })?;
-        let c = Polynomial::single_term(ring.sine_or_cosine(angle, true)?, 1.0);
-        let s = Polynomial::single_term(ring.sine_or_cosine(angle, false)?, term.coefficient.signum());
+        let angle = ring.find_or_add_angle(Term { coefficient: scale, ..*term })?;
+        let c = Polynomial::from_term(ring.sine_or_cosine(angle, true)?, 1.0);
+        let s = Polynomial::from_term(ring.sine_or_cosine(angle, false)?, term.coefficient.signum());
         for _ in 0..times {
             let (cc, ss) = (ring.multiply_and_reduce(&cos, &c)?, ring.multiply_and_reduce(&sin, &s)?);
             let (cs, sc) = (ring.multiply_and_reduce(&cos, &s)?, ring.multiply_and_reduce(&sin, &c)?);
@@ -147,9 +147,9 @@ pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
             coefficient: t.coefficient / first.coefficient,
         });
         let rest = Polynomial { terms: rest.collect() };
-        product = product.checked_product(ring.monomial_of_atom(Atom::Inverse(rest))?)?;
+        product = product.checked_product(ring.intern_atom_as_monomial(Atom::Inverse(rest))?)?;
     }
-    Some(Polynomial::single_term(product, 1.0 / first.coefficient))
+    Some(Polynomial::from_term(product, 1.0 / first.coefficient))
 }
 
 fn monomial_of_inverse_atom(ring: &mut Ring, atom: usize) -> Option<Monomial> {
@@ -158,5 +158,8 @@ fn monomial_of_inverse_atom(ring: &mut Ring, atom: usize) -> Option<Monomial> {
     {
         return Some(term.monomial);
     }
-    ring.monomial_of_atom(Atom::Inverse(Polynomial::single_term(Monomial::first_power_of_atom(atom), 1.0)))
+    ring.intern_atom_as_monomial(Atom::Inverse(Polynomial::from_term(
+        Monomial::first_power_of_atom(atom),
+        1.0,
+    )))
 }

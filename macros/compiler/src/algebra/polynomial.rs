@@ -109,11 +109,11 @@ pub struct Ring {
 impl Polynomial {
     /// Returns a constant polynomial.
     pub fn from_number(value: f64) -> Polynomial {
-        Polynomial::single_term(Monomial::ONE, value)
+        Polynomial::from_term(Monomial::ONE, value)
     }
 
     /// Returns the polynomial of one term, which is zero if the coefficient is zero.
-    pub fn single_term(monomial: Monomial, coefficient: f64) -> Polynomial {
+    pub fn from_term(monomial: Monomial, coefficient: f64) -> Polynomial {
         let terms = if coefficient == 0.0 { Vec::new() } else { vec![Term { monomial, coefficient }] };
         Polynomial { terms }
     }
@@ -215,7 +215,7 @@ impl Ring {
 
     /// Returns an atom as a monomial and adds the atom to the ring if it is new. `None` beyond the maximum
     /// number of atoms.
-    pub fn monomial_of_atom(&mut self, atom: Atom) -> Option<Monomial> {
+    pub fn intern_atom_as_monomial(&mut self, atom: Atom) -> Option<Monomial> {
         let known = self.atoms.iter().position(|a| *a == atom);
         let index = match known {
             Some(index) => index,
@@ -299,7 +299,7 @@ impl Ring {
 
     /// Returns the index of an angle. A new angle is added to the ring with its sine and cosine; `None`
     /// beyond the maximum number of angles.
-    pub fn index_of_angle(&mut self, angle: Term) -> Option<usize> {
+    pub fn find_or_add_angle(&mut self, angle: Term) -> Option<usize> {
         if let Some(index) = self.angles.iter().position(|a| *a == angle) {
             return Some(index);
         }
@@ -324,7 +324,7 @@ impl Ring {
     pub fn sine_or_cosine(&mut self, index: usize, cosine: bool) -> Option<Monomial> {
         let mut angle = [0; ANGLES];
         angle[index] = 1;
-        self.monomial_of_atom(Atom::Wave(Wave { angle, cosine }))
+        self.intern_atom_as_monomial(Atom::Wave(Wave { angle, cosine }))
     }
 
     /// Adds two polynomials. `None` if the sum exceeds the limits.
@@ -386,7 +386,7 @@ impl Ring {
     fn rewrite_term(&self, term: &Term) -> Option<Polynomial> {
         let Term { monomial, coefficient } = *term;
         if let Some(one) = self.cancelling_atom_pair(monomial) {
-            return Some(Polynomial::single_term(monomial.quotient(one), coefficient));
+            return Some(Polynomial::from_term(monomial.quotient(one), coefficient));
         }
         if let Some([inverse, cosine, sine]) = self.cosine_squared_over_sine(monomial) {
             let square = Monomial::first_power_of_atom(cosine)

@@ -36,7 +36,7 @@ pub fn simplify_trigonometry(ring: &mut Ring, p: &Polynomial) -> Option<Polynomi
         for product in shortest_trigonometric_products(ring, group, mask)? {
             let mut monomial = group[0].monomial.clear_mask(mask);
             for wave in product.waves {
-                monomial = monomial.checked_product(ring.monomial_of_atom(Atom::Wave(wave))?)?;
+                monomial = monomial.checked_product(ring.intern_atom_as_monomial(Atom::Wave(wave))?)?;
             }
             out.push(Term { monomial, coefficient: product.coefficient });
         }
@@ -58,7 +58,9 @@ fn shortest_trigonometric_products(
         let sum = merge_product_pairs(ring, sum)?.into_iter().map(unfold_double_angle).collect();
         let sines = replace_cosine_squares(ring, products)?;
         let sines = merge_product_pairs(ring, sines)?;
-        best = [sum, sines].into_iter().fold(best, |a, b| if length(&b) < length(&a) { b } else { a });
+        best = [sum, sines]
+            .into_iter()
+            .fold(best, |a, b| if sum_complexity(&b) < sum_complexity(&a) { b } else { a });
     }
     Some(best)
 }
@@ -101,7 +103,7 @@ fn split_term_into_waves(ring: &Ring, term: &Term, mask: Monomial) -> SineCosine
 
 /// Returns the length of a sum: number of terms, number of multiple angles, number of sines and cosines. Sums
 /// are compared in this order.
-fn length(products: &[SineCosineProduct]) -> (usize, usize, usize) {
+fn sum_complexity(products: &[SineCosineProduct]) -> (usize, usize, usize) {
     let waves_of_products = || products.iter().flat_map(|p| &p.waves);
     let multiples = waves_of_products().filter(|w| w.angle.iter().any(|n| n.abs() > 1)).count();
     (products.len(), multiples, waves_of_products().count())

@@ -72,7 +72,7 @@ mod tests {
     fn unit_quaternion_norm_simplifies_polynomials() {
         let mut ring = Ring::new(|_| AtomRank::Position);
         let symbols = [0, 1, 2, 3].map(Symbol);
-        let q = symbols.map(|s| ring.monomial_of_atom(Atom::Symbol(s)).unwrap());
+        let q = symbols.map(|s| ring.intern_atom_as_monomial(Atom::Symbol(s)).unwrap());
         let quaternion_monomial =
             |list: &[usize]| list.iter().try_fold(Monomial::ONE, |m, k| m.checked_product(q[*k])).unwrap();
         let polynomial_in_quaternion = |list: &[(f64, &[usize])]| {

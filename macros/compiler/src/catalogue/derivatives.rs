@@ -60,7 +60,7 @@ pub const ROWS: &[Row] = &[
     Row::derived_row(Id::ForwardDynamicsDerivatives, "forward_dynamics_derivatives", UNCONSTRAINED, |f| {
         Declaration {
             arguments: vec![Q, V, Tau],
-            shape: forward_dynamics_shape(f),
+            shape: forward_derivatives_shape(f),
             docs: vec![
                 "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is \
                  `M⁻¹`.",
@@ -123,7 +123,7 @@ pub const ROWS: &[Row] = &[
                 ["by_q", "by_v", "inverse"].map(|name| Argument::Into(name, f.nv)).to_vec(),
             ]
             .concat(),
-            shape: forward_dynamics_shape(f),
+            shape: forward_derivatives_shape(f),
             docs: vec![
                 "Writes [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) to `by_q`, \
                  `by_v` and `inverse`, `NV` by `NV` each. Returns the accelerations, which equal \
@@ -264,6 +264,6 @@ fn constraint_row_count(f: &Facts) -> usize {
     f.constraints.map(|c| c.all).unwrap_or_default()
 }
 
-fn forward_dynamics_shape(f: &Facts) -> Shape {
+fn forward_derivatives_shape(f: &Facts) -> Shape {
     if f.calls { Shape::CalledForward(f.nv) } else { Shape::Forward(f.nv) }
 }

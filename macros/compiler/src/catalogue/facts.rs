@@ -196,7 +196,7 @@ impl Facts {
             all: model.constraints.len(),
             holonomic: model.holonomic_count(),
             slipping: model.constraints.iter().filter(|c| !c.friction.is_empty()).count(),
-            overdetermined: model.is_overdetermined(),
+            overdetermined: model.is_overconstrained(),
             determining: model.constraints.iter().any(|c| c.determines),
         });
         Facts {

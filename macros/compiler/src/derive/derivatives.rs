@@ -44,7 +44,7 @@ pub(super) fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Varia
 /// The derivative functions, derived from the variant of the model in which inverse dynamics derivatives cost
 /// least.
 pub(super) struct Derivatives<'a, 'g> {
-    parts: DerivativeParts<'a, 'g>,
+    parts: DerivativeVariant<'a, 'g>,
     /// Generalized forces of the inputs, `τ(q, u)`.
     tau: Vec<Expr<'g>>,
     /// True if the mechanism has constraints, whose multipliers are arguments.
@@ -58,15 +58,15 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         passes: Passes,
         specialisation: ParameterSpecialisation,
     ) -> Option<Derivatives<'a, 'g>> {
-        let mut parts: Vec<DerivativeParts<'_, '_>> =
-            variants.iter().map(|variant| DerivativeParts::new(variant, specialisation)).collect();
+        let mut parts: Vec<DerivativeVariant<'_, '_>> =
+            variants.iter().map(|variant| DerivativeVariant::new(variant, specialisation)).collect();
         if model.nv() <= DIFFERENTIATE {
-            parts.extend(variants.iter().map(|variant| DerivativeParts {
+            parts.extend(variants.iter().map(|variant| DerivativeVariant {
                 method: DerivationMethod::Differentiation,
-                ..DerivativeParts::new(variant, specialisation)
+                ..DerivativeVariant::new(variant, specialisation)
             }));
         }
-        let mut parts = parts.into_iter().min_by_key(DerivativeParts::operation_count_of_force_columns)?;
+        let mut parts = parts.into_iter().min_by_key(DerivativeVariant::operation_count_of_force_columns)?;
         if parts.model.acceleration_forces.is_empty() {
             parts.known = invariance::columns_determined_by_invariance(parts.model, &parts.joints);
         }
@@ -107,7 +107,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     /// Returns the form of the derivatives of inverse dynamics with loops over blocks of links, if it costs
     /// less than their `program`.
     pub(super) fn block_loops(&self, program: &Program) -> Option<BlockLoopDerivatives> {
-        let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
+        let DerivativeVariant { model, joints, specialisation, .. } = &self.parts;
         let supported = *specialisation == ParameterSpecialisation::None
             && model.nv() >= BLOCKED_VELOCITIES
             && derivatives::has_constant_subspaces(model);
@@ -115,13 +115,13 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 
     pub(super) fn momentum_derivatives(&self) -> Program {
-        let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
+        let DerivativeVariant { model, joints, specialisation, .. } = &self.parts;
         let p = momentum::generalized_momentum(model, joints, &mechanics::velocity_symbols(model));
         specialisation.lower_to_program(&entries_by_column(&symbolic::configuration_derivatives(model, &p)))
     }
 
     pub(super) fn momentum_rate_derivatives(&self) -> Program {
-        let DerivativeParts { model, joints, specialisation, .. } = &self.parts;
+        let DerivativeVariant { model, joints, specialisation, .. } = &self.parts;
         let rate = momentum::momentum_rate(model, joints, &mechanics::velocity_symbols(model));
         specialisation.lower_to_program(&force_derivative_entries(&symbolic::force_derivatives(model, &rate)))
     }
@@ -172,7 +172,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 }
 
 /// A variant of the model with the data that all derivative functions share.
-struct DerivativeParts<'a, 'g> {
+struct DerivativeVariant<'a, 'g> {
     model: &'a Model<'g>,
     joints: Vec<Joint<'g>>,
     mass: crba::Matrix<'g>,
@@ -198,10 +198,10 @@ struct MechanismInLanes<'g> {
     trunk: Option<Trunk>,
 }
 
-impl<'a, 'g> DerivativeParts<'a, 'g> {
-    fn new(variant: &'a Variant<'g>, specialisation: ParameterSpecialisation) -> DerivativeParts<'a, 'g> {
+impl<'a, 'g> DerivativeVariant<'a, 'g> {
+    fn new(variant: &'a Variant<'g>, specialisation: ParameterSpecialisation) -> DerivativeVariant<'a, 'g> {
         let mass = crba::mass_matrix(&variant.model, &variant.joints);
-        DerivativeParts {
+        DerivativeVariant {
             model: &variant.model,
             joints: variant.joints.clone(),
             effective: added_mass::effective_mass_matrix(&variant.model, &mass),
@@ -221,11 +221,11 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
         let limbs =
             VectorisedMechanism::new(self.model, &self.joints, &groups, || passive_forces(self.model, true));
         let marked =
-            limbs.as_ref().map(|limbs| Trunk::has_branching_descendant(&limbs.joints, limbs.model.nv()));
+            limbs.as_ref().map(|limbs| Trunk::branching_descendant_flags(&limbs.joints, limbs.model.nv()));
         if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {
                 (Some(limbs), Some(marked)) => limbs.marked_velocities_outside_limbs(marked),
-                _ => Trunk::has_branching_descendant(&self.joints, self.model.nv()),
+                _ => Trunk::branching_descendant_flags(&self.joints, self.model.nv()),
             };
             self.trunk = Trunk::new(&self.joints, &self.mass, &whole);
         }
@@ -255,7 +255,7 @@ impl<'a, 'g> DerivativeParts<'a, 'g> {
                 .lower_to_program(&self.force_derivative_entries(DerivationMethod::Recursion(*most)))
         });
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
-            let a = lanes.limbs.symbols_by_velocity(Quantity::Acceleration);
+            let a = lanes.limbs.symbols_of_quantity(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
                 lower(&force_derivative_entries(&forces))

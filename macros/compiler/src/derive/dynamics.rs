@@ -64,7 +64,7 @@ impl<'g> Dynamics<'g> {
                 choices.push(choice.variants);
             }
         }
-        choices.iter_mut().for_each(Variants::find_cheapest_bias_program);
+        choices.iter_mut().for_each(Variants::store_cheapest_bias_program);
         let wide = if speeds.is_none() { passes.tried_lane_counts(model.nv()) } else { &[] };
         let wide = lane_mass_matrix_programs(&choices, specialisation, wide);
         let side_by_side = cheapest_lane_programs(
@@ -241,7 +241,7 @@ fn lane_mass_matrix_programs<'g>(
     specialisation: ParameterSpecialisation,
     wide: &[usize],
 ) -> Vec<Program> {
-    let limb_mass_matrices = |most| {
+    let limb_lane_mass_programs = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
             variants
                 .limbs_for_all_functions()
@@ -250,7 +250,7 @@ fn lane_mass_matrix_programs<'g>(
         };
         cheapest_lane_programs(specialisation, choices.iter().flat_map(mass_matrices))
     };
-    let mass_matrices_with_column_lanes = |most| {
+    let column_lane_mass_programs = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
             let all = variants.variants_for_all_functions();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
@@ -259,8 +259,8 @@ fn lane_mass_matrix_programs<'g>(
     };
     [1].iter()
         .chain(wide)
-        .flat_map(|most| limb_mass_matrices(*most))
-        .chain(wide.iter().flat_map(|most| mass_matrices_with_column_lanes(*most)))
+        .flat_map(|most| limb_lane_mass_programs(*most))
+        .chain(wide.iter().flat_map(|most| column_lane_mass_programs(*most)))
         .collect()
 }
 

@@ -12,14 +12,14 @@ const LEAVE_OUT: &str = "or omit the dynamics with `inertia = none`: frames, the
                          and outputs remain";
 
 /// Returns true if the mass matrix is regular; otherwise reports the cause.
-pub fn report_singular_mass_matrix<'g>(
+pub fn check_mass_matrix<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
     cx: &mut Diagnostics,
 ) -> bool {
     let loaded = massless::mass_with_weighted_constraints(model, joints, mass.clone());
-    let mut singular = regularity::singular_mass_matrix_entries(model, joints, &loaded);
+    let mut singular = regularity::velocities_with_singular_mass(model, joints, &loaded);
     if singular.is_empty() {
         return true;
     }
@@ -49,7 +49,7 @@ pub fn check_effective_mass<'g>(
     cx: &mut Diagnostics,
 ) -> bool {
     let [force, ..] = model.acceleration_forces.as_slice() else { return true };
-    let singular = regularity::singular_mass_matrix_entries(
+    let singular = regularity::velocities_with_singular_mass(
         model,
         joints,
         &added_mass::effective_mass_matrix(model, mass),
@@ -84,7 +84,7 @@ fn massless_base<'g>(
         with_mass.links[bare].inertia = unit_mass_properties(model.graph);
         let mass = crba::mass_matrix(&with_mass, joints);
         let loaded = massless::mass_with_weighted_constraints(&with_mass, joints, mass);
-        let rest = regularity::singular_mass_matrix_entries(&with_mass, joints, &loaded);
+        let rest = regularity::velocities_with_singular_mass(&with_mass, joints, &loaded);
         (rest.len() < singular.len()).then_some((bare, rest))
     })
 }
@@ -134,7 +134,7 @@ fn report_massless_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Di
     diagnostic
         .add_help(format!("the mass matrix is singular: give mass or inertia to the bodies that {joints}"));
     if place.file.is_some() {
-        let mut joints: Vec<&str> = singular.iter().map(|k| joint_of_velocity(model, *k)).collect();
+        let mut joints: Vec<&str> = singular.iter().map(|k| joint_name_of_velocity(model, *k)).collect();
         joints.dedup();
         // The root joint is not defined in the file.
         joints.retain(|joint| !joint.starts_with(ROOT_JOINT));
@@ -150,7 +150,7 @@ fn report_massless_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Di
 
 /// Returns the name of a velocity's joint. The velocities of a joint with several degrees of freedom have the
 /// same place and different suffixes.
-fn joint_of_velocity<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
+fn joint_name_of_velocity<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
     let (name, place) = &model.velocities[velocity];
     let alone = model.velocities.iter().filter(|(_, other)| other.file == place.file).count() == 1;
     name.rsplit_once('.').filter(|_| !alone).map_or(name, |(joint, _)| joint)

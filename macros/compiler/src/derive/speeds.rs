@@ -238,7 +238,7 @@ impl<'g> Derivation<'_, 'g> {
             }
             Id::GeneralizedForcesSecondDerivatives => {
                 let InputHessian { state, qu, vu, uu } =
-                    hessian::of_inputs(native, &self.input_forces(speeds));
+                    hessian::hessian_of_inputs(native, &self.input_forces(speeds));
                 let [qq, qv, vv, _] = second::state_hessian_blocks(&hessian_in_speeds(state));
                 [
                     qq,
@@ -304,10 +304,10 @@ impl<'g> Derivation<'_, 'g> {
     fn hamiltons_form_in_speeds(&self, speeds: &SpeedTransformation<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
         let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
-        let of_joints = speeds.momenta_in_generalized_speeds(&momenta);
+        let of_joints = speeds.express_in_speeds_and_momenta(&momenta);
         let replace_velocities_by_momenta = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
             let velocity = speeds.speeds_of_velocities(
-                &speeds.momenta_in_generalized_speeds(&self.hamilton_outputs(|h| h.velocity.clone())),
+                &speeds.express_in_speeds_and_momenta(&self.hamilton_outputs(|h| h.velocity.clone())),
             );
             replace_all(&e, &|s| match Quantity::from_symbol(s) {
                 Quantity::Velocity(k) => velocity.get(k).copied(),
@@ -316,12 +316,12 @@ impl<'g> Derivation<'_, 'g> {
         };
         Some(match id {
             Id::Hamiltonian => {
-                speeds.momenta_in_generalized_speeds(&self.hamilton_outputs(|h| vec![h.hamiltonian]))
+                speeds.express_in_speeds_and_momenta(&self.hamilton_outputs(|h| vec![h.hamiltonian]))
             }
             Id::CanonicalVelocity => replace_velocities_by_momenta(mechanics::velocity_symbols(self.model)),
             _ => {
                 let rate =
-                    speeds.momenta_in_generalized_speeds(&self.hamilton_outputs(|h| h.momentum_rate.clone()));
+                    speeds.express_in_speeds_and_momenta(&self.hamilton_outputs(|h| h.momentum_rate.clone()));
                 replace_velocities_by_momenta(speeds.momentum_rate_in_speeds(&rate, &of_joints))
             }
         })

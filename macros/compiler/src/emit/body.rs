@@ -92,7 +92,7 @@ impl BodyWriter<'_> {
                 self.write_instruction(k);
             }
         }
-        self.write_angles(&angles);
+        self.write_sines_and_cosines(&angles);
         if !angles.list.is_empty() {
             self.head = self.statements.len();
             self.early = self.arguments_of_angles(&angles);
@@ -142,7 +142,7 @@ impl BodyWriter<'_> {
     }
 
     /// Writes the statement that computes the sines and cosines of all angles known from the start.
-    fn write_angles(&mut self, angles: &Angles) {
+    fn write_sines_and_cosines(&mut self, angles: &Angles) {
         // Sums of angles are combined to vectors from named values: in an array they would be stored to
         // memory individually.
         let is_angle_sum = |angle: &Angle| {

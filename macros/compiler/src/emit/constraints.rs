@@ -441,7 +441,7 @@ pub fn write_projection_hooks(out: &mut String, c: &Constraints, s: &Signature<'
 }
 
 /// Writes the trait's forward dynamics that reports an error, for mechanisms with sliding contacts.
-pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+pub fn write_try_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.slipping.is_empty() {
         return;
     }

@@ -134,7 +134,7 @@ fn write_steps(
     }
     for (k, link) in links.iter().enumerate() {
         add_path_kinematics_methods(&mut steps, k, link, s);
-        write_path_columns(&mut steps, k, links, s);
+        add_path_jacobian_methods(&mut steps, k, links, s);
     }
     steps
 }
@@ -319,7 +319,7 @@ fn write_jacobian(
 /// Adds the methods for frame Jacobians along the path of a link: the placements of the links from the ground
 /// to it, and its columns for a point at `o`. Each method calls that of the parent link, so that the code of
 /// a chain does not grow quadratically with its length.
-fn write_path_columns(
+fn add_path_jacobian_methods(
     steps: &mut FrameStepMethods,
     k: usize,
     links: &[LinkRecursionPrograms],

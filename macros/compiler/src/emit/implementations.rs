@@ -181,7 +181,7 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
              v) }}"
         );
     }
-    constraints::write_forward_dynamics(out, &i.constraints, s);
+    constraints::write_try_forward_dynamics(out, &i.constraints, s);
 }
 
 /// Writes the trait items that integrators use.

@@ -1,6 +1,6 @@
 //! Conversion of instructions and their operands to Rust expressions.
 
-use super::pieces::{Level, Piece, Statement};
+use super::pieces::{Piece, PrecedenceLevel, Statement};
 use super::scalar::ScalarSpelling;
 use crate::catalogue::Argument;
 use crate::expr::{Lookup, Symbol};
@@ -69,16 +69,17 @@ impl BodyWriter<'_> {
         if own == lanes {
             return piece;
         }
-        let text = match self.name_of_operation("splat", lanes) {
+        let text = match self.bind_operation_name("splat", lanes) {
             Some(splat) => format!("{splat}({})", piece.text),
             None => format!("Ops::splat::<_, {lanes}>({})", piece.text),
         };
-        Piece { text, needs: piece.needs, level: Level::Whole }
+        Piece { text, needs: piece.needs, level: PrecedenceLevel::Whole }
     }
 
     /// Returns the text of an operand. The text of an unbound value is taken out of `pieces`.
     pub fn operand_text(&mut self, o: Operand) -> Piece {
-        let piece_without_dependencies = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
+        let piece_without_dependencies =
+            |text| Piece { text, needs: Vec::new(), level: PrecedenceLevel::Whole };
         match o {
             Operand::Const(c) => piece_without_dependencies(self.constant_text(c)),
             Operand::Symbol(s) => piece_without_dependencies(self.input_symbol_text(s)),
@@ -100,7 +101,7 @@ impl BodyWriter<'_> {
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
-                level: Level::Whole,
+                level: PrecedenceLevel::Whole,
             }),
         }
     }
@@ -110,8 +111,8 @@ impl BodyWriter<'_> {
         let piece = self.operand_text(o);
         match self.scalar.uses_batch_lanes() {
             true => Piece {
-                text: format!("{}.lanes()", wrap_in_parentheses(&piece, Level::Whole)),
-                level: Level::Whole,
+                text: format!("{}.lanes()", parenthesised_below_level(&piece, PrecedenceLevel::Whole)),
+                level: PrecedenceLevel::Whole,
                 ..piece
             },
             false => piece,
@@ -146,13 +147,21 @@ impl BodyWriter<'_> {
         match op {
             Op::Neg(a) => {
                 let a = self.operand_text(a);
-                let text = format!("-{}", wrap_in_parentheses(&a, Level::Whole));
-                Piece { text, needs: a.needs, level: Level::Product }
+                let text = format!("-{}", parenthesised_below_level(&a, PrecedenceLevel::Whole));
+                Piece { text, needs: a.needs, level: PrecedenceLevel::Product }
             }
-            Op::Add(a, b) => self.infix_operation([a, b], "+", lanes, [Level::Sum, Level::Product]),
-            Op::Sub(a, b) => self.infix_operation([a, b], "-", lanes, [Level::Sum, Level::Product]),
-            Op::Mul(a, b) => self.infix_operation([a, b], "*", lanes, [Level::Product, Level::Whole]),
-            Op::Div(a, b) => self.infix_operation([a, b], "/", lanes, [Level::Product, Level::Whole]),
+            Op::Add(a, b) => {
+                self.infix_operation([a, b], "+", lanes, [PrecedenceLevel::Sum, PrecedenceLevel::Product])
+            }
+            Op::Sub(a, b) => {
+                self.infix_operation([a, b], "-", lanes, [PrecedenceLevel::Sum, PrecedenceLevel::Product])
+            }
+            Op::Mul(a, b) => {
+                self.infix_operation([a, b], "*", lanes, [PrecedenceLevel::Product, PrecedenceLevel::Whole])
+            }
+            Op::Div(a, b) => {
+                self.infix_operation([a, b], "/", lanes, [PrecedenceLevel::Product, PrecedenceLevel::Whole])
+            }
             Op::MulAdd(a, b, c) if self.build == BuildKind::Debug => {
                 self.product_plus_or_minus([a, b], "+", c)
             }
@@ -181,7 +190,7 @@ impl BodyWriter<'_> {
                     1 => format!("Ops::lanes([{}, {}])", a.text, b.text),
                     _ => format!("Ops::join::<_, {n}, {}>({}, {})", 2 * n, a.text, b.text),
                 };
-                Piece { text, needs: [a.needs, b.needs].concat(), level: Level::Whole }
+                Piece { text, needs: [a.needs, b.needs].concat(), level: PrecedenceLevel::Whole }
             }
         }
     }
@@ -189,9 +198,9 @@ impl BodyWriter<'_> {
     fn suffix_operation(&mut self, a: Operand, suffix: &str) -> Piece {
         let a = self.operand_text(a);
         Piece {
-            text: format!("{}{suffix}", wrap_in_parentheses(&a, Level::Whole)),
+            text: format!("{}{suffix}", parenthesised_below_level(&a, PrecedenceLevel::Whole)),
             needs: a.needs,
-            level: Level::Whole,
+            level: PrecedenceLevel::Whole,
         }
     }
 
@@ -200,16 +209,17 @@ impl BodyWriter<'_> {
         [a, b]: [Operand; 2],
         op: &str,
         lanes: usize,
-        [level, right]: [Level; 2],
+        [level, right]: [PrecedenceLevel; 2],
     ) -> Piece {
         if op == "*"
             && let Some(scaled) = self.scalar_and_vector_factors([a, b], lanes)
         {
-            let name = self.name_of_operation("scale", lanes).unwrap_or_else(|| "Ops::scale".to_string());
+            let name = self.bind_operation_name("scale", lanes).unwrap_or_else(|| "Ops::scale".to_string());
             return self.call_with_piece_arguments(&name, scaled);
         }
         let (a, b) = (self.broadcast_operand(a, lanes), self.broadcast_operand(b, lanes));
-        let text = format!("{} {op} {}", wrap_in_parentheses(&a, level), wrap_in_parentheses(&b, right));
+        let text =
+            format!("{} {op} {}", parenthesised_below_level(&a, level), parenthesised_below_level(&b, right));
         let mut needs = a.needs;
         needs.extend(b.needs);
         Piece { text, needs, level }
@@ -217,18 +227,21 @@ impl BodyWriter<'_> {
 
     /// Returns `a * b + c` or `a * b - c`.
     fn product_plus_or_minus(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
-        let product = self.infix_operation(product, "*", 1, [Level::Product, Level::Whole]);
+        let product =
+            self.infix_operation(product, "*", 1, [PrecedenceLevel::Product, PrecedenceLevel::Whole]);
         let c = self.operand_text(c);
-        let text = format!("{} {op} {}", product.text, wrap_in_parentheses(&c, Level::Product));
-        Piece { text, needs: [product.needs, c.needs].concat(), level: Level::Sum }
+        let text =
+            format!("{} {op} {}", product.text, parenthesised_below_level(&c, PrecedenceLevel::Product));
+        Piece { text, needs: [product.needs, c.needs].concat(), level: PrecedenceLevel::Sum }
     }
 
     /// Returns the expression `c - a * b`.
     fn difference_with_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
         let c = self.operand_text(c);
-        let product = self.infix_operation(product, "*", 1, [Level::Product, Level::Whole]);
-        let text = format!("{} - {}", wrap_in_parentheses(&c, Level::Sum), product.text);
-        Piece { text, needs: [c.needs, product.needs].concat(), level: Level::Sum }
+        let product =
+            self.infix_operation(product, "*", 1, [PrecedenceLevel::Product, PrecedenceLevel::Whole]);
+        let text = format!("{} - {}", parenthesised_below_level(&c, PrecedenceLevel::Sum), product.text);
+        Piece { text, needs: [c.needs, product.needs].concat(), level: PrecedenceLevel::Sum }
     }
 
     /// Returns a fused operation. The product of a scalar and a vector has an operation of its own, which
@@ -240,10 +253,11 @@ impl BodyWriter<'_> {
         lanes: usize,
     ) -> Piece {
         let Some(factors) = self.scalar_and_vector_factors([a, b], lanes) else {
-            let name = self.name_of_operation(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
+            let name =
+                self.bind_operation_name(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
             return self.call_with_broadcast_arguments(&name, &[a, b, c], lanes);
         };
-        let name = self.name_of_operation(scaled, lanes).unwrap_or_else(|| format!("Ops::{scaled}"));
+        let name = self.bind_operation_name(scaled, lanes).unwrap_or_else(|| format!("Ops::{scaled}"));
         let c = self.broadcast_operand(c, lanes);
         self.call_with_piece_arguments(&name, factors.into_iter().chain([c]).collect())
     }
@@ -262,7 +276,7 @@ impl BodyWriter<'_> {
 
     /// Returns the name to which an operation on `lanes` lanes is bound; `None` if operations are called
     /// directly.
-    fn name_of_operation(&mut self, function: &'static str, lanes: usize) -> Option<String> {
+    fn bind_operation_name(&mut self, function: &'static str, lanes: usize) -> Option<String> {
         self.named.as_mut()?.insert((function, lanes));
         Some(if lanes == 1 { function.to_string() } else { format!("{function}{lanes}") })
     }
@@ -321,10 +335,10 @@ impl BodyWriter<'_> {
             needs.extend(piece.needs);
             list.push(piece.text);
         }
-        Piece { text: format!("{function}({})", list.join(", ")), needs, level: Level::Whole }
+        Piece { text: format!("{function}({})", list.join(", ")), needs, level: PrecedenceLevel::Whole }
     }
 }
 
-fn wrap_in_parentheses(piece: &Piece, level: Level) -> String {
+fn parenthesised_below_level(piece: &Piece, level: PrecedenceLevel) -> String {
     if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
 }

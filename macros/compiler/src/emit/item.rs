@@ -90,7 +90,13 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> GeneratedCo
     validate::write_validate_method(&mut methods, interface, false);
     file::write_methods(&mut methods, interface, &spelling);
     write_frame_selection_functions(&mut methods, &s);
-    let mut emitted = assemble(interface, &s, &methods, output.frames.len(), &struct_docs(interface, output));
+    let mut emitted = assemble_generated_code(
+        interface,
+        &s,
+        &methods,
+        output.frames.len(),
+        &struct_docs(interface, output),
+    );
     write_frames(
         &mut emitted.text,
         &interface.shell.ident.to_string(),
@@ -178,7 +184,7 @@ pub fn emit_error_stubs(
             {nv}> {{ loop {{}} }}",
         interface.frames.len()
     );
-    let mut emitted = assemble(interface, &s, &methods, 0, &[]);
+    let mut emitted = assemble_generated_code(interface, &s, &methods, 0, &[]);
     write_missing_item_declarations(&mut emitted.text, interface, &s);
     measurements::write_impls(
         &mut emitted.text,
@@ -290,7 +296,7 @@ fn replace_runtime_path(text: String, shell: &Shell) -> String {
 }
 
 /// Returns the code of the struct with its implementations, without frames.
-fn assemble(
+fn assemble_generated_code(
     i: &Interface<'_>,
     s: &Signature<'_>,
     methods: &str,

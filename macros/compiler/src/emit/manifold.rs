@@ -94,7 +94,7 @@ fn write_linear_velocity_selection(out: &mut String, charts: Option<&[Chart]>, s
             let is_linear_velocity_of_free_joint = |k: usize| {
                 charts.iter().any(|chart| matches!(chart, Chart::Free(_, v) if (v.0..v.0 + 3).contains(&k)))
             };
-            let entry = |k: usize| {
+            let linear_velocity_or_zero = |k: usize| {
                 if is_linear_velocity_of_free_joint(k) { format!("r{k}") } else { "0.0".to_owned() }
             };
             let name =
@@ -105,7 +105,7 @@ fn write_linear_velocity_selection(out: &mut String, charts: Option<&[Chart]>, s
                 "let [[{}]] = dv.data.0;\n::linkwork::nalgebra::SVector::from_array_storage(\
                  ::linkwork::nalgebra::ArrayStorage([[{}]]))",
                 list(&name),
-                list(&entry)
+                list(&linear_velocity_or_zero)
             );
         }
         None => out.push_str("loop {}\n"),

@@ -17,7 +17,7 @@ pub struct Statement {
 
 /// Precedence of the outermost operation of an expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum PrecedenceLevel {
     /// Expression whose outermost operation is a sum or difference.
     #[default]
     Sum,
@@ -35,7 +35,7 @@ pub struct Piece {
     /// Numbers of the values whose names occur in the expression.
     pub needs: Vec<usize>,
     /// Precedence, which determines whether parentheses are needed.
-    pub level: Level,
+    pub level: PrecedenceLevel,
 }
 
 /// Outputs of a program as Rust source text.

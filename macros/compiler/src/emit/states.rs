@@ -46,7 +46,7 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
 }
 
 /// Returns the expression that calls a rate, or its derivatives with this suffix.
-fn output_call(f: &Function, suffix: &str) -> String {
+fn rate_call(f: &Function, suffix: &str) -> String {
     let names: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
     format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
 }
@@ -73,7 +73,7 @@ fn write_first_order_states(out: &mut String, rates: &[&Function], i: &Interface
         }
     });
     let fields: Vec<String> = fields.collect();
-    let values: Vec<String> = rates.iter().map(|f| output_call(f, "")).collect();
+    let values: Vec<String> = rates.iter().map(|f| rate_call(f, "")).collect();
     let unit_of_parameter = |k: usize| i.units.parameters.get(k).map_or("", |unit| unit);
     let units: Vec<&str> = i.states.iter().map(|(_, k)| unit_of_parameter(*k)).collect();
     let _ = writeln!(
@@ -129,8 +129,8 @@ fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s
             ::linkwork::__private::put_rows(&mut all.by_u, {k}, &seen.by_u);
             ::linkwork::__private::put_rows(&mut all.by_x, {k}, &::linkwork::__private::columns(&{}, \
                 [{which}]));",
-            output_call(f, DERIVATIVES),
-            output_call(f, BY_PARAMETERS),
+            rate_call(f, DERIVATIVES),
+            rate_call(f, BY_PARAMETERS),
         );
     }
     out.push_str("all\n}\n");

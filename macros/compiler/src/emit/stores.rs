@@ -94,7 +94,7 @@ fn insert_stores_after_dependencies(
     let mut ready: Vec<Vec<Statement>> = (0..=statements.len()).map(|_| Vec::new()).collect();
     let mut left = places.to_vec();
     let index_of_binding_statement = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
-    let all_known = |needs: &[usize]| {
+    let last_binding_statement = |needs: &[usize]| {
         needs.iter().filter_map(|need| index_of_binding_statement(*need)).max().unwrap_or(0)
     };
     let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
@@ -117,7 +117,7 @@ fn insert_stores_after_dependencies(
                 format!("{text}\n{place} = entry;")
             }),
         };
-        ready[all_known(&piece.needs)].push(store_statement(text, piece.needs.clone()));
+        ready[last_binding_statement(&piece.needs)].push(store_statement(text, piece.needs.clone()));
     }
     let mut ready = ready.into_iter();
     let mut all: Vec<Statement> = ready.next().into_iter().flatten().collect();

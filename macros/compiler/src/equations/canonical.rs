@@ -114,7 +114,7 @@ pub(super) fn velocities_of_momenta<'g>(
         let own: Matrix<'g> = group.iter().map(|i| group.iter().map(|j| mass[*i][*j]).collect()).collect();
         let n = group.len();
         let cofactors: Matrix<'g> =
-            (0..n).map(|i| (0..n).map(|j| matrix_cofactor(&own, i, j)).collect()).collect();
+            (0..n).map(|i| (0..n).map(|j| cofactor_of_entry(&own, i, j)).collect()).collect();
         let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
         // A sum of sines and cosines in a denominator would not be simplified.
         let is_configuration_symbol =
@@ -135,14 +135,14 @@ pub(super) fn velocities_of_momenta<'g>(
 }
 
 /// Returns the cofactor of an entry of a matrix with at most three rows.
-fn matrix_cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
+fn cofactor_of_entry<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
     let n = m.len();
     // With cyclic indices no sign is needed.
-    let cofactor_entry = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
+    let entry_of_minor = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
     match n {
         1 => m[0][0].num(1.0),
-        2 if i == j => cofactor_entry(1, 1),
-        2 => -cofactor_entry(1, 1),
-        _ => cofactor_entry(1, 1) * cofactor_entry(2, 2) - cofactor_entry(1, 2) * cofactor_entry(2, 1),
+        2 if i == j => entry_of_minor(1, 1),
+        2 => -entry_of_minor(1, 1),
+        _ => entry_of_minor(1, 1) * entry_of_minor(2, 2) - entry_of_minor(1, 2) * entry_of_minor(2, 1),
     }
 }

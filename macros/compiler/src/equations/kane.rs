@@ -10,8 +10,8 @@
 //! quasi-velocities).
 
 use super::written::{
-    marks_of_coordinate_rates, name_and_derivative_order, rate_name, typeset_names_with_extra_names,
-    wrap_at_page_width,
+    coordinate_rate_flags, joint_velocity_name_and_dots, name_and_derivative_order,
+    typeset_names_with_extra_names, wrap_at_page_width,
 };
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::NormalFormCache;
@@ -288,7 +288,7 @@ impl<'g> EliminatedMotion<'g> {
 
 /// Formats Kane's equations as plain text, LaTeX and MathML.
 pub fn format_kane_equations(model: &Model<'_>, kane: &KaneEquations) -> PrintedEquations {
-    let rates = marks_of_coordinate_rates(model);
+    let rates = coordinate_rate_flags(model);
     let names = typeset_names_with_extra_names(model, &[]);
     let name_of_symbol = |symbol: Symbol| name_and_derivative_order(model, &rates, symbol);
     let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
@@ -296,7 +296,7 @@ pub fn format_kane_equations(model: &Model<'_>, kane: &KaneEquations) -> Printed
         let (name, dots) = name_of_symbol(symbol);
         (names.get(&name), dots)
     };
-    let primed_rate_name = |k: usize| name_with_primes(rate_name(model, k));
+    let primed_rate_name = |k: usize| name_with_primes(joint_velocity_name_and_dots(model, k));
     let lines = KaneLines::new(kane, Plain { name: &primed_name }, &primed_rate_name);
     let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(wrapped_line).collect();
@@ -304,7 +304,7 @@ pub fn format_kane_equations(model: &Model<'_>, kane: &KaneEquations) -> Printed
     plain.extend(lines.motion.iter().map(wrapped_line));
     plain = plain + "\n" + &wrap_at_page_width(&legend_sentences(model, kane, &primed_name)) + "\n";
     let rate_name_and_dots = |k: usize| {
-        let (name, dots) = rate_name(model, k);
+        let (name, dots) = joint_velocity_name_and_dots(model, k);
         (names.get(&name), dots)
     };
     let latex_rate_symbol =

@@ -86,7 +86,7 @@ pub fn derive_linear_equations<'g>(
         .add_help("linear equations with constant coefficients need forces that stay the same");
         return None;
     }
-    Some(found.add_stability_conditions(model, &all))
+    Some(found.with_stability_conditions(model, &all))
 }
 
 /// Returns the force balance `h − τ − Jᵀ λ` for each velocity, with symbols for the multipliers.
@@ -183,8 +183,8 @@ fn add_coefficients_times_symbols<'g>(
 ) -> Option<()> {
     for (k, coefficient) in coefficients.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
         let coefficient = normal.normal_form(*coefficient)?;
-        let atom = normal.ring.monomial_of_atom(Atom::Symbol(symbol(k).symbol()))?;
-        let product = normal.ring.multiply_and_reduce(&coefficient, &Polynomial::single_term(atom, sign))?;
+        let atom = normal.ring.intern_atom_as_monomial(Atom::Symbol(symbol(k).symbol()))?;
+        let product = normal.ring.multiply_and_reduce(&coefficient, &Polynomial::from_term(atom, sign))?;
         *sum = normal.ring.add_within_limits(sum, &product)?;
     }
     Some(())
@@ -225,7 +225,7 @@ impl LinearisedEquations {
         found
     }
 
-    fn add_stability_conditions<'g>(
+    fn with_stability_conditions<'g>(
         mut self,
         model: &Model<'g>,
         all: &EquilibriumCoefficients<'g>,

@@ -180,8 +180,8 @@ pub fn derive_inertial_terms<'g>(
     };
     let mut found = derive(&bare, joints, mass, None, limits)?;
     for (k, force) in found.forces.iter_mut().enumerate() {
-        let symbol = found.ring.monomial_of_atom(Atom::Symbol(Quantity::Force(k).symbol()))?;
-        *force = Polynomial::single_term(symbol, 1.0);
+        let symbol = found.ring.intern_atom_as_monomial(Atom::Symbol(Quantity::Force(k).symbol()))?;
+        *force = Polynomial::from_term(symbol, 1.0);
     }
     found.without_forces = true;
     Some(found)

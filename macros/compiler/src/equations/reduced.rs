@@ -3,7 +3,7 @@
 
 use super::canonical::{determinant_symbol, velocities_of_momenta};
 use super::written::{
-    determinant_names, determinants_sentence, marks_of_coordinate_rates, name_and_derivative_order,
+    coordinate_rate_flags, determinant_names, determinants_sentence, name_and_derivative_order,
     typeset_names_with_extra_names, wrap_at_page_width,
 };
 use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
@@ -118,7 +118,7 @@ pub fn routh_equations<'g>(
 
 /// Formats Routh's equations as plain text, LaTeX and MathML.
 pub fn format_routh_equations(model: &Model<'_>, reduced: &ReducedRouthEquations) -> PrintedEquations {
-    let rates = marks_of_coordinate_rates(model);
+    let rates = coordinate_rate_flags(model);
     let momenta: Vec<String> =
         reduced.cyclic.iter().map(|k| format!("p_{}", model.velocities[*k].0)).collect();
     let inertias = determinant_names(model, reduced.determinants.len());

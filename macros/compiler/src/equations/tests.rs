@@ -75,7 +75,7 @@ fn value_lookup_by_name<'a>(
     model: &'a Model<'_>,
     at: &'a dyn Fn(Symbol) -> f64,
 ) -> impl Fn(&str) -> f64 + 'a {
-    let rates = written::marks_of_coordinate_rates(model);
+    let rates = written::coordinate_rate_flags(model);
     let indexed_quantities = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
     let quantities = indexed_quantities(model.parameters.len(), Quantity::Parameter)
         .chain(indexed_quantities(model.nq(), Quantity::Configuration))

@@ -16,7 +16,7 @@ const PAGE: usize = 92;
 
 /// Formats equations of motion as plain text, LaTeX and MathML.
 pub fn format_equations(model: &Model<'_>, equations: &EquationsOfMotion) -> PrintedEquations {
-    let rates = marks_of_coordinate_rates(model);
+    let rates = coordinate_rate_flags(model);
     let (latex, mathml) = typeset_equations(model, equations, &rates);
     PrintedEquations { plain: plain_text(model, equations, &rates), latex, mathml }
 }
@@ -60,7 +60,8 @@ fn plain_text(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[bool]) 
     let mut out = wrapped_line(&format!("{energy} = {}", lines.lagrangian));
     out.push('\n');
     for (k, rate) in &lines.rates {
-        out += &wrapped_line(&format!("{} = {rate}", name_with_primes(rate_name(model, *k))));
+        out +=
+            &wrapped_line(&format!("{} = {rate}", name_with_primes(joint_velocity_name_and_dots(model, *k))));
     }
     out.push_str(if lines.rates.is_empty() { "" } else { "\n" });
     for (motion, force) in lines.motion {
@@ -74,21 +75,21 @@ fn plain_text(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[bool]) 
 
 /// Formats the canonical equations as plain text, LaTeX and MathML.
 pub fn format_canonical_equations(model: &Model<'_>, canonical: &CanonicalEquations) -> PrintedEquations {
-    let rates = marks_of_coordinate_rates(model);
+    let rates = coordinate_rate_flags(model);
     let name_of_momentum = |k: usize| format!("p_{}", model.velocities[k].0);
     let momenta: Vec<String> = (0..model.nv()).map(name_of_momentum).collect();
     let determinants = determinant_names(model, canonical.determinants.len());
     let all = typeset_names_with_extra_names(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
-    let name_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
+    let symbol_name_and_order = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(k) => (momenta[k].clone(), 0),
         Quantity::Acceleration(k) => (momenta[k].clone(), 1),
         Quantity::Prepared(k) => (determinants[k].clone(), 0),
         _ => name_and_derivative_order(model, &rates, symbol),
     };
-    let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
-    let name_with_dots = |symbol| {
-        let (name, dots) = name_of_symbol(symbol);
+    let primed_name = |symbol| name_with_primes(symbol_name_and_order(symbol));
+    let typeset_name_and_dots = |symbol| {
+        let (name, dots) = symbol_name_and_order(symbol);
         (all.get(&name), dots)
     };
     let lines = canonical_lines(canonical, Plain { name: &primed_name });
@@ -100,21 +101,21 @@ pub fn format_canonical_equations(model: &Model<'_>, canonical: &CanonicalEquati
         .to_string();
     about += &determinants_sentence(&determinants);
     plain = plain + "\n" + &wrap_at_page_width(&about) + "\n";
-    let mut lines = canonical_lines(canonical, Latex { name: &name_with_dots });
+    let mut lines = canonical_lines(canonical, Latex { name: &typeset_name_and_dots });
     lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
     let latex = format_aligned(&lines);
-    lines = canonical_lines(canonical, MathMl { name: &name_with_dots });
+    lines = canonical_lines(canonical, MathMl { name: &typeset_name_and_dots });
     lines[0] = format!("<mi>H</mi> = {}", lines[0]);
     PrintedEquations { plain, latex, mathml: format_equations_as_html(&lines) }
 }
 
 /// Returns a name for a generalized force that no other symbol has.
 fn force_name(model: &Model<'_>, k: usize) -> String {
-    format!("{}{}", unused_letter(model, 'Q'), k + 1)
+    format!("{}{}", unused_name_prefix(model, 'Q'), k + 1)
 }
 
 /// Returns a letter, repeated until no name of a parameter or coordinate begins with it.
-fn unused_letter(model: &Model<'_>, letter: char) -> String {
+fn unused_name_prefix(model: &Model<'_>, letter: char) -> String {
     let mut found = letter.to_string();
     while model.parameters.iter().chain(&model.configuration).any(|name| name.starts_with(&found)) {
         found.push(letter);
@@ -124,7 +125,7 @@ fn unused_letter(model: &Model<'_>, letter: char) -> String {
 
 /// Returns names for determinants that no quantity of the model has.
 pub(super) fn determinant_names(model: &Model<'_>, count: usize) -> Vec<String> {
-    let letter = unused_letter(model, 'D');
+    let letter = unused_name_prefix(model, 'D');
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
 }
 
@@ -174,22 +175,23 @@ pub(super) fn wrap_at_page_width(text: &str) -> String {
 /// Returns the Lagrangian and an equation for every velocity, as LaTeX and as HTML.
 fn typeset_equations(model: &Model<'_>, equations: &EquationsOfMotion, rates: &[bool]) -> (String, String) {
     let names = typeset_names(model);
-    let name_with_dots = |symbol| {
+    let typeset_name_and_dots = |symbol| {
         let (name, dots) = name_and_derivative_order(model, rates, symbol);
         (names.get(&name), dots)
     };
     let rate_name_and_dots = |k: usize| {
-        let (name, dots) = rate_name(model, k);
+        let (name, dots) = joint_velocity_name_and_dots(model, k);
         (names.get(&name), dots)
     };
     let (energy, of_mathml) = match equations.without_forces {
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
-    let latex = LagrangeLines::new(equations, Latex { name: &name_with_dots }).equation_lines(energy, &|k| {
-        Latex { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
-    });
-    let mathml = LagrangeLines::new(equations, MathMl { name: &name_with_dots })
+    let latex = LagrangeLines::new(equations, Latex { name: &typeset_name_and_dots })
+        .equation_lines(energy, &|k| {
+            Latex { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+        });
+    let mathml = LagrangeLines::new(equations, MathMl { name: &typeset_name_and_dots })
         .equation_lines(of_mathml, &|k| {
             MathMl { name: &|_| rate_name_and_dots(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
         });
@@ -212,7 +214,7 @@ pub(super) fn typeset_names_with_extra_names(model: &Model<'_>, others: &[String
 }
 
 /// Returns for each velocity whether it is the rate of a coordinate of the same name.
-pub(super) fn marks_of_coordinate_rates(model: &Model<'_>) -> Vec<bool> {
+pub(super) fn coordinate_rate_flags(model: &Model<'_>) -> Vec<bool> {
     let mut rates = vec![false; model.nv()];
     for chart in &model.charts {
         if let Chart::Plain(q, v) = chart {
@@ -224,7 +226,7 @@ pub(super) fn marks_of_coordinate_rates(model: &Model<'_>) -> Vec<bool> {
 
 /// Returns the name under which joint velocity `k` is printed, with the number of dots: its own name and
 /// zero, or the name of the coordinate whose rate it is and one.
-pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
+pub(super) fn joint_velocity_name_and_dots(model: &Model<'_>, k: usize) -> (String, u8) {
     let name = model.speeds.as_ref().map_or("", |speeds| &speeds.velocities[k].0);
     let is_rate = model.charts.iter().any(|chart| match chart {
         Chart::Plain(q, v) => v.0 == k && model.configuration[q.0] == name,

@@ -3,7 +3,7 @@
 //! arguments.
 
 use super::pieces::{Piece, Statement};
-use super::tokens::numeric_literal;
+use super::tokens::c_numeric_literal;
 use crate::catalogue::Argument;
 use crate::expr::{Extreme, Function as Elementary, Lookup, Symbol};
 use crate::lower::{Angle, Angles, Op, Operand, Program};
@@ -50,7 +50,7 @@ pub fn write_program(out: &mut String, program: &Program, scope: &Scope<'_>, pla
     let pieces = vec![None; program.instructions.len()];
     let mut w = Writer { program, scope, statements: Vec::new(), pieces, read: Vec::new() };
     if scope.is_late {
-        w.write_inputs_before_first_use();
+        w.write_instructions_with_late_inputs();
     } else {
         write_input_bindings(out, program, scope);
         w.write_instructions();
@@ -113,7 +113,7 @@ impl Writer<'_> {
     }
 
     /// Writes all instructions, with arguments, parameters, sines and cosines right before their first use.
-    fn write_inputs_before_first_use(&mut self) {
+    fn write_instructions_with_late_inputs(&mut self) {
         let angles = Angles::find_angles(self.program);
         let mut is_written = vec![false; self.program.instructions.len()];
         for k in 0..self.program.instructions.len() {
@@ -206,17 +206,17 @@ impl Writer<'_> {
     fn operand_text(&mut self, o: Operand) -> Piece {
         match o {
             Operand::Const(c) if c.is_sign_negative() => {
-                Piece { level: 2, ..Piece::atomic_expression(numeric_literal(c)) }
+                Piece { level: 2, ..Piece::from_atomic_text(c_numeric_literal(c)) }
             }
-            Operand::Const(c) => Piece::atomic_expression(numeric_literal(c)),
+            Operand::Const(c) => Piece::from_atomic_text(c_numeric_literal(c)),
             Operand::Symbol(s) => match local_constant_name(Quantity::from_symbol(s), self.scope) {
                 Some(name) => {
-                    Piece { needs: self.reading_statement_index(s), ..Piece::atomic_expression(name) }
+                    Piece { needs: self.reading_statement_index(s), ..Piece::from_atomic_text(name) }
                 }
-                None => Piece::atomic_expression(MISSING.to_string()),
+                None => Piece::from_atomic_text(MISSING.to_string()),
             },
             // Programs without lanes contain neither tuples nor gathers.
-            Operand::Tuple(_) | Operand::Gather(_) => Piece::atomic_expression(MISSING.to_string()),
+            Operand::Tuple(_) | Operand::Gather(_) => Piece::from_atomic_text(MISSING.to_string()),
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
@@ -245,7 +245,7 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Max, a, b) => self.call_text("fmax", &[a, b]),
             Op::Table(lookup, a, b, c) => self.table_lookup_text(lookup, [a, b, c]),
             // Rejected by `check`.
-            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::atomic_expression(MISSING.to_string()),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::from_atomic_text(MISSING.to_string()),
         }
     }
 
@@ -255,7 +255,7 @@ impl Writer<'_> {
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let orders: Vec<String> = lookup.derivative_orders().iter().map(ToString::to_string).collect();
         let Some(table) = self.scope.tables.get(lookup.table_index()) else {
-            return Piece::atomic_expression(MISSING.to_string());
+            return Piece::from_atomic_text(MISSING.to_string());
         };
         let text = format!("lw_tabulated_{count}(&self->{table}, {}, {})", x.join(", "), orders.join(", "));
         Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }

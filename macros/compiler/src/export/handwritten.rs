@@ -164,7 +164,7 @@ pub fn all_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
 
 /// Returns the signature of an internal function of joint velocities, if speeds are declared: the functions
 /// of the manifold under other names.
-pub fn joint_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
+pub fn joint_manifold_signatures(i: &ExportedMechanism<'_>) -> Vec<ExportedSignature> {
     let derivatives = MANIFOLD_DERIVATIVES.iter().filter(|_| i.has_derivatives());
     let rename = |f: ExportedSignature| ExportedSignature { name: format!("joints_{}", f.name), ..f };
     MANIFOLD.iter().chain(derivatives).map(|f| rename(f.signature(i))).collect()

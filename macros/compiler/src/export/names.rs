@@ -26,7 +26,7 @@ const OF_HEADERS: &str = "\
     strsignal strspn strstr strtok strtok_r strxfrm tgamma time totalorder trunc ufromfp y0 y1 yn";
 
 /// Returns true if a list of names, separated by spaces, contains a name.
-fn contains_word(list: &str, name: &str) -> bool {
+fn list_contains_name(list: &str, name: &str) -> bool {
     list.split_whitespace().any(|known| known == name)
 }
 
@@ -52,7 +52,7 @@ pub fn identifier_from_name(name: &str) -> String {
         text.insert(0, 'x');
     }
     let shouts = text.len() > 2 && text.chars().all(|c| !c.is_ascii_lowercase());
-    if shouts || contains_word(RESERVED, &text) {
+    if shouts || list_contains_name(RESERVED, &text) {
         text.push('_');
     }
     text
@@ -66,7 +66,7 @@ pub fn c_name_prefix(name: &str) -> String {
         text.insert(0, 'x');
     }
     let is_of_header =
-        |name: &str| contains_word(OF_HEADERS, name) || super::tokens::FUNCTIONS.contains(&name);
+        |name: &str| list_contains_name(OF_HEADERS, name) || super::tokens::FUNCTIONS.contains(&name);
     // The mathematical library has each function in three precisions, and type names have these endings.
     let plain = text.strip_suffix(['f', 'l']).unwrap_or(&text);
     if is_of_header(&text) || is_of_header(plain) || text.ends_with("_t") || text.ends_with("_l") {

@@ -13,7 +13,7 @@ pub struct Piece {
 
 impl Piece {
     /// Creates an expression that refers to no values and needs no parentheses.
-    pub fn atomic_expression(text: String) -> Piece {
+    pub fn from_atomic_text(text: String) -> Piece {
         Piece { text, needs: Vec::new(), level: 3 }
     }
 

@@ -131,7 +131,7 @@ impl ExportedSignature {
 }
 
 /// Returns a list of arrays with their lengths, in the syntax of Python.
-pub fn array_list(arrays: &[Array]) -> String {
+pub fn python_array_list(arrays: &[Array]) -> String {
     let entries: Vec<String> = arrays.iter().map(|a| format!("({:?}, {})", a.name, a.length())).collect();
     format!("[{}]", entries.join(", "))
 }

@@ -3,12 +3,12 @@
 
 /// Values and conditions with which templates are filled.
 #[derive(Clone, Default)]
-pub struct Template {
+pub struct TemplateValues {
     values: Vec<(String, String)>,
     conditions: Vec<(&'static str, bool)>,
 }
 
-impl Template {
+impl TemplateValues {
     /// Adds the value of the placeholder `@NAME@`. Values may contain placeholders that are added later.
     pub fn add_value(&mut self, name: &str, value: &dyn ToString) {
         self.values.push((format!("@{name}@"), value.to_string()));
@@ -53,11 +53,11 @@ impl Template {
 
 #[cfg(test)]
 mod tests {
-    use super::Template;
+    use super::TemplateValues;
 
     #[test]
     fn conditions_select_lines_and_values_replace_placeholders() {
-        let mut template = Template::default();
+        let mut template = TemplateValues::default();
         template.add_value("N", &3);
         template.add_condition("SPEEDS", true);
         template.add_condition("TIME", false);

@@ -16,7 +16,7 @@ const WORDS: &[(&str, &str)] = &[
 ];
 
 /// Returns the C literal of a number.
-pub fn numeric_literal(c: f64) -> String {
+pub fn c_numeric_literal(c: f64) -> String {
     format!("{c:?}")
 }
 
@@ -64,12 +64,12 @@ fn single_precision_c_word(word: &str, after: &str) -> String {
 
 /// Returns true if a text contains a word as a whole, and not as a member of a struct.
 pub fn contains_word(text: &str, word: &str) -> bool {
-    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let is_word_character = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.match_indices(word).any(|(at, _)| {
         let before = text.get(..at).and_then(|t| t.chars().next_back());
         let after = text.get(at + word.len()..).and_then(|t| t.chars().next());
         let is_member = text.get(..at).is_some_and(|before| before.ends_with("->"));
-        !is_member && !before.is_some_and(is_letter) && !after.is_some_and(is_letter)
+        !is_member && !before.is_some_and(is_word_character) && !after.is_some_and(is_word_character)
     })
 }
 

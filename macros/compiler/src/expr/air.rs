@@ -22,7 +22,7 @@ const LAYERS: [(f64, f64); 8] = [
 ];
 
 /// Returns temperature, K, pressure, Pa, and temperature gradient, K/m, at a geopotential height, m.
-fn standard_atmosphere_values(h: f64) -> [f64; 3] {
+fn atmosphere_at_height(h: f64) -> [f64; 3] {
     let (mut temperature, mut pressure) = (288.15, 101_325.0);
     for (k, (base, lapse)) in LAYERS.iter().enumerate() {
         let end = LAYERS.get(k + 1).map_or(f64::INFINITY, |(end, _)| *end);
@@ -42,15 +42,15 @@ fn standard_atmosphere_values(h: f64) -> [f64; 3] {
 
 /// Returns the temperature of the standard atmosphere, K, at a geopotential height, m.
 pub fn temperature(h: f64) -> f64 {
-    standard_atmosphere_values(h)[0]
+    atmosphere_at_height(h)[0]
 }
 
 /// Returns the pressure of the standard atmosphere, Pa, at a geopotential height, m.
 pub fn pressure(h: f64) -> f64 {
-    standard_atmosphere_values(h)[1]
+    atmosphere_at_height(h)[1]
 }
 
 /// Returns the temperature gradient, K/m, at a geopotential height, m.
 pub fn lapse_rate(h: f64) -> f64 {
-    standard_atmosphere_values(h)[2]
+    atmosphere_at_height(h)[2]
 }

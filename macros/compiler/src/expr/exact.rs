@@ -12,7 +12,10 @@ const ROUNDING: f64 = 1e-14;
 
 /// Substitutes `by(s)` for symbols `s` of expressions, and replaces sines, cosines and tangents of known
 /// angles by exact values.
-pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
+pub fn substitute_with_exact_sines<'g>(
+    e: &[Expr<'g>],
+    by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
+) -> Vec<Expr<'g>> {
     replace_symbols_and_calls(e, by, &|f, x| match f {
         Function::Sin => sine_and_cosine(x)[0],
         Function::Cos => sine_and_cosine(x)[1],
@@ -84,13 +87,13 @@ fn exact_sine_and_cosine(value: f64) -> Option<[f64; 2]> {
     let root = 0.75_f64.sqrt();
     // Sines of 0°, 15°, … 90°. Those of 15° and 75° have no simple value.
     let first = [Some(0.0), None, Some(0.5), Some(FRAC_1_SQRT_2), Some(root), None, Some(1.0)];
-    let sine_of_multiple = |k: i64| {
+    let sine_of_pi_twelfths = |k: i64| {
         let k = k.rem_euclid(24);
         let (k, sign) = if k > 12 { (k - 12, -1.0) } else { (k, 1.0) };
         first[if k > 6 { 12 - k } else { k } as usize].map(|s| sign * s)
     };
     let k = whole as i64;
-    Some([sine_of_multiple(k)?, sine_of_multiple(k + 6)?])
+    Some([sine_of_pi_twelfths(k)?, sine_of_pi_twelfths(k + 6)?])
 }
 
 #[cfg(test)]
@@ -116,7 +119,7 @@ mod tests {
     fn inverse_functions_cancel_functions() {
         let g = Graph::new();
         let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
-        let fold_expression = |e| replace_exactly(&[e], &|_| None)[0];
+        let fold_expression = |e| substitute_with_exact_sines(&[e], &|_| None)[0];
         assert_eq!(fold_expression(x.apply_function(Function::Acos).cos()), x);
         assert_eq!(fold_expression((-x.apply_function(Function::Asin)).sin()), -x);
         assert_eq!(fold_expression((y - y.num(PI)).sin()), -y.sin());

@@ -159,12 +159,12 @@ impl Graph {
     }
 
     /// Returns a lookup table of zeros, of any length.
-    pub(super) fn take_recycled_table(&self) -> Vec<u32> {
+    pub(super) fn take_memo_table(&self) -> Vec<u32> {
         self.tables.borrow_mut().pop().unwrap_or_default()
     }
 
     /// Returns a lookup table of zeros to the graph, so that it is reused without an allocation.
-    pub(super) fn recycle_lookup_table(&self, table: Vec<u32>) {
+    pub(super) fn recycle_memo_table(&self, table: Vec<u32>) {
         self.tables.borrow_mut().push(table);
     }
 

@@ -39,7 +39,7 @@ impl<'g> Expr<'g> {
     }
 
     /// Returns true for a constant, or a constant times another expression.
-    pub fn is_constant_multiple(self) -> bool {
+    pub fn has_constant_factor(self) -> bool {
         let (_, id) = self.graph.split_sign(self.id);
         match self.graph.node(id) {
             Node::Mul(a, _) => self.graph.is_constant(a),

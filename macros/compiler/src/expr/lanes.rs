@@ -24,8 +24,8 @@ pub struct InternedLaneData {
 
 impl Graph {
     /// Returns a constant for each lane, or an ordinary constant if all are equal.
-    pub fn lane_constants(&self, values: &[f64]) -> Expr<'_> {
-        self.expr(self.lane_constant(values.to_vec()))
+    pub fn lanes_from_constants(&self, values: &[f64]) -> Expr<'_> {
+        self.expr(self.intern_lane_constants(values.to_vec()))
     }
 
     /// Returns an input for each lane, or an ordinary input if all are equal.
@@ -75,8 +75,10 @@ impl Graph {
         if a == b && self.lane_count(a) == 1 {
             return a;
         }
-        if let (Some(a), Some(b)) = (self.expr(a).lane_values(n), self.expr(b).lane_values(n)) {
-            return self.lane_constant([a, b].concat());
+        if let (Some(a), Some(b)) =
+            (self.expr(a).constant_lane_values(n), self.expr(b).constant_lane_values(n))
+        {
+            return self.intern_lane_constants([a, b].concat());
         }
         match (self.node(a), self.node(b)) {
             (Node::Neg(a), Node::Neg(b)) => self.neg(self.intern_node(Node::Join(n as u8, a, b))),
@@ -84,7 +86,7 @@ impl Graph {
         }
     }
 
-    fn lane_constant(&self, mut values: Vec<f64>) -> Id {
+    fn intern_lane_constants(&self, mut values: Vec<f64>) -> Id {
         for x in &mut values {
             // Minus zero becomes zero.
             *x += 0.0;
@@ -106,7 +108,7 @@ impl Graph {
     /// Applies a function to each constant of a tuple. Other nodes are returned unchanged.
     pub(super) fn map_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Id {
         match self.node(id) {
-            Node::Tuple(k) => self.lane_constant(self.lanes_of_tuple(k).into_iter().map(f).collect()),
+            Node::Tuple(k) => self.intern_lane_constants(self.lanes_of_tuple(k).into_iter().map(f).collect()),
             _ => id,
         }
     }
@@ -116,7 +118,7 @@ impl Graph {
     pub(super) fn map_lanes_if_finite(&self, id: Id, f: impl Fn(f64) -> f64) -> Option<Id> {
         let Node::Tuple(k) = self.node(id) else { return None };
         let values: Vec<f64> = self.lanes_of_tuple(k).into_iter().map(f).collect();
-        values.iter().all(|x| x.is_finite()).then(|| self.lane_constant(values))
+        values.iter().all(|x| x.is_finite()).then(|| self.intern_lane_constants(values))
     }
 
     /// Applies `f` to two constants, at least one of which is a tuple. `None` for other operands.
@@ -129,7 +131,7 @@ impl Graph {
             (Node::Const(x), Node::Tuple(y)) => self.lanes_of_tuple(y).into_iter().map(|y| f(x, y)).collect(),
             _ => return None,
         };
-        Some(self.lane_constant(values))
+        Some(self.intern_lane_constants(values))
     }
 
     /// Returns whether the first nonzero constant of a tuple is negative. This holds for exactly one of a
@@ -143,7 +145,7 @@ impl Graph {
 impl<'g> Expr<'g> {
     /// Returns the constants of all lanes, `n` copies for a constant without lanes. `None` if the expression
     /// is not constant.
-    pub fn lane_values(self, n: usize) -> Option<Vec<f64>> {
+    pub fn constant_lane_values(self, n: usize) -> Option<Vec<f64>> {
         match self.node() {
             Node::Const(c) => Some(vec![c; n]),
             Node::Tuple(k) => Some(self.graph().lanes_of_tuple(k)),
@@ -159,7 +161,7 @@ impl<'g> Expr<'g> {
     /// Returns true if the expression and `bound` are constant and the magnitude of the expression is at most
     /// the bound in every lane.
     pub fn is_within_bound(self, bound: Expr<'g>) -> bool {
-        match (self.lane_values(MAX_LANES), bound.lane_values(MAX_LANES)) {
+        match (self.constant_lane_values(MAX_LANES), bound.constant_lane_values(MAX_LANES)) {
             (Some(x), Some(bound)) => x.iter().zip(&bound).all(|(x, bound)| x.abs() <= *bound),
             _ => false,
         }
@@ -168,7 +170,7 @@ impl<'g> Expr<'g> {
     /// Returns the sum of the first `n` lanes of the expression.
     pub fn lane_sum(self, n: usize) -> Expr<'g> {
         let g = self.graph();
-        if let Some(values) = self.lane_values(n) {
+        if let Some(values) = self.constant_lane_values(n) {
             return g.num(values.iter().take(n).sum());
         }
         let (negative, id) = g.split_sign(self.id());
@@ -208,7 +210,7 @@ mod tests {
     #[test]
     fn constant_lanes_fold() {
         let g = Graph::new();
-        let constant_lanes = |values: [f64; 3]| g.lane_constants(&values);
+        let constant_lanes = |values: [f64; 3]| g.lanes_from_constants(&values);
         let x = g.lane_input_of_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
         assert_eq!(constant_lanes([2.0; 3]), g.num(2.0));
         assert_eq!(constant_lanes([1.0, 2.0, 3.0]) - constant_lanes([1.0, 2.0, 3.0]), g.zero());
@@ -230,13 +232,13 @@ mod tests {
         let s = g.symbol(Symbol(0));
         assert_eq!(s.append_lanes(1, s), s, "what has no lanes is the same in all");
         assert_eq!(
-            g.lane_constants(&[1.0, 2.0]).append_lanes(2, g.num(3.0)),
-            g.lane_constants(&[1.0, 2.0, 3.0, 3.0])
+            g.lanes_from_constants(&[1.0, 2.0]).append_lanes(2, g.num(3.0)),
+            g.lanes_from_constants(&[1.0, 2.0, 3.0, 3.0])
         );
         let both = x.square().append_lanes(2, y.square());
         assert_eq!((-x.square()).append_lanes(2, -y.square()), -both);
         assert_eq!(x.append_lanes(2, y).lane(2), g.symbol(Symbol(2)));
-        let all = both * g.lane_constants(&[1.0, 2.0, 3.0, 4.0]) + s;
+        let all = both * g.lanes_from_constants(&[1.0, 2.0, 3.0, 4.0]) + s;
         let lanes: Vec<Expr<'_>> = (0..4).map(|k| all.lane(k)).chain([all.lane_sum(4)]).collect();
         let value_of_symbol = |s: Symbol| f64::from(s.0) + 1.0;
         let expected = [2.0, 9.0, 28.0, 65.0, 104.0];
@@ -249,7 +251,7 @@ mod tests {
         let g = Graph::new();
         let x = g.lane_input_of_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
         let y = g.symbol(Symbol(3));
-        let e = g.lane_constants(&[1.0, -2.0, 3.0]) * x.square() + y;
+        let e = g.lanes_from_constants(&[1.0, -2.0, 3.0]) * x.square() + y;
         let values = eval(&[e.lane_sum(3), e.lane(2), e.lane_sum(3) * y], &|s| f64::from(s.0) + 1.0);
         assert_eq!(values, [1.0 - 8.0 + 27.0 + 12.0, 31.0, 32.0 * 4.0]);
     }

@@ -18,7 +18,7 @@ pub struct Memo<'g> {
 impl<'g> Memo<'g> {
     /// Creates an empty map for the nodes of a graph.
     pub fn new(graph: &'g Graph) -> Memo<'g> {
-        Memo { graph, table: graph.take_recycled_table(), written: Vec::new() }
+        Memo { graph, table: graph.take_memo_table(), written: Vec::new() }
     }
 
     /// Returns the number assigned to a node; `None` if none is assigned.
@@ -45,7 +45,7 @@ impl Drop for Memo<'_> {
         for id in &self.written {
             self.table[*id as usize] = 0;
         }
-        self.graph.recycle_lookup_table(std::mem::take(&mut self.table));
+        self.graph.recycle_memo_table(std::mem::take(&mut self.table));
     }
 }
 

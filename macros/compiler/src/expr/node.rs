@@ -137,8 +137,8 @@ impl Lookup {
         (0..self.variable_count()).map(|k| self.derivative_order(k)).collect()
     }
 
-    /// Returns the derivative by a variable. `None` if it is zero, since tables are at most cubic in each
-    /// variable.
+    /// Returns the derivative by a variable. `None` if it is zero, since tables are at most cubic in
+    /// each variable.
     pub fn partial_derivative(self, variable: usize) -> Option<Lookup> {
         (self.derivative_order(variable) < 3).then(|| Lookup(self.0 + (1 << (2 * variable))))
     }
@@ -150,10 +150,10 @@ impl Lookup {
         let surrogate_cubic = |(k, x): (usize, f64)| {
             let (order, pace, phase) =
                 (self.derivative_order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table_index() as f64);
-            let derivative = |n: usize| {
+            let sine_derivative = |n: usize| {
                 libm::pow(pace, n as f64) * libm::sin(phase + std::f64::consts::FRAC_PI_2 * n as f64)
             };
-            (order..=3).rev().fold(0.0, |sum, n| derivative(n) + sum * x / (n + 1 - order) as f64)
+            (order..=3).rev().fold(0.0, |sum, n| sine_derivative(n) + sum * x / (n + 1 - order) as f64)
         };
         x.into_iter().take(self.variable_count()).enumerate().map(surrogate_cubic).product()
     }

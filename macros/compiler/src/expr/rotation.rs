@@ -156,8 +156,7 @@ impl<'g> Rotation<'g> {
         // them become one matrix.
         let rotation_step_from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
         let is_common_step = |k: &usize| {
-            let all =
-                lanes.iter().map(|r| rotation_step_from_end(r, *k).map(|step| step.axis_index_or_matrix()));
+            let all = lanes.iter().map(|r| rotation_step_from_end(r, *k).map(|step| step.step_kind()));
             let mut kinds = all.collect::<Vec<_>>();
             kinds.dedup();
             kinds.len() == 1 && kinds[0].is_some()
@@ -280,7 +279,7 @@ impl<'g> Rotation<'g> {
 
 impl<'g> RotationStep<'g> {
     /// Returns the coordinate axis of the rotation, or 3 for a matrix.
-    fn axis_index_or_matrix(&self) -> usize {
+    fn step_kind(&self) -> usize {
         match self {
             RotationStep::Axis { axis, .. } => *axis,
             RotationStep::Matrix(_) => 3,
@@ -401,7 +400,7 @@ impl<'g> RotationStep<'g> {
                 // Same formula as in `rotate_tensor`. Twice the sine can be shared between several tensors,
                 // but if `xy` is a multiple, doubling its coefficient costs nothing.
                 let xy = x.entry(i, j);
-                let twice = if xy.is_constant_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
+                let twice = if xy.has_constant_factor() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
                 let u = *cos * (x.entry(i, i) - x.entry(j, j)) - twice;
                 let (cu, su) = (*cos * u, *sin * u);
                 let mut out = x.full_matrix();

@@ -51,12 +51,12 @@ impl<'a> Cx<'a> {
     /// Creates the import context of the file `text` at `path`.
     pub(super) fn new(text: &'a str, path: &Name, diagnostics: &'a mut Diagnostics) -> Cx<'a> {
         let piece = Piece { start: 0, file: 0, offset: 0 };
-        Cx::context_of_pieces(&[(text, &path.text)], vec![piece], path.place.span, diagnostics)
+        Cx::from_pieces(&[(text, &path.text)], vec![piece], path.place.span, diagnostics)
     }
 
     /// Creates the context of a text that is composed of pieces of files. `files` contains text and path of
     /// each file; the first piece starts at offset zero.
-    pub(super) fn context_of_pieces(
+    pub(super) fn from_pieces(
         files: &[(&'a str, &str)],
         pieces: Vec<Piece>,
         span: Span,

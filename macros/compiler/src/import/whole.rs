@@ -89,7 +89,7 @@ pub(super) fn import_composed_text(
 ) -> Option<ImportedMechanism> {
     let files: Vec<(&str, &str)> =
         whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
-    let cx = &mut Cx::context_of_pieces(&files, whole.pieces, name.place.span, cx);
+    let cx = &mut Cx::from_pieces(&files, whole.pieces, name.place.span, cx);
     let declared = OnceCell::new();
     let document = xml::parse_document(&whole.text, &declared, format, cx)?;
     let mut imported = read(document.root_element(), cx)?;

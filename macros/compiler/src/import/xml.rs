@@ -171,11 +171,11 @@ fn check_size_and_nesting(text: &str, format: FileFormat) -> Result<MarkupScan<'
         let rest = &text[start..];
         at = start
             + if rest.starts_with("<!--") {
-                end_of_markup(rest, 4, "-->")
+                markup_length(rest, 4, "-->")
             } else if rest.starts_with("<![CDATA[") {
-                end_of_markup(rest, 9, "]]>")
+                markup_length(rest, 9, "]]>")
             } else if rest.starts_with("<?") {
-                end_of_markup(rest, 2, "?>")
+                markup_length(rest, 2, "?>")
             } else if rest.starts_with("<!DOCTYPE") {
                 return Err((
                     start,
@@ -186,7 +186,7 @@ fn check_size_and_nesting(text: &str, format: FileFormat) -> Result<MarkupScan<'
                 ));
             } else if rest.starts_with("</") {
                 open.pop();
-                end_of_markup(rest, 2, ">")
+                markup_length(rest, 2, ">")
             } else {
                 root.get_or_insert(start);
                 let length = scan_start_tag(rest, start, &mut open, &mut note)?;
@@ -200,7 +200,7 @@ fn check_size_and_nesting(text: &str, format: FileFormat) -> Result<MarkupScan<'
 }
 
 /// Returns the length of a piece of markup that ends with `end`.
-fn end_of_markup(rest: &str, skip: usize, end: &str) -> usize {
+fn markup_length(rest: &str, skip: usize, end: &str) -> usize {
     rest.get(skip..).and_then(|body| body.find(end)).map_or(rest.len(), |k| skip + k + end.len())
 }
 
@@ -266,17 +266,17 @@ fn unexpanded_xacro_expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Op
     let attributes = node.attributes().filter(|_| has_known_tag || format == FileFormat::Sdf);
     let mut said = attributes.filter(|attribute| is_expression(attribute.value()));
     if let Some(found) = said.next() {
-        return Some((found.range_value().start, document_slice(node, found.range_value())?));
+        return Some((found.range_value().start, document_text_in_range(node, found.range_value())?));
     }
     // Values in SDF are the text of elements. Plug-ins and elements with children may contain any text.
     let text = node.first_child().filter(|child| format == FileFormat::Sdf && child.is_text())?;
     let in_plugin = node.ancestors().any(|above| above.tag_name().name() == "plugin");
     let found = text.text().filter(|text| is_expression(text) && !in_plugin)?;
     let before = found.len() - found.trim_start().len();
-    Some((text.range().start + before, document_slice(node, text.range())?.trim()))
+    Some((text.range().start + before, document_text_in_range(node, text.range())?.trim()))
 }
 
-fn document_slice<'t>(node: Node<'_, 't>, range: std::ops::Range<usize>) -> Option<&'t str> {
+fn document_text_in_range<'t>(node: Node<'_, 't>, range: std::ops::Range<usize>) -> Option<&'t str> {
     node.document().input_text().get(range)
 }
 

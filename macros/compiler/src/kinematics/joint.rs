@@ -34,7 +34,7 @@ pub struct Joint<'g> {
     pub dofs: Vec<Dof<'g>>,
     /// Additional motion of a link placed by expressions, whose motion subspace is not constant or which is
     /// driven in time.
-    pub drift: Option<VelocityFreeMotion<'g>>,
+    pub drift: Option<JointDrift<'g>>,
     /// Number of identical limbs that this joint connects to the parent, one in each SIMD lane of its
     /// expressions; one for an ordinary joint.
     pub limbs: usize,
@@ -42,7 +42,7 @@ pub struct Joint<'g> {
 
 /// Motion of a link in addition to the velocities of its coordinates, in link axes.
 #[derive(Clone, Debug)]
-pub struct VelocityFreeMotion<'g> {
+pub struct JointDrift<'g> {
     /// Twist at zero velocities, different from zero if the link is driven in time.
     pub twist: Spatial<'g>,
     /// Time derivative of the components of the joint's twist at constant `v`.
@@ -72,7 +72,7 @@ impl<'g> Joint<'g> {
 
     /// Returns the combined mass properties of the parent and of the link, or of all identical limbs in SIMD
     /// lanes.
-    pub fn composite_inertia(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
+    pub fn add_inertia_to_parent(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
         if self.limbs == 1 {
             return parent.sum_with_placed_inertia(link, &self.rotation, self.translation);
         }
@@ -229,7 +229,7 @@ fn joint_from_placement<'g>(
         rotation: place.rotation.clone(),
         translation: place.translation,
         dofs,
-        drift: Some(VelocityFreeMotion { twist: drift, acceleration, subspace_rates }),
+        drift: Some(JointDrift { twist: drift, acceleration, subspace_rates }),
         limbs: 1,
     }
 }

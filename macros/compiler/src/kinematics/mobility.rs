@@ -85,8 +85,8 @@ pub fn degrees_of_freedom(
     let count_free_dofs = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free_dof_count(w, rank));
     let freedom =
         Freedom { coordinates: count_free_dofs(model.holonomic_count()), velocities: count_free_dofs(nc) };
-    let is_undriven = || samples.iter().all(|sample| !moves_at_zero_velocity(model, rows, sample));
-    if freedom.velocities == 0 && !samples.is_empty() && is_undriven() {
+    let is_mechanism_undriven = || samples.iter().all(|sample| !moves_at_zero_velocity(model, rows, sample));
+    if freedom.velocities == 0 && !samples.is_empty() && is_mechanism_undriven() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.report_error(place.clone(), "this mechanism cannot move").add_help(format!(
             "its {nv} coordinates are fixed by {nc} constraints: remove a joint or a constraint"

@@ -14,7 +14,7 @@ pub mod speeds;
 
 pub use crate::expr::replace::symbols_in;
 pub use directions::{AXES, directions_in_plane, normalised_or_zero, perpendicular_directions};
-pub use joint::{Dof, Joint, VelocityFreeMotion, joint_of_link, joints_of_model};
+pub use joint::{Dof, Joint, JointDrift, joint_of_link, joints_of_model};
 pub use links::{accelerations, express_in_link_axes, twists};
 pub use rates::{
     CachedDerivatives, cached_velocity_gradient, configuration_rate, coordinate_as_expression,

@@ -35,8 +35,8 @@ fn sampled_matrix_entries(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f
 pub fn nonzero_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
     let all = sampled_matrix_entries(model, rows);
     let width = rows.first().map_or(0, Vec::len);
-    let has_nonzero_coefficient = |k: &usize| all.iter().flatten().any(|row| row[*k].abs() > TOLERANCE);
-    (0..width).filter(has_nonzero_coefficient).collect()
+    let is_nonzero_column = |k: &usize| all.iter().flatten().any(|row| row[*k].abs() > TOLERANCE);
+    (0..width).filter(is_nonzero_column).collect()
 }
 
 /// Returns the first row that is a combination of its predecessors in every configuration; `None` if there is
@@ -152,11 +152,11 @@ impl<'g> MinorCache<'_, 'g> {
 /// Returns an equivalent expression of the configuration with fewer operations, if identities of sines and
 /// cosines or of unit quaternions give one; otherwise the expression itself.
 pub fn shorten_expression<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
-    let found = shorter_form(model, e);
+    let found = simplified_form(model, e);
     found.filter(|found| Tape::new(&[*found]).node_count() < Tape::new(&[e]).node_count()).unwrap_or(e)
 }
 
-fn shorter_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
+fn simplified_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
     let mut normal = NormalFormCache::new(model.graph, |_: Symbol| AtomRank::Position);
     let p = normal.normal_form(e)?;
     let mut p = simplify_trigonometry(&mut normal.ring, &p)?;

@@ -18,7 +18,7 @@ impl Program {
             let before = times.instruction_finish_time(&self, k);
             times.known.push(before);
             let Some((sum, ops)) =
-                self.sum_to_chain(k).and_then(|sum| sum.chain_of_additions().map(|ops| (sum, ops)))
+                self.sum_worth_reordering(k).and_then(|sum| sum.chain_of_additions().map(|ops| (sum, ops)))
             else {
                 continue;
             };
@@ -38,7 +38,7 @@ impl Program {
     }
 
     /// Returns the sum that ends with instruction `k`, if another order of its terms saves an instruction.
-    fn sum_to_chain(&self, k: usize) -> Option<Sum> {
+    fn sum_worth_reordering(&self, k: usize) -> Option<Sum> {
         let ends = self.instructions[k].addition_terms()?;
         // With a product among its terms the last addition is fused already.
         if ends.iter().any(|t| self.is_fusable_product(*t)) {
@@ -59,7 +59,8 @@ impl Program {
     /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it
     /// is not, or if the sum is too long.
     fn collect_terms(&self, top: Term, sum: &mut Sum) -> bool {
-        let Some(terms) = self.single_use_addition(top.operand).filter(|_| sum.additions.len() < LONGEST)
+        let Some(terms) =
+            self.terms_of_single_use_addition(top.operand).filter(|_| sum.additions.len() < LONGEST)
         else {
             return false;
         };

@@ -43,7 +43,7 @@ impl Program {
         for op in &self.instructions {
             for term in op.addition_terms().into_iter().flatten() {
                 if let Operand::Value(k) = term.operand {
-                    inner[k] = self.single_use_addition(term.operand).is_some();
+                    inner[k] = self.terms_of_single_use_addition(term.operand).is_some();
                 }
             }
         }
@@ -59,7 +59,7 @@ impl Program {
             if terms.len() + todo.len() > LONGEST {
                 return None;
             }
-            match self.single_use_addition(term.operand) {
+            match self.terms_of_single_use_addition(term.operand) {
                 Some([a, b]) => todo.extend([
                     b.multiplied_by_sum_sign(term.negative),
                     a.multiplied_by_sum_sign(term.negative),

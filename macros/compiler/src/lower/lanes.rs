@@ -16,7 +16,8 @@ pub(super) struct ValueLaneCounts {
 }
 
 impl ValueLaneCounts {
-    /// Returns the lanes of the constants and inputs of a program, before its instructions.
+    /// Returns the numbers of lanes of a program's constants and inputs. Those of instructions are added
+    /// later.
     pub(super) fn program_input_lane_counts(program: &Program) -> ValueLaneCounts {
         let gathers = program.gathers.iter().map(Vec::len).collect();
         ValueLaneCounts { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }

@@ -38,7 +38,7 @@ impl Program {
     /// functions of the math library. All sines and cosines count once, since large angles fall back to the
     /// library. Square roots, magnitudes, signs, minima and maxima do not branch.
     pub fn branch_count(&self) -> usize {
-        let is_angle = |op: &&Op| matches!(op, Op::Call(Function::Sin | Function::Cos, _));
+        let is_sine_or_cosine = |op: &&Op| matches!(op, Op::Call(Function::Sin | Function::Cos, _));
         let others = self.instructions.iter().filter(|op| match op {
             Op::Call(
                 Function::Sin | Function::Cos | Function::Sqrt | Function::Abs | Function::Signum,
@@ -47,7 +47,7 @@ impl Program {
             Op::Call(..) | Op::Atan2(..) | Op::Pow(..) | Op::Table(..) => true,
             _ => false,
         });
-        others.count() + usize::from(self.instructions.iter().any(|op| is_angle(&op)))
+        others.count() + usize::from(self.instructions.iter().any(|op| is_sine_or_cosine(&op)))
     }
 }
 

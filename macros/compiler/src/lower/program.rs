@@ -278,11 +278,11 @@ impl Program {
 
     /// Interprets the program; returns the values of the outputs.
     pub fn interpret_program(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-        self.run_with(symbol, &Lookup::evaluate_surrogate)
+        self.interpret_with_tables(symbol, &Lookup::evaluate_surrogate)
     }
 
     /// Interprets the program with a function that evaluates table lookups from their variables.
-    pub fn run_with(
+    pub fn interpret_with_tables(
         &self,
         symbol: &dyn Fn(Symbol) -> f64,
         table: &dyn Fn(Lookup, [f64; 3]) -> f64,

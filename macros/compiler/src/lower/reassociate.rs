@@ -68,7 +68,7 @@ impl Program {
             let mut sum = Sum { additions: vec![k], terms: Vec::new() };
             let mut todo = ends.to_vec();
             while let Some(term) = todo.pop() {
-                let inner = self.single_use_addition(term.operand);
+                let inner = self.terms_of_single_use_addition(term.operand);
                 match inner.filter(|_| sum.terms.len() + todo.len() < LONGEST) {
                     Some(inner) => {
                         sum.additions.push(term.operand.instruction_index());

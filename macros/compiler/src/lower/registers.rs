@@ -16,10 +16,10 @@ impl Program {
     /// Returns the order of the instructions that [`with_few_live_values`](Self::with_few_live_values) uses.
     #[must_use]
     pub fn order_with_few_live_values(&self, arrays: &[usize]) -> Vec<usize> {
-        let mut needs = OperandNeeds::from_program(self);
+        let mut needs = InstructionOperands::from_program(self);
         let mut best: Vec<usize> = (0..self.instructions.len()).collect();
         let mut fewest = needs.maximum_live_values(&best);
-        let mut consider = |order: Vec<usize>, needs: &OperandNeeds| {
+        let mut consider = |order: Vec<usize>, needs: &InstructionOperands| {
             let live = needs.maximum_live_values(&order);
             if live < fewest {
                 (best, fewest) = (order, live);
@@ -27,7 +27,7 @@ impl Program {
         };
         // Derivatives by several arguments share most values in corresponding entries.
         for together in 1..=arrays.len().clamp(1, 3) {
-            let mut results = self.results_by_array(arrays, together);
+            let mut results = self.interleaved_result_instructions(arrays, together);
             for _ in 0..2 {
                 results.reverse();
                 needs.results.clone_from(&results);
@@ -42,7 +42,7 @@ impl Program {
 
     /// Returns the instructions of the results, with `together` consecutive arrays of equal length entry by
     /// entry.
-    fn results_by_array(&self, arrays: &[usize], together: usize) -> Vec<usize> {
+    fn interleaved_result_instructions(&self, arrays: &[usize], together: usize) -> Vec<usize> {
         let mut keys = Vec::new();
         for (k, length) in arrays.iter().enumerate() {
             let equal = arrays[..k].iter().rev().take_while(|other| *other == length).count();
@@ -65,7 +65,7 @@ const GREEDY: usize = 4000;
 
 /// Values that each instruction needs, where arguments of the program are numbered after the values of its
 /// instructions.
-struct OperandNeeds {
+struct InstructionOperands {
     of: Vec<Vec<usize>>,
     /// Number of program values and arguments together.
     count: usize,
@@ -73,8 +73,8 @@ struct OperandNeeds {
     results: Vec<usize>,
 }
 
-impl OperandNeeds {
-    fn from_program(program: &Program) -> OperandNeeds {
+impl InstructionOperands {
+    fn from_program(program: &Program) -> InstructionOperands {
         let n = program.instructions.len();
         let mut arguments: BTreeMap<Symbol, usize> = BTreeMap::new();
         let of = program.instructions.iter().map(|op| {
@@ -96,7 +96,7 @@ impl OperandNeeds {
             Operand::Value(k) => Some(*k),
             _ => None,
         });
-        OperandNeeds { of, count: n + arguments.len(), results: results.collect() }
+        InstructionOperands { of, count: n + arguments.len(), results: results.collect() }
     }
 
     /// Returns the maximum number of values that are live at once in an order of the instructions.

@@ -301,13 +301,13 @@ impl SumTable {
             }
             pairs.add(with_new);
             let [a, b] =
-                [pair.first_key(), pair.second_term_key()].map(|number| self.key_of_sum_or_atom(number));
+                [pair.first_key(), pair.second_term_key()].map(|number| self.term_key_from_index(number));
             self.sums.push(vec![(a, 1.0), (b, pair.coefficient_ratio())]);
         }
     }
 
     /// Returns the key of the atom or sum with this number.
-    fn key_of_sum_or_atom(&self, number: u32) -> TermKey {
+    fn term_key_from_index(&self, number: u32) -> TermKey {
         match number {
             0 => TermKey::One,
             n if n < FIRST_SUM => TermKey::Atom(n as usize - 1),

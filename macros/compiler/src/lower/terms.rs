@@ -67,7 +67,7 @@ impl Op {
 
 impl Program {
     /// Returns the terms of an addition with a single use.
-    pub(super) fn single_use_addition(&self, o: Operand) -> Option<[Term; 2]> {
+    pub(super) fn terms_of_single_use_addition(&self, o: Operand) -> Option<[Term; 2]> {
         self.single_use_operation(o)?.addition_terms()
     }
 

@@ -2,8 +2,8 @@
 //! the forces that the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the
 //! mechanism at rest without gravity, so that the recursion has no velocity terms.
 
-use super::is_plain_tree;
 use super::ldl::inverse_of_second_ldl_pivot;
+use super::supports_articulated_body_algorithm;
 use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanics::passive::passive_forces;
@@ -34,7 +34,7 @@ fn solve_articulated<'g>(
     mut wrenches: Vec<Spatial<'g>>,
     r: &[Expr<'g>],
 ) -> Option<Vec<Expr<'g>>> {
-    if !is_plain_tree(model) {
+    if !supports_articulated_body_algorithm(model) {
         return None;
     }
     let mut inertias: Vec<ArticulatedInertia<'g>> =

@@ -261,10 +261,10 @@ impl SampledState {
         let (nq, nv) = (self.q.len(), self.v.len());
         let unit_vector =
             |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let gradient_entry = |k: usize| {
+        let derivatives_by_entry = |k: usize| {
             self.directional_derivatives(tape, 0.0, &unit_vector(nq, k), &unit_vector(nv, k.wrapping_sub(nq)))
         };
-        let columns: Vec<Vec<f64>> = (0..nq + nv).map(gradient_entry).collect();
+        let columns: Vec<Vec<f64>> = (0..nq + nv).map(derivatives_by_entry).collect();
         let count = columns.first().map_or(0, Vec::len);
         (0..count).map(|value| columns.iter().map(|column| column[value]).collect()).collect()
     }

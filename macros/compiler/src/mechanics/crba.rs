@@ -5,7 +5,7 @@ use super::shared_motions::SharedPartialVelocities;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial, map_spatial};
 use crate::mechanism::{Inertia, Model};
-use crate::vectorise::{LaneGroup, PathsToRoot, PropagationVisitor};
+use crate::vectorise::{LaneGroup, PathsToRoot, RootPropagationVisitor};
 
 /// Square matrix of expressions, stored by rows.
 pub type Matrix<'g> = Vec<Vec<Expr<'g>>>;
@@ -53,13 +53,13 @@ impl<'g> MassMatrixVisitor<'_, 'g> {
     }
 }
 
-impl<'g> PropagationVisitor<'g> for MassMatrixVisitor<'_, 'g> {
+impl<'g> RootPropagationVisitor<'g> for MassMatrixVisitor<'_, 'g> {
     type Item = Spatial<'g>;
 
     fn start(&mut self, dof: usize) -> Spatial<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
-        if self.shared.stores_velocities_of_link(link) {
+        if self.shared.shares_partial_velocity(link) {
             // A link in `SharedPartialVelocities` is placed on the ground, so no ancestor has entries with
             // it. `SharedPartialVelocities` adds its own entries.
             return own.subspace;
@@ -88,7 +88,7 @@ pub fn composite_inertias<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<In
     let mut sums: Vec<Inertia<'g>> = model.links.iter().map(|l| l.inertia).collect();
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
-            sums[parent.0] = joint.composite_inertia(&sums[parent.0], &sums[k]);
+            sums[parent.0] = joint.add_inertia_to_parent(&sums[parent.0], &sums[k]);
         }
     }
     sums

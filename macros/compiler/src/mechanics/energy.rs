@@ -22,7 +22,7 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
 pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>, Vec3<'g>) {
     let composites = composite_inertias(model, joints);
     let roots = joints.iter().zip(&composites).filter(|(joint, _)| joint.parent.is_none());
-    let sum = roots.fold(model.still, |sum, (joint, c)| joint.composite_inertia(&sum, c));
+    let sum = roots.fold(model.still, |sum, (joint, c)| joint.add_inertia_to_parent(&sum, c));
     (sum.mass, sum.moment)
 }
 

@@ -15,7 +15,7 @@ pub type ColumnCombination = Vec<(usize, f64)>;
 
 /// Result of the test of one column for linear independence.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ColumnTest {
+pub enum ColumnDependence {
     /// Column that is linearly independent of its predecessors.
     Own,
     /// This combination of independent predecessors; empty if the column is zero.
@@ -23,19 +23,21 @@ pub enum ColumnTest {
 }
 
 /// Classifies columns of equal length. A column whose factors depend on the parameters counts as independent.
-pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<ColumnTest> {
-    let one = orthogonalise_columns(&sampled_column_values(model, columns, 0));
+pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<ColumnDependence> {
+    let one = test_column_independence(&sampled_column_values(model, columns, 0));
     if model.parameters.is_empty() {
         return one;
     }
-    let other = orthogonalise_columns(&sampled_column_values(model, columns, 1));
-    let combined_part_if_equal = |(one, other): (ColumnTest, ColumnTest)| match (&one, &other) {
-        (ColumnTest::Combined(a), ColumnTest::Combined(b)) if !are_equal_linear_combinations(a, b) => {
-            ColumnTest::Own
+    let other = test_column_independence(&sampled_column_values(model, columns, 1));
+    let agreeing_test_result = |(one, other): (ColumnDependence, ColumnDependence)| match (&one, &other) {
+        (ColumnDependence::Combined(a), ColumnDependence::Combined(b))
+            if !are_equal_linear_combinations(a, b) =>
+        {
+            ColumnDependence::Own
         }
         _ => one,
     };
-    one.into_iter().zip(other).map(combined_part_if_equal).collect()
+    one.into_iter().zip(other).map(agreeing_test_result).collect()
 }
 
 fn are_equal_linear_combinations(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
@@ -71,7 +73,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Orthogonalises the columns one after another (Gram–Schmidt, applied twice against rounding errors), and
 /// returns which columns are independent.
-fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<ColumnTest> {
+fn test_column_independence(columns: &[Vec<f64>]) -> Vec<ColumnDependence> {
     let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
     // Orthonormal vectors, each with its combination of independent columns.
     let mut base: Vec<(Vec<f64>, ColumnCombination)> = Vec::new();
@@ -79,7 +81,7 @@ fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<ColumnTest> {
     for (k, column) in columns.iter().enumerate() {
         let size = dot(column, column).sqrt();
         if size <= TOLERANCE * largest {
-            parts.push(ColumnTest::Combined(Vec::new()));
+            parts.push(ColumnDependence::Combined(Vec::new()));
             continue;
         }
         let mut rest = column.clone();
@@ -101,12 +103,12 @@ fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<ColumnTest> {
                 (0..k).filter(|i| combination[*i] != 0.0).map(|i| (i, -combination[i] / left)).collect();
             of.push((k, 1.0 / left));
             base.push((rest.iter().map(|r| r / left).collect(), of));
-            parts.push(ColumnTest::Own);
+            parts.push(ColumnDependence::Own);
         } else {
             let norm_of_column = |i: usize| dot(&columns[i], &columns[i]).sqrt();
             let is_significant_coefficient =
                 |i: &usize| (combination[*i] * norm_of_column(*i)).abs() > 1e-7 * size;
-            parts.push(ColumnTest::Combined(
+            parts.push(ColumnDependence::Combined(
                 (0..k).filter(is_significant_coefficient).map(|i| (i, combination[i])).collect(),
             ));
         }
@@ -116,7 +118,7 @@ fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<ColumnTest> {
 
 #[cfg(test)]
 mod tests {
-    use super::{ColumnTest, orthogonalise_columns};
+    use super::{ColumnDependence, test_column_independence};
 
     #[test]
     fn linear_combinations_are_detected() {
@@ -124,10 +126,13 @@ mod tests {
         let zero = vec![0.0; 4];
         let c: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - 0.5 * b).collect();
         let d = vec![1.0, 0.0, 0.0, 0.0];
-        let found = orthogonalise_columns(&[a, zero, b, c, d]);
-        assert_eq!((&found[0], &found[2], &found[4]), (&ColumnTest::Own, &ColumnTest::Own, &ColumnTest::Own));
-        assert_eq!(found[1], ColumnTest::Combined(Vec::new()));
-        let ColumnTest::Combined(list) = &found[3] else { panic!("{found:?}") };
+        let found = test_column_independence(&[a, zero, b, c, d]);
+        assert_eq!(
+            (&found[0], &found[2], &found[4]),
+            (&ColumnDependence::Own, &ColumnDependence::Own, &ColumnDependence::Own)
+        );
+        assert_eq!(found[1], ColumnDependence::Combined(Vec::new()));
+        let ColumnDependence::Combined(list) = &found[3] else { panic!("{found:?}") };
         let [(0, x), (2, y)] = list[..] else { panic!("{list:?}") };
         assert!((x - 2.0).abs() < 1e-12 && (y + 0.5).abs() < 1e-12);
     }

@@ -74,10 +74,10 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
                         (Some(lane), _) | (None, Some(lane)) => entry.lane(lane),
                     }
                 };
-            let row_of_responses = |row: &(usize, Option<usize>)| {
+            let row_of_summed_matrix = |row: &(usize, Option<usize>)| {
                 places.iter().map(|column| entry_of_lane_pair(*row, *column)).collect()
             };
-            let found: Matrix<'g> = places.iter().map(row_of_responses).collect();
+            let found: Matrix<'g> = places.iter().map(row_of_summed_matrix).collect();
             match &mut sum {
                 None => sum = Some(found),
                 Some(sum) => {

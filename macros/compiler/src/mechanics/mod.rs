@@ -52,12 +52,12 @@ pub fn generalized_force_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// Returns whether every velocity belongs to exactly one joint coordinate, so that the articulated-body
 /// algorithm applies.
-pub fn is_plain_tree(model: &Model<'_>) -> bool {
+pub fn supports_articulated_body_algorithm(model: &Model<'_>) -> bool {
     let mut seen = vec![false; model.nv()];
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| {
             let mut own = |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v.0], true);
-            link.motion.has_constant_subspace() && link.motion.plain_coordinate().is_none_or(&mut own)
+            link.motion.has_constant_subspace() && link.motion.single_coordinate().is_none_or(&mut own)
         })
 }

@@ -36,7 +36,7 @@ fn project_wrenches<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spa
     let mut out = vec![model.graph.zero(); model.nv()];
     let shared = SharedPartialVelocities::new(model, joints);
     for (_, (joint, wrench)) in
-        joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.stores_velocities_of_link(*k))
+        joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.shares_partial_velocity(*k))
     {
         for dof in &joint.dofs {
             out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);
@@ -75,7 +75,7 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
     let shared = SharedPartialVelocities::shared_subspace_rates(model, joints);
     shared.add_forces(&momenta, &mut rate);
     for (_, (joint, momentum)) in
-        joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.stores_velocities_of_link(*k))
+        joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.shares_partial_velocity(*k))
     {
         for (dof, change) in joint.dofs.iter().zip(joint.drift.iter().flat_map(|d| &d.subspace_rates)) {
             rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);

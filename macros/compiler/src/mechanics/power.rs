@@ -34,7 +34,8 @@ pub fn control_power<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
     tau.iter().zip(velocity_symbols(model)).fold(model.graph.zero(), |sum, (tau, v)| sum + *tau * v)
 }
 
-/// Returns the power of applied forces other than inputs and dissipative forces.
+/// Returns the power of disturbances: loads that are neither conservative nor dissipative, with inputs set to
+/// zero.
 pub fn disturbance_power<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
     let force_without_inputs = |load: &Load<'g>| {

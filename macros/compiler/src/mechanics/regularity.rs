@@ -9,7 +9,7 @@ use crate::mechanism::{Model, Quantity};
 /// Returns the entries of `v` at which the factorisation of the mass matrix fails, from the root on. Several
 /// random configurations are tested. The result is empty if the factorisation succeeds in one of them. If
 /// some entries fail in all configurations, only those are returned.
-pub fn singular_mass_matrix_entries(
+pub fn velocities_with_singular_mass(
     model: &Model<'_>,
     joints: &[Joint<'_>],
     mass: &Matrix<'_>,

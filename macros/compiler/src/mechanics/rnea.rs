@@ -25,7 +25,7 @@ pub fn inverse_dynamics<'g>(
     let shared = SharedPartialVelocities::new(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
-        for dof in joint.dofs.iter().filter(|_| !shared.stores_velocities_of_link(k)) {
+        for dof in joint.dofs.iter().filter(|_| !shared.shares_partial_velocity(k)) {
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {

@@ -13,14 +13,14 @@ use std::collections::BTreeMap;
 /// velocity with another link. A shared partial velocity is stored once. The list is empty if no two links
 /// share one.
 pub struct SharedPartialVelocities<'g> {
-    motions: Vec<SharedMotion<'g>>,
+    motions: Vec<SharedPartialVelocity<'g>>,
     /// True for each link that shares a partial velocity with another link.
     concerned: Vec<bool>,
 }
 
 /// Partial velocity of some links for an entry of `v`, or the time derivative of that partial velocity. Its
 /// components are the same in the axes of each of these links.
-struct SharedMotion<'g> {
+struct SharedPartialVelocity<'g> {
     index: usize,
     ratio: f64,
     along: Spatial<'g>,
@@ -31,39 +31,39 @@ struct SharedMotion<'g> {
 impl<'g> SharedPartialVelocities<'g> {
     /// Collects the motion subspaces that several links share.
     pub fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedPartialVelocities<'g> {
-        SharedPartialVelocities::collect_shared_motions(model, joints, |joint, dof| {
+        SharedPartialVelocities::collect_shared_partial_velocities(model, joints, |joint, dof| {
             Some(joint.dofs[dof].subspace)
         })
     }
 
     /// Collects the time derivatives of motion subspaces that several links share.
     pub fn shared_subspace_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedPartialVelocities<'g> {
-        SharedPartialVelocities::collect_shared_motions(model, joints, |joint, dof| {
+        SharedPartialVelocities::collect_shared_partial_velocities(model, joints, |joint, dof| {
             joint.drift.as_ref()?.subspace_rates.get(dof).copied()
         })
     }
 
-    fn collect_shared_motions(
+    fn collect_shared_partial_velocities(
         model: &Model<'g>,
         joints: &[Joint<'g>],
         along: impl Fn(&Joint<'g>, usize) -> Option<Spatial<'g>>,
     ) -> SharedPartialVelocities<'g> {
-        let mut motions: Vec<SharedMotion<'g>> = Vec::new();
+        let mut motions: Vec<SharedPartialVelocity<'g>> = Vec::new();
         let mut known: BTreeMap<(usize, u64, Vec<Id>), usize> = BTreeMap::new();
         // Wrenches of links with a parent are transmitted to the parent, and identical limbs are summed in
         // that step. Such links are left out here.
-        let is_placed_link = |k: usize| {
+        let is_placed_relative_to_ground = |k: usize| {
             let (link, joint) = (&model.links[k], &joints[k]);
             matches!(link.motion, Motion::Placed) && joint.parent.is_none() && joint.limbs == 1
         };
-        for (k, joint) in joints.iter().enumerate().rev().filter(|(k, _)| is_placed_link(*k)) {
+        for (k, joint) in joints.iter().enumerate().rev().filter(|(k, _)| is_placed_relative_to_ground(*k)) {
             for (place, dof) in joint.dofs.iter().enumerate() {
                 let Some(along) = along(joint, place) else { continue };
                 let ids = along.linear.0.iter().chain(&along.angular.0).map(|e| e.id()).collect();
                 let next = motions.len();
                 match *known.entry((dof.index, dof.ratio.to_bits(), ids)).or_insert(next) {
                     motion if motion < next => motions[motion].links.push(k),
-                    _ => motions.push(SharedMotion {
+                    _ => motions.push(SharedPartialVelocity {
                         index: dof.index,
                         ratio: dof.ratio,
                         along,
@@ -82,7 +82,7 @@ impl<'g> SharedPartialVelocities<'g> {
     }
 
     /// Returns true for a link whose partial velocities are stored in this collection.
-    pub fn stores_velocities_of_link(&self, link: usize) -> bool {
+    pub fn shares_partial_velocity(&self, link: usize) -> bool {
         self.concerned[link]
     }
 

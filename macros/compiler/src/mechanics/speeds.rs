@@ -137,13 +137,13 @@ impl<'g> SpeedTransformation<'g> {
 
     /// Expresses `e` in generalized speeds. The given forces in `e` are generalized forces of the joints; the
     /// given forces of the result are generalized forces of the speeds.
-    pub fn forces_in_generalized_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn express_in_speeds_and_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         self.replace_covector_symbols(e, |k| Quantity::Given(SuppliedQuantity::Force, k))
     }
 
     /// Expresses `e` in generalized speeds. The given momenta in `e` are momenta of the joints; the given
     /// momenta of the result are momenta of the speeds.
-    pub fn momenta_in_generalized_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn express_in_speeds_and_momenta(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         self.replace_covector_symbols(e, Quantity::Momentum)
     }
 
@@ -182,12 +182,12 @@ impl<'g> SpeedTransformation<'g> {
                 let (first, rest) = solution.split_at(n.min(solution.len()));
                 let mut out = match role {
                     ResultKind::Answers(_) => {
-                        self.speeds_of_velocities(&self.forces_in_generalized_speeds(first))
+                        self.speeds_of_velocities(&self.express_in_speeds_and_forces(first))
                     }
                     _ => self.speed_rates_from_accelerations(first),
                 };
                 out.extend(match role {
-                    ResultKind::Answers(_) => self.forces_in_generalized_speeds(rest),
+                    ResultKind::Answers(_) => self.express_in_speeds_and_forces(rest),
                     _ => self.express_in_speeds(rest),
                 });
                 self.express_in_speeds(added)
@@ -199,7 +199,7 @@ impl<'g> SpeedTransformation<'g> {
             ResultKind::InverseMetric => {
                 entries_by_column(&self.inverse_mass_matrix(&square_from_columns(e, n)))
             }
-            ResultKind::Columns(rows) => self.multiply_columns_by_speed_matrix(e, rows),
+            ResultKind::Columns(rows) => self.multiply_by_velocity_transformation(e, rows),
             ResultKind::Responses(impulses) => {
                 let (added, rest) = e.split_at((n * impulses).min(e.len()));
                 let added = self.express_in_speeds(added);
@@ -244,7 +244,7 @@ impl<'g> SpeedTransformation<'g> {
 
     /// Multiplies a matrix, given column by column with a column for each joint velocity, by `Z` from the
     /// right; returns it column by column.
-    fn multiply_columns_by_speed_matrix(&self, e: &[Expr<'g>], rows: usize) -> Vec<Expr<'g>> {
+    fn multiply_by_velocity_transformation(&self, e: &[Expr<'g>], rows: usize) -> Vec<Expr<'g>> {
         let written = self.express_in_speeds(e);
         let columns: Vec<&[Expr<'g>]> = written.chunks(rows.max(1)).collect();
         let by_row: Matrix<'g> = (0..rows)
@@ -268,11 +268,11 @@ impl<'g> SpeedTransformation<'g> {
     /// `Ṁ − 2 C` is.
     pub fn coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
         let (z, rates) = (&self.speeds.rates, self.transformation_rates());
-        let row_in_speeds = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
+        let coriolis_row_in_speeds = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
             let own = multiply_transposed(z, &self.express_in_speeds(c));
             own.into_iter().zip(multiply_transposed(&rates, m)).map(|(own, carried)| own + carried).collect()
         };
-        let sum: Matrix<'g> = coriolis.iter().zip(mass).map(row_in_speeds).collect();
+        let sum: Matrix<'g> = coriolis.iter().zip(mass).map(coriolis_row_in_speeds).collect();
         transposed_matrix(&transposed_matrix(&sum).iter().map(|c| multiply_transposed(z, c)).collect())
     }
 

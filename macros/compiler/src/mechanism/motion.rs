@@ -64,7 +64,7 @@ pub enum Motion<'g> {
 
 impl Motion<'_> {
     /// Returns the coordinate of a motion with one plain coordinate.
-    pub fn plain_coordinate(&self) -> Option<&Coordinate> {
+    pub fn single_coordinate(&self) -> Option<&Coordinate> {
         match self {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }

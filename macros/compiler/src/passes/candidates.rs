@@ -140,7 +140,7 @@ fn frame_choices_of_revolute_joint(
         CandidateAnglesAndShifts { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
     for c in indices_of_child_sites(sites, k) {
         if let Some(place) = &sites[c].place {
-            align_with_child(&mut list, &sites[c], place, &chosen[c]);
+            add_alignment_with_child(&mut list, &sites[c], place, &chosen[c]);
         }
     }
     if let Some(place) = &sites[k].place {
@@ -168,7 +168,7 @@ fn frame_choices_of_revolute_joint(
 }
 
 /// Adds the shift to the common normal with a child's axis, and the angle that points along it.
-fn align_with_child(
+fn add_alignment_with_child(
     list: &mut CandidateAnglesAndShifts,
     child: &Site,
     place: &NumericFrame,

@@ -8,7 +8,7 @@
 
 use super::candidates::{Site, candidate_frames};
 use super::cost;
-use super::motions::{FrameFreedom, motion_in_frame};
+use super::motions::{FrameFreedom, rewrite_motion_in_frame};
 use super::number::{Mass, NumericFrame, norm};
 use crate::mechanism::{Inertia, Input, Link, Model, Pose, SumOfLinkVectors};
 
@@ -55,8 +55,9 @@ pub fn characteristic_link_sizes(model: &Model<'_>) -> Vec<f64> {
 
 /// Returns the data that the choice of frames depends on.
 fn frame_choice_data_of_links(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
-    let site_of_link = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
-    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(site_of_link).collect();
+    let frame_choice_data_of_link =
+        |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
+    let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(frame_choice_data_of_link).collect();
     for k in 0..sites.len() {
         // A placement that is not numeric fixes the frames on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {
@@ -125,7 +126,7 @@ fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option
                 Inertia::zero(g).sum_with_placed_inertia(&link.inertia, &back.rotation, back.translation)
             }
         };
-        motion_in_frame(&mut link.motion, &step.frame.frame_to_pose(g), step.offset);
+        rewrite_motion_in_frame(&mut link.motion, &step.frame.frame_to_pose(g), step.offset);
     }
     let back =
         steps.iter().map(|s| s.as_ref().map_or(Pose::identity(g), |s| s.frame.frame_to_pose(g).inverse()));

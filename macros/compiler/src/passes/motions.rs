@@ -36,7 +36,7 @@ pub fn freedom_of_link_frame(motion: &Motion<'_>) -> Option<FrameFreedom> {
 
 /// Rewrites the motion of a link for its new frame, given relative to the old one and rotated about the
 /// joint's axis by `offset`.
-pub fn motion_in_frame<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
+pub fn rewrite_motion_in_frame<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
     match motion {
         Motion::Turn { axis, coordinate } => shift_coordinate(coordinate, *axis, offset),
         Motion::Slide { axis, .. } => *axis = frame.rotation.to_child(*axis),

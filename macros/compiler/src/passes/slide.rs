@@ -35,11 +35,11 @@ fn cheapest_shift<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     let a = coordinate_axis(*axis)?;
     let children: Vec<&Link<'g>> =
         model.links.iter().filter(|c| c.parent.is_some_and(|p| p.0 == k)).collect();
-    let is_moving_link = |c: &&Link<'g>| !matches!(c.motion, Motion::Placed);
+    let has_joint_motion = |c: &&Link<'g>| !matches!(c.motion, Motion::Placed);
     let has_constant_translation = |c: &&Link<'g>| c.placement.translation.constant_components().is_some();
     let own = link.placement.translation;
     // Numeric frames are chosen by `place_frames`.
-    if !children.iter().all(is_moving_link)
+    if !children.iter().all(has_joint_motion)
         || has_constant_translation(&link) && children.iter().all(has_constant_translation)
     {
         return None;

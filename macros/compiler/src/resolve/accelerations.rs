@@ -123,11 +123,11 @@ impl<'g> Scope<'_, 'g> {
         }
         let kinematics = &self.kinematics;
         let space = Space { graph: self.graph, charts: &kinematics.charts, speeds: None };
-        let acceleration_of_value = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
+        let time_derivative_of_value = |(value, gradient): (&Expr<'g>, Vec<(usize, Expr<'g>)>)| {
             let terms = gradient.into_iter().map(|(k, d)| d * Quantity::Acceleration(k).expr(self.graph));
             terms.fold(time_derivative(space, *value), |sum, term| sum + term)
         };
-        Some(values.iter().zip(gradients).map(acceleration_of_value).collect())
+        Some(values.iter().zip(gradients).map(time_derivative_of_value).collect())
     }
 
     /// Whether the argument of `rate` is an expression of moving quantities, or the name of a definition,

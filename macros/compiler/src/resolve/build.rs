@@ -8,7 +8,7 @@ use super::drawing::mechanism_drawing_pieces;
 use super::equilibria::resolve_equilibria;
 use super::forces::resolve_coordinate_actions;
 use super::limit::resolve_limits;
-use super::masses::check_finite;
+use super::masses::check_inertial_products_finite;
 use super::numbering::CoordinateNumbering;
 use super::reaction::ReleasedJoints;
 use super::requirements::gather_requirements;
@@ -102,7 +102,7 @@ fn build<'g>(
     }
     builder.add_masses(cx);
     match order.and_then(|order| Some((order, builder.compute_link_motions()?))) {
-        Some((order, moving)) => builder.add_elements_to_links(&order.closing, moving, cx),
+        Some((order, moving)) => builder.add_all_elements(&order.closing, moving, cx),
         None => resolve_coordinate_actions(&builder.scope, cx),
     }
     builder.report_unused_parameters(cx);
@@ -191,7 +191,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 .map(|n| n.text.clone())
                 .collect(),
             driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count()
-                + drive::input_drives(description).count(),
+                + drive::drives_that_are_inputs(description).count(),
             context: Context::new(AllowedQuantities::Constant, None).into(),
             kinematics: PlacedElements::default(),
             records: ResolutionRecords {
@@ -262,7 +262,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Adds all elements to the placed links.
-    fn add_elements_to_links(&mut self, closing: &[usize], moving: MotionKnown, cx: &mut Diagnostics) {
+    fn add_all_elements(&mut self, closing: &[usize], moving: MotionKnown, cx: &mut Diagnostics) {
         self.add_drives(moving, cx);
         self.add_actions(moving, cx);
         self.model.limits = resolve_limits(&self.scope, &self.model, cx);
@@ -280,7 +280,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         set_signature_dependencies(&mut self.model);
         self.add_speeds(constrained, cx);
         self.add_frames();
-        check_finite(&self.scope, &self.model, cx);
+        check_inertial_products_finite(&self.scope, &self.model, cx);
         if cx.is_empty() && self.scope.description.drawing {
             (self.model.drawing, self.model.heights) =
                 mechanism_drawing_pieces(&self.scope, &self.model, &self.surfaces);

@@ -12,7 +12,7 @@ pub fn are_particle_axes_used(d: &Description, name: &str) -> bool {
         || d.outputs.iter().filter_map(|o| o.resolved_in.as_ref()).any(has_searched_name)
         || d.bodies.iter().filter_map(|b| b.frame.as_ref()).any(has_searched_name)
         || d.actions.iter().any(|action| acts_on_particle(&action.on))
-        || expressions_with_positions(d).into_iter().any(|e| uses_axes_or_points_of(e, name))
+        || expressions_that_may_contain_positions(d).into_iter().any(|e| uses_axes_or_points_of(e, name))
 }
 
 /// Returns whether an expression contains `name.at(…)` or an axis such as `name.x`.
@@ -24,7 +24,7 @@ fn uses_axes_or_points_of(e: &Expr, name: &str) -> bool {
 }
 
 /// Returns the expressions of a description that can contain positions.
-pub fn expressions_with_positions(d: &Description) -> Vec<&Expr> {
+pub fn expressions_that_may_contain_positions(d: &Description) -> Vec<&Expr> {
     let mut all: Vec<&Expr> = Vec::new();
     all.extend(d.bodies.iter().filter_map(|b| b.at.as_ref()));
     all.extend(d.particles.iter().filter_map(|p| p.at.as_ref()));

@@ -189,7 +189,7 @@ impl<'g> Scope<'_, 'g> {
             .add_help("every impulse then loads the bearings: there is no centre of percussion");
             return None;
         }
-        let moment = self.inertia_about(&body_with_mass, &about, [&n, &n]);
+        let moment = self.moment_of_inertia_about_point(&body_with_mass, &about, [&n, &n]);
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
         Some(vector_value(vec![(link, arm * share)]))
     }

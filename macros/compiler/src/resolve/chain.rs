@@ -34,7 +34,7 @@ impl<'g> Builder<'_, 'g> {
         if let Some((link, pose)) = start {
             let frame = pose.compose_with(&on_parent);
             self.record_joint_for_reactions(j, link, &frame.rotation);
-            let (link, frame) = self.released_parent_frame(j, link, frame);
+            let (link, frame) = self.add_release_links(j, link, frame);
             let (link, pose) = match self.loop_that_solves_joint(j) {
                 Some(solved) => {
                     let solved = pose_across_solved_joint(&self.scope, solved, j, cx)
@@ -51,7 +51,7 @@ impl<'g> Builder<'_, 'g> {
             };
             self.register_placement(&self.jointed[child].text, link, pose, kind);
         }
-        self.add_joint_passive_forces(j, joint, cx);
+        self.add_joint_forces(j, joint, cx);
     }
 
     /// Adds one link for each motion. Returns the last link and the joint's child frame on it.
@@ -77,7 +77,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds damping, friction and the motor of a joint with one degree of freedom to the model.
-    fn add_joint_passive_forces(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
+    fn add_joint_forces(&mut self, j: usize, joint: &Joint, cx: &mut Diagnostics) {
         let [(name, coordinate, _)] = self.scope.kinematics.joint_coordinates[j].plain.as_slice() else {
             return;
         };
@@ -99,7 +99,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the link of a placed body or particle, with a new link if its placement moves. If the
     /// placement is released, returns the last of six further links.
-    pub fn link_of_placed_element(
+    pub fn add_links_of_placed_element(
         &mut self,
         number: usize,
         carrier: Option<LinkId>,
@@ -120,12 +120,12 @@ impl<'g> Builder<'_, 'g> {
             pose = Pose::identity(self.scope.graph);
         }
         self.moving_placements.push((number, holder));
-        self.released_parent_frame(number, link, pose)
+        self.add_release_links(number, link, pose)
     }
 
     /// Returns the frame of a connection on its parent. If the connection is released, the frame is moved by
     /// the six coordinates of the release.
-    fn released_parent_frame(
+    fn add_release_links(
         &mut self,
         number: usize,
         mut link: Option<LinkId>,

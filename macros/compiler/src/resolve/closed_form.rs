@@ -55,13 +55,13 @@ pub fn find_closed_form_loops(
             d.joints.iter().enumerate().find(is_tree_joint_of_end).map(|(k, _)| k)
         };
         let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
-        let can_be_solved = |k: &usize| {
+        let is_solvable_joint = |k: &usize| {
             d.joints[*k].kind.rotates_about_one_axis().is_some()
                 && d.joints[*k].mimic.is_none()
                 && !is_in_other_loop(*k)
         };
         let sides =
-            [&joint.parent, &joint.child].map(|end| tree_joint_of_child_body(end).filter(can_be_solved));
+            [&joint.parent, &joint.child].map(|end| tree_joint_of_child_body(end).filter(is_solvable_joint));
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
         if let [Some(a), Some(b)] = sides
             && joint.kind == JointKind::Pin
@@ -83,11 +83,11 @@ pub fn joints_solved_in_closed_form<'g>(
     loops: &[ClosedFormLoop],
     cx: &mut Diagnostics,
 ) -> Vec<ClosedFormJoint<'g>> {
-    let solved_side_of_joint = |j: &usize| {
+    let closed_form_joint = |j: &usize| {
         let (_, axis) = joint_frame(scope, *j, cx)?;
         Some(ClosedFormJoint { joint: *j, turns: scope.description.joints[*j].kind == JointKind::Pin, axis })
     };
-    loops.iter().flat_map(|e| e.sides.iter()).map_while(solved_side_of_joint).collect()
+    loops.iter().flat_map(|e| e.sides.iter()).map_while(closed_form_joint).collect()
 }
 
 /// Returns the child's joint frame in the parent's joint frame, for the solved joint coordinate.

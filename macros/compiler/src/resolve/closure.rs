@@ -121,9 +121,7 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         }
         for motion in motions {
             match motion {
-                ElementaryMotion::Helix(axis, pitch) => {
-                    rows.push(self.advance_row((*axis, *pitch), gap.value))
-                }
+                ElementaryMotion::Helix(axis, pitch) => rows.push(self.screw_row((*axis, *pitch), gap.value)),
                 // The rows of the other motions are those of the slides and rotations.
                 ElementaryMotion::Turn(_)
                 | ElementaryMotion::Slide(_)
@@ -136,7 +134,7 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
 
     /// Returns the row of a screw joint that couples the child's advance along the axis to its rotation.
     /// `gap` leads from the parent's joint frame to the child's.
-    fn advance_row(&self, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) -> Constraint<'g> {
+    fn screw_row(&self, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) -> Constraint<'g> {
         let n = self.parent_direction(axis).value;
         let [(_, first), (_, second)] = perpendicular_directions(axis);
         let parent_direction = |v| self.parent_direction(v).value;
@@ -148,7 +146,7 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
         let second = time_derivative(self.scope.configuration_space(), rate);
         // The force pushes the child back along the axis; the torque rotates it by the pitch.
         let mut row = self.row("advance", Jet { value, rate, second }, (Measure::Length, -n));
-        row.transmits.push(self.transmission_along_direction(true, n * pitch));
+        row.transmits.push(self.reaction_component_along_direction(true, n * pitch));
         row
     }
 
@@ -214,14 +212,14 @@ impl<'g> ClosingJoint<'_, '_, 'g> {
             rate,
             bias: second,
             measure,
-            transmits: vec![self.transmission_along_direction(measure == Measure::Angle, direction)],
+            transmits: vec![self.reaction_component_along_direction(measure == Measure::Angle, direction)],
             group: 0,
             determines: false,
             friction: Vec::new(),
         }
     }
 
-    fn transmission_along_direction(&self, torque: bool, direction: Vec3<'g>) -> ReactionComponent<'g> {
+    fn reaction_component_along_direction(&self, torque: bool, direction: Vec3<'g>) -> ReactionComponent<'g> {
         let joints = &self.scope.kinematics.joints;
         let direction = express_in_link_axes(joints, direction, self.on_child.ancestor, None);
         ReactionComponent { joint: self.j, torque, direction }

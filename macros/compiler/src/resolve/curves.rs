@@ -16,7 +16,7 @@ use crate::syntax::{self, BinaryOp, Callee, ExprKind};
 impl<'g> Scope<'_, 'g> {
     /// Returns the axes defined by a vector or a curve, relative to the axes of a frame:
     /// `cylindrical(vector)`, `spherical(vector)`, `frenet(curve, coordinate)`.
-    pub fn axes_of_vector_or_curve(
+    pub fn resolve_curvilinear_axes(
         &self,
         (rotation, name): (language::Rotation, &Callee),
         arguments: &[syntax::Expr],

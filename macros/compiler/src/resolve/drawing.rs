@@ -28,10 +28,10 @@ pub fn mechanism_drawing_pieces<'g>(
     let (mut pieces, heights) =
         scope.call_in_context(Context::new(AllowedQuantities::Constant, None), |_| drawing.all_pieces());
     scope.records.borrow_mut().requirements = required;
-    let is_fixed = |e: &[Expr<'g>]| {
+    let depends_only_on_parameters = |e: &[Expr<'g>]| {
         symbols_in(e).into_iter().all(|s| matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
     };
-    pieces.retain(|piece| is_fixed(&piece.numbers));
+    pieces.retain(|piece| depends_only_on_parameters(&piece.numbers));
     (pieces, heights)
 }
 

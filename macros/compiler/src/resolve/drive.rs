@@ -16,7 +16,7 @@ use crate::syntax::{Description, Drive, DriveLaw, DriveQuantity, DriveTarget, Ex
 
 /// Returns the inputs among the force elements of a file, in the order of their entries in `u`. These entries
 /// follow those of the driven joints and precede all others.
-pub fn input_drives(d: &Description) -> impl Iterator<Item = &Drive> {
+pub fn drives_that_are_inputs(d: &Description) -> impl Iterator<Item = &Drive> {
     d.drives.iter().filter(|drive| matches!(drive.law, DriveLaw::Input(_)))
 }
 
@@ -62,7 +62,7 @@ fn length_or_wrench_of_drive<'g>(
     match on {
         DriveTarget::Sum(_) => Some(stretch_of_coordinate_sum(scope, terms)),
         DriveTarget::Length(e) => position_value_and_rate(scope, e, cx),
-        DriveTarget::Wrench(wrench) => wrench_work_rate(scope, wrench, cx),
+        DriveTarget::Wrench(wrench) => rate_conjugate_to_wrench(scope, wrench, cx),
     }
 }
 
@@ -100,12 +100,12 @@ pub fn resolve_drive_forces<'g>(
     if velocity_gradient(stretch.rate).is_empty() {
         return None;
     }
-    let number_expression = |value| Expr::number_at(value, place);
+    let syntax_number = |value| Expr::number_at(value, place);
     match drive.law {
         DriveLaw::Spring { stiffness, free } => spring_force_of_law(
             scope,
             stretch,
-            &SpringLaw::Linear(&number_expression(stiffness)),
+            &SpringLaw::Linear(&syntax_number(stiffness)),
             g.num(free),
             cx,
         ),
@@ -124,17 +124,17 @@ pub fn resolve_drive_forces<'g>(
             Some(Forces::resisting_force(stretch.rate, factor * stretch.rate))
         }
         DriveLaw::Damper(damping) => {
-            let damping = scope.resolve_scalar(&number_expression(damping), cx)?;
+            let damping = scope.resolve_scalar(&syntax_number(damping), cx)?;
             Some(Forces::resisting_force(stretch.rate, damping * stretch.rate))
         }
         DriveLaw::Friction(force) => dry_friction(
             scope,
             stretch.rate,
-            [Some(&number_expression(force)), None, None, None, None],
+            [Some(&syntax_number(force)), None, None, None, None],
             place,
             cx,
         ),
-        DriveLaw::Inerter(value) => inertance_force(scope, stretch.rate, &number_expression(value), cx),
+        DriveLaw::Inerter(value) => inertance_force(scope, stretch.rate, &syntax_number(value), cx),
         DriveLaw::Push(force) => load_split_by_acceleration(stretch.rate, g.num(force), place, cx),
         DriveLaw::Input(_) => Some(load_of_input(input, stretch.rate)),
         DriveLaw::Expression { ref force, .. } => {
@@ -147,7 +147,11 @@ pub fn resolve_drive_forces<'g>(
 
 /// Returns the rate on which a force and a torque at a point do work, `f · v + t · ω`. The velocities are
 /// relative to the body on which the reaction acts, if there is one.
-fn wrench_work_rate<'g>(scope: &Scope<'_, 'g>, wrench: &Wrench, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
+fn rate_conjugate_to_wrench<'g>(
+    scope: &Scope<'_, 'g>,
+    wrench: &Wrench,
+    cx: &mut Diagnostics,
+) -> Option<Stretch<'g>> {
     let g = scope.graph;
     let on = scope.resolve_placement(&wrench.on, cx)?;
     let against = match &wrench.against {

@@ -2,7 +2,7 @@
 
 use super::joint::full_name;
 use super::range::FiniteParameterRange;
-use super::scope::{PlainCoordinate, Scope};
+use super::scope::{NamedCoordinate, Scope};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::replace::replace_all;
 use crate::expr::{self, Rotation, Vec3};
@@ -11,7 +11,7 @@ use crate::syntax::{Endpoint, Expr, ExprKind, GROUND, Name};
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the coordinates of a joint that force elements can act on; `None` if the joint does not exist.
-    pub fn joint_coordinates(&self, name: &str) -> Option<&[PlainCoordinate]> {
+    pub fn joint_coordinates(&self, name: &str) -> Option<&[NamedCoordinate]> {
         let j = self.description.joints.iter().position(|j| j.name.text == name)?;
         Some(&self.kinematics.joint_coordinates[j].plain)
     }

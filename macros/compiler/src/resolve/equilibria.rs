@@ -117,7 +117,7 @@ fn value_at_rest<'g>(
     let coordinates = &scope.kinematics.coordinates;
     let angle = coordinates.iter().any(|(known, _, angle)| known == name && *angle);
     scope.call_in_context(Context::new(AllowedQuantities::Constant, None), |scope| match angle {
-        true => scope.resolve_plane_angle(value, cx),
+        true => scope.resolve_angle_in_radians(value, cx),
         false => scope.resolve_scalar(value, cx),
     })
 }

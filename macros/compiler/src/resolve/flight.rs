@@ -48,7 +48,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns an angle of a velocity relative to a body, computed from its components in the body's axes.
-    pub fn resolve_flight_angle(
+    pub fn resolve_aerodynamic_angle(
         &self,
         call: &Call<'_>,
         cx: &mut Diagnostics,
@@ -66,7 +66,7 @@ impl<'g> Scope<'_, 'g> {
         angle: fn([Expr<'g>; 3]) -> Expr<'g>,
     ) -> Option<Value<'g>> {
         let [velocity] = call.take_arguments(cx)?;
-        self.vector_components(velocity, &ground_expression(call.place), cx)
+        self.vector_components(velocity, &ground_name_expression(call.place), cx)
             .map(|parts| Value::Scalar(angle(parts)))
     }
 
@@ -78,7 +78,7 @@ impl<'g> Scope<'_, 'g> {
         angle: fn([Expr<'g>; 3]) -> Expr<'g>,
     ) -> Option<Value<'g>> {
         let [body] = call.take_arguments(cx)?;
-        self.vector_components(&body_axis_expression(body, 0), &ground_expression(call.place), cx)
+        self.vector_components(&body_axis_expression(body, 0), &ground_name_expression(call.place), cx)
             .map(|parts| Value::Scalar(angle(parts)))
     }
 
@@ -86,7 +86,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn resolve_bank_angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [body] = call.take_arguments(cx)?;
         let [_, right, below] =
-            self.vector_components(&body_axis_expression(&ground_expression(call.place), 2), body, cx)?;
+            self.vector_components(&body_axis_expression(&ground_name_expression(call.place), 2), body, cx)?;
         Some(Value::Scalar(right.atan2(below)))
     }
 
@@ -152,7 +152,7 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-fn ground_expression(place: &crate::diag::Place) -> syntax::Expr {
+fn ground_name_expression(place: &crate::diag::Place) -> syntax::Expr {
     syntax::Expr { kind: ExprKind::Name(GROUND.to_string()), place: place.clone() }
 }
 

@@ -348,7 +348,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
         all
     }
 
-    /// Returns the wrenches of constraints and of loop-closing joints on the self.
+    /// Returns the wrenches of constraints and of loop-closing joints on the body.
     fn constraint_reactions_on_body(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.release.joints.len();
@@ -380,7 +380,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
             let joint = self.scope.description.joints.iter().find(|joint| joint.name.text == name);
             if let Some(joint) = joint {
                 let place = self.joint_end_position([&joint.parent, &joint.child]);
-                let wrench = self.wrench_about(place.as_ref(), wrench);
+                let wrench = self.wrench_at_point(place.as_ref(), wrench);
                 return Some((name, Origin::Joint, place, wrench));
             }
             let place = self.release.contact_points.get(&name).cloned();
@@ -393,7 +393,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
         by_name.into_iter().filter_map(diagram_action_of_element).collect()
     }
 
-    /// Returns the wrenches of unilateral contacts on the self.
+    /// Returns the wrenches of unilateral contacts on the body.
     fn contact_wrenches_on_body(&self) -> Vec<DiagramAction<'g>> {
         let g = self.scope.graph;
         let open = RELEASED * self.release.joints.len();
@@ -422,7 +422,7 @@ impl<'g> FreedBody<'_, '_, 'g> {
         all
     }
 
-    /// Returns the position of the end of a joint that belongs to the self.
+    /// Returns the position of the end of a joint that belongs to the body.
     fn joint_end_position(&self, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
         let mut unread = Diagnostics::discarded_diagnostics();
         ends.into_iter().find_map(|end| {
@@ -433,8 +433,8 @@ impl<'g> FreedBody<'_, '_, 'g> {
         })
     }
 
-    /// Returns the wrench about another point of the self.
-    fn wrench_about(&self, place: Option<&Terms<'g>>, w: ActionWrench<'g>) -> ActionWrench<'g> {
+    /// Moves a wrench from the centre of mass of the body to a given point.
+    fn wrench_at_point(&self, place: Option<&Terms<'g>>, w: ActionWrench<'g>) -> ActionWrench<'g> {
         let Some(place) = place else { return w };
         let arm = self.arm_from_center(place);
         ActionWrench { torque: w.torque - arm.cross(w.force), ..w }

@@ -47,7 +47,7 @@ impl<'g> Scope<'_, 'g> {
             F::Atan2 => self.resolve_scalars(call, cx).map(|[y, x]| Value::Scalar(y.atan2(x))),
             F::Pow => {
                 let [base, exponent] = self.resolve_scalars(call, cx)?;
-                check_exponent(call.place, base, exponent, cx).then(|| Value::Scalar(base.pow(exponent)))
+                check_power_defined(call.place, base, exponent, cx).then(|| Value::Scalar(base.pow(exponent)))
             }
             F::Min => self
                 .resolve_scalars(call, cx)
@@ -83,17 +83,17 @@ impl<'g> Scope<'_, 'g> {
             }
             F::Angle => self.resolve_angle(call, cx),
             F::Position => self.resolve_relative_position(call, cx),
-            F::Velocity => self.relative_velocity(call, cx),
+            F::Velocity => self.resolve_relative_velocity(call, cx),
             F::Acceleration => self.resolve_relative_acceleration(call, cx),
             F::Omega => self.angular_velocity(call, cx),
-            F::Alpha => self.angular_acceleration(call, cx),
+            F::Alpha => self.resolve_angular_acceleration(call, cx),
             F::ReactionForce => self.resolve_reaction(call, 0, cx),
             F::ReactionTorque => self.resolve_reaction(call, 3, cx),
             F::ContactForce => self.contact_force(call, cx),
             F::ContactMoment => self.resolve_contact_moment(call, cx),
-            F::Momentum => self.resolve_momentum(call, SummedQuantity::Momentum, cx),
-            F::AngularMomentum => self.resolve_momentum(call, SummedQuantity::AngularMomentum, cx),
-            F::KineticEnergy => self.resolve_momentum(call, SummedQuantity::Energy, cx),
+            F::Momentum => self.resolve_momentum_or_energy(call, SummedQuantity::Momentum, cx),
+            F::AngularMomentum => self.resolve_momentum_or_energy(call, SummedQuantity::AngularMomentum, cx),
+            F::KineticEnergy => self.resolve_momentum_or_energy(call, SummedQuantity::Energy, cx),
             F::MomentOfInertia => self.resolve_moment_of_inertia(call, cx),
             F::CenterOfMass => self.center_of_mass(call, cx),
             F::CenterOfPercussion => self.center_of_percussion(call, cx),
@@ -119,8 +119,12 @@ impl<'g> Scope<'_, 'g> {
             F::Pressure => self.resolve_standard_atmosphere(call, |air| air.pressure, cx),
             F::Density => self.resolve_standard_atmosphere(call, |air| air.density(), cx),
             F::SpeedOfSound => self.resolve_standard_atmosphere(call, |air| air.speed_of_sound(), cx),
-            F::AngleOfAttack => self.resolve_flight_angle(call, cx, |[forward, _, down]| down.atan2(forward)),
-            F::Sideslip => self.resolve_flight_angle(call, cx, |[f, right, d]| right.atan2(length(f, d))),
+            F::AngleOfAttack => {
+                self.resolve_aerodynamic_angle(call, cx, |[forward, _, down]| down.atan2(forward))
+            }
+            F::Sideslip => {
+                self.resolve_aerodynamic_angle(call, cx, |[f, right, d]| right.atan2(length(f, d)))
+            }
             F::Course => self.resolve_velocity_angle(call, cx, |[north, east, _]| east.atan2(north)),
             F::FlightPath => {
                 self.resolve_velocity_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e)))
@@ -239,7 +243,7 @@ impl<'g> Scope<'_, 'g> {
 }
 
 /// Reports a power that is undefined in all states. Returns false then.
-fn check_exponent(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
+fn check_power_defined(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(x) = base.constant_value() else { return true };
     let what = match exponent.constant_value() {
         Some(n) if libm::pow(x, n).is_finite() => return true,

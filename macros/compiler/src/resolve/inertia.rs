@@ -109,7 +109,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     fn resolve_symmetric_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
-        let m = self.resolve_matrix(e, cx)?;
+        let m = self.resolve_matrix_literal(e, cx)?;
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if m.0[i][j] != m.0[j][i] {
                 cx.report_error(e.place.clone(), "an inertia matrix is symmetric").add_help(format!(

@@ -161,18 +161,26 @@ impl<'g> Scope<'_, 'g> {
 /// Returns motions that replace those of a joint with an error.
 pub fn placeholder_joint_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<ElementaryMotion<'g>> {
     use ElementaryMotion::{Slide, Turn};
-    let default_axis = |k: usize| {
+    let generic_placeholder_axis = |k: usize| {
         let mut n = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];
         n.rotate_left(k);
         Vec3::vector_from_constants(graph, n)
     };
     match joint.kind {
-        JointKind::Pin | JointKind::Screw => vec![Turn(default_axis(0))],
-        JointKind::Sleeve => vec![Slide(default_axis(0))],
-        JointKind::Collar | JointKind::Slot => vec![Slide(default_axis(0)), Turn(default_axis(1))],
-        JointKind::Universal => vec![Turn(default_axis(0)), Turn(default_axis(1))],
-        JointKind::Planar => vec![Slide(default_axis(0)), Slide(default_axis(1)), Turn(default_axis(2))],
-        JointKind::Stage => (0..joint.along.len().clamp(2, 3)).map(|k| Slide(default_axis(k))).collect(),
+        JointKind::Pin | JointKind::Screw => vec![Turn(generic_placeholder_axis(0))],
+        JointKind::Sleeve => vec![Slide(generic_placeholder_axis(0))],
+        JointKind::Collar | JointKind::Slot => {
+            vec![Slide(generic_placeholder_axis(0)), Turn(generic_placeholder_axis(1))]
+        }
+        JointKind::Universal => vec![Turn(generic_placeholder_axis(0)), Turn(generic_placeholder_axis(1))],
+        JointKind::Planar => vec![
+            Slide(generic_placeholder_axis(0)),
+            Slide(generic_placeholder_axis(1)),
+            Turn(generic_placeholder_axis(2)),
+        ],
+        JointKind::Stage => {
+            (0..joint.along.len().clamp(2, 3)).map(|k| Slide(generic_placeholder_axis(k))).collect()
+        }
         JointKind::Ball => vec![ElementaryMotion::Ball],
         JointKind::Free => vec![ElementaryMotion::Free],
         JointKind::Weld => Vec::new(),

@@ -99,7 +99,7 @@ fn resolve_limit_bounds<'g>(
         let angle = angle && matches!(key, Key::From | Key::To);
         // Angles in a file are in radians, without a limit on revolutions.
         let value = match angle && e.place.file.is_none() {
-            true => scope.resolve_plane_angle(e, cx),
+            true => scope.resolve_angle_in_radians(e, cx),
             false => scope.resolve_scalar(e, cx),
         };
         good &= value.is_some();

@@ -35,7 +35,7 @@ impl<'g> PlacedElements<'g> {
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the value of a matrix expression.
-    pub fn resolved_matrix_value(
+    pub fn resolve_matrix_expression(
         &self,
         e: &syntax::Expr,
         cx: &mut Diagnostics,
@@ -58,7 +58,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns a matrix written by its rows, in the axes of the context.
     pub fn resolve_matrix_from_rows(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let entries = self.resolve_matrix(e, cx)?;
+        let entries = self.resolve_matrix_literal(e, cx)?;
         let Some((link, pose)) = self.context.borrow().axes.clone() else {
             return self.report_disallowed_matrix(&e.place, cx);
         };
@@ -117,14 +117,14 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves a call of `transpose(M)`.
     pub fn transpose(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.arguments_of_matrix_function(call, cx)?;
-        let m = self.resolved_matrix_value(m, cx)?;
+        let m = self.resolve_matrix_expression(m, cx)?;
         Some(Value::Matrix(ResolvedMatrix { entries: m.entries.transpose(), ..m }))
     }
 
     /// Resolves a call of `trace(M)`.
     pub fn resolve_trace(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.arguments_of_matrix_function(call, cx)?;
-        let m = self.resolved_matrix_value(m, cx)?.entries.0;
+        let m = self.resolve_matrix_expression(m, cx)?.entries.0;
         Some(Value::Scalar(m[0][0] + m[1][1] + m[2][2]))
     }
 
@@ -183,7 +183,7 @@ impl<'g> Scope<'_, 'g> {
         let entries = Mat3::from_fn(|i, j| {
             let (i, j) = (i.min(j), i.max(j));
             bodies.iter().fold(self.graph.zero(), |sum, body| {
-                sum + self.inertia_about(body, &about, [&axis_terms(i), &axis_terms(j)])
+                sum + self.moment_of_inertia_about_point(body, &about, [&axis_terms(i), &axis_terms(j)])
             })
         });
         Some(Value::Matrix(ResolvedMatrix { link, entries }))

@@ -25,7 +25,7 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the momentum, the angular momentum or the kinetic energy of bodies, for their motion relative
     /// to the ground. With the velocity `v` of the centre of mass, its position `r` relative to the point,
     /// and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
-    pub fn resolve_momentum(
+    pub fn resolve_momentum_or_energy(
         &self,
         call: &Call<'_>,
         sum: SummedQuantity,
@@ -133,14 +133,14 @@ impl<'g> Scope<'_, 'g> {
         let about = self.placement_of_moving_point(about, cx)?;
         let a = self.resolve_terms(a, cx)?;
         let b = others.first().map_or_else(|| Some(a.clone()), |b| self.resolve_terms(b, cx))?;
-        let sum = bodies
-            .iter()
-            .fold(self.graph.zero(), |sum, body| sum + self.inertia_about(body, &about, [&a, &b]));
+        let sum = bodies.iter().fold(self.graph.zero(), |sum, body| {
+            sum + self.moment_of_inertia_about_point(body, &about, [&a, &b])
+        });
         Some(Value::Scalar(sum))
     }
 
     /// Returns the moment of inertia `a·J b` of a body about a point.
-    pub fn inertia_about(
+    pub fn moment_of_inertia_about_point(
         &self,
         (placed, (mass, com, central)): &(Placed<'g>, MassProperties<'g>),
         about: &Placed<'g>,

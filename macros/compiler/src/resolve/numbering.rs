@@ -4,7 +4,7 @@ use super::closed_form::ClosedFormLoop;
 use super::holders;
 use super::joint::{charts_of_joint, full_name, unscaled_coordinate};
 use super::reaction::RELEASED;
-use super::scope::{JointCoordinates, PlainCoordinate};
+use super::scope::{JointCoordinates, NamedCoordinate};
 use crate::diag::{Diagnostics, Place};
 use crate::mechanism::{Chart, Coordinate, InQ, InV};
 use crate::syntax::Description;
@@ -19,7 +19,7 @@ pub struct CoordinateNumbering {
     /// Charts of the configuration space.
     pub charts: Vec<Chart>,
     /// Plain coordinates of joints, and declared coordinates.
-    pub coordinates: Vec<PlainCoordinate>,
+    pub coordinates: Vec<NamedCoordinate>,
     /// Coordinates of each joint.
     pub joints: Vec<JointCoordinates>,
 }

@@ -2,7 +2,7 @@
 //! that one error is not reported again at every use of the mechanism. The outline depends only on the
 //! description and checks nothing.
 
-use super::carriers::expressions_with_positions;
+use super::carriers::expressions_that_may_contain_positions;
 use super::joint::full_name;
 use crate::diag::Diagnostics;
 use crate::language::names::TIME;
@@ -54,11 +54,11 @@ pub struct OutputInterface {
 
 /// Returns the outline of a description that may contain errors.
 pub fn outline_of_description(d: &Description) -> Outline {
-    let (configuration, velocities, inputs) = entry_names(d);
-    let names_in_expression = |e| names_of(d, e);
+    let (configuration, velocities, inputs) = state_and_input_names(d);
+    let names_in_expression = |e| names_with_definitions(d, e);
     let rotations = d.frames.iter().flat_map(|f| f.rotations.iter().chain([&f.start]));
     // Unused definitions are ignored.
-    let used = expressions_with_positions(d)
+    let used = expressions_that_may_contain_positions(d)
         .into_iter()
         .filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
     Outline {
@@ -82,7 +82,7 @@ pub fn outline_of_description(d: &Description) -> Outline {
 }
 
 /// Returns the names of the entries of `q`, `v` and `u`.
-fn entry_names(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
+fn state_and_input_names(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     let closing = super::tree::loop_closing_joints(d);
     let solved = super::closed_form::find_closed_form_loops(d, &closing, &mut Diagnostics::new());
@@ -99,7 +99,7 @@ fn entry_names(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
         u.extend(joint.driven.then(|| joint.name.text.clone()));
     }
-    u.extend(super::drive::input_drives(d).map(|drive| drive.name.text.clone()));
+    u.extend(super::drive::drives_that_are_inputs(d).map(|drive| drive.name.text.clone()));
     u.extend(d.inputs.iter().map(|i| i.text.clone()));
     (q, v, u)
 }
@@ -161,7 +161,7 @@ fn laws_of_action(action: &Action) -> impl Iterator<Item = &Expr> {
 
 /// Returns the quantities on which an expression depends, according to the table of functions.
 fn used_quantities(d: &Description, e: &Expr) -> UsedQuantities {
-    let has_inputs = || !entry_names(d).2.is_empty();
+    let has_inputs = || !state_and_input_names(d).2.is_empty();
     let mut uses = UsedQuantities::default();
     for part in subexpressions_with_definitions(d, e) {
         match &part.kind {
@@ -218,7 +218,7 @@ fn contains_velocity_function(d: &Description, e: &Expr) -> bool {
 }
 
 /// Returns all names in an expression, including those in its definitions.
-fn names_of<'a>(d: &'a Description, e: &'a Expr) -> BTreeSet<&'a str> {
+fn names_with_definitions<'a>(d: &'a Description, e: &'a Expr) -> BTreeSet<&'a str> {
     subexpressions_with_definitions(d, e).into_iter().filter_map(Expr::as_name).collect()
 }
 

@@ -52,7 +52,8 @@ fn resolve_output_expressions<'g>(
         };
     }
     if output.rank == Rank::Matrix {
-        let found = scope.call_in_context(context, |scope| scope.resolved_matrix_value(&output.value, cx));
+        let found =
+            scope.call_in_context(context, |scope| scope.resolve_matrix_expression(&output.value, cx));
         let (link, pose) = output_axes(scope, output, cx)?;
         return Some(scope.kinematics.matrix_entries(found?, link, &pose.rotation));
     }

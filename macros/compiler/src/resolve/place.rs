@@ -137,7 +137,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         // From an element to one for which it waits, until the path is a cycle.
         let next_waiting_dependency = |index: usize| {
             let needs = self.placement_dependencies(waiting[index], order);
-            (0..waiting.len()).find(|k| needs.contains(&self.placed_name(waiting[*k], order)))
+            (0..waiting.len()).find(|k| needs.contains(&self.name_of_item_placed(waiting[*k], order)))
         };
         let mut path: Vec<usize> = vec![0];
         while let Some(k) = path.last().and_then(|index| next_waiting_dependency(*index)) {
@@ -162,7 +162,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the name of the element that an item places.
-    fn placed_name(&self, item: UnplacedElement, order: &PlacementOrder) -> String {
+    fn name_of_item_placed(&self, item: UnplacedElement, order: &PlacementOrder) -> String {
         match item {
             UnplacedElement::Joint(k) => {
                 self.scope.description.joints[order.joints[k].0].child.body.text.clone()
@@ -174,7 +174,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// Places the remaining elements at substitute poses, so that their dependents are resolved as well.
     fn place_at_substitute_poses(&mut self, waiting: &[UnplacedElement], order: &PlacementOrder) {
         for item in waiting {
-            let name = self.placed_name(*item, order);
+            let name = self.name_of_item_placed(*item, order);
             let (link, pose) = self.add_link_if_moving(None, self.scope.substitute_pose(true));
             let kind = match item {
                 UnplacedElement::Joint(_) | UnplacedElement::Body(_) => PlacedElementKind::Body,
@@ -219,10 +219,11 @@ impl<'a, 'g> Builder<'a, 'g> {
                 let p = &d.particles[k];
                 let Some(at) = &p.at else { return };
                 let free = !are_particle_axes_used(d, &p.name.text);
+                let (link, pose) = self
+                    .placement_of_position(at, free, cx)
+                    .unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
                 let (link, pose) =
-                    self.place_at(at, free, cx).unwrap_or_else(|| (None, self.scope.substitute_pose(true)));
-                let (link, pose) =
-                    self.link_of_placed_element(holders::particle_connection_index(d, k), link, pose);
+                    self.add_links_of_placed_element(holders::particle_connection_index(d, k), link, pose);
                 self.register_placement(&p.name.text, link, pose, PlacedElementKind::Point);
             }
         }
@@ -239,7 +240,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
         let frame = &self.scope.description.frames[k];
-        let start = self.start_axes_of_frame(&frame.start, cx);
+        let start = self.placement_of_named_axes(&frame.start, cx);
         // Axes defined by a vector or a curve precede further rotations.
         let natural = match frame.rotations.first().map(|first| &first.kind) {
             Some(ExprKind::Call(word, arguments)) => match word.id {
@@ -253,7 +254,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let steps = &frame.rotations[usize::from(natural.is_some())..];
         let first = match (natural, &start) {
             (Some((rotation, arguments)), Some(start)) => {
-                self.scope.axes_of_vector_or_curve(rotation, arguments, start, cx)
+                self.scope.resolve_curvilinear_axes(rotation, arguments, start, cx)
             }
             _ => Some(Rotation::identity(self.scope.graph)),
         };
@@ -268,7 +269,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the placement of the body or frame with this name.
-    fn start_axes_of_frame(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    fn placement_of_named_axes(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         let ExprKind::Name(name) = &e.kind else {
             cx.report_error(e.place.clone(), "expected a body or a frame")
                 .add_help("write `#[frame(ground, z(angle))]`");
@@ -306,11 +307,11 @@ impl<'a, 'g> Builder<'a, 'g> {
     fn place_body(&mut self, k: usize, cx: &mut Diagnostics) {
         let body = &self.scope.description.bodies[k];
         let axes = match &body.frame {
-            Some(frame) => self.start_axes_of_frame(frame, cx),
+            Some(frame) => self.placement_of_named_axes(frame, cx),
             None => Some(self.ground_placement()),
         };
         let origin = match &body.at {
-            Some(at) => self.place_at(at, true, cx),
+            Some(at) => self.placement_of_position(at, true, cx),
             None => axes.as_ref().map(|a| (a.link, a.pose.clone())),
         };
         let (link, pose) = match (axes, origin) {
@@ -321,7 +322,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             _ => (None, self.scope.substitute_pose(true)),
         };
-        let (link, pose) = self.link_of_placed_element(
+        let (link, pose) = self.add_links_of_placed_element(
             holders::body_connection_index(self.scope.description, k),
             link,
             pose,
@@ -348,7 +349,12 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
     /// `offset` for `free`.
-    fn place_at(&self, e: &Expr, free: bool, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
+    fn placement_of_position(
+        &self,
+        e: &Expr,
+        free: bool,
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, Pose<'g>)> {
         let is_placeable = |name: &String| name == GROUND || self.scope.is_placeable(name);
         match &e.kind {
             ExprKind::Name(name) if is_placeable(name) => {
@@ -391,7 +397,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             && free
             && frame.pose.translation.is_zero()
             && *axes != frame.link
-            && self.is_concentric(*axes, frame.link)
+            && self.origins_always_coincide(*axes, frame.link)
         {
             return Some((*axes, Pose { rotation: Rotation::identity(self.scope.graph), translation: *v }));
         }
@@ -400,7 +406,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns whether the origin of a link always coincides with the origin of one of its ancestors.
-    fn is_concentric(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
+    fn origins_always_coincide(&self, link: Option<LinkId>, ancestor: Option<LinkId>) -> bool {
         let kinematics = &self.scope.kinematics;
         let mut current = link;
         while current != ancestor {

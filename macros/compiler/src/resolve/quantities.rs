@@ -225,7 +225,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the operands between the slashes of a kinematic quantity, or reports an error.
-    fn slash_operands<'e, const N: usize>(
+    fn operands_of_kinematic_quantity<'e, const N: usize>(
         &self,
         call: &Call<'e>,
         allowed: AllowedQuantities,
@@ -246,15 +246,15 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `r(y / x)`, the position of `y` relative to `x`.
     pub fn resolve_relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x] = self.slash_operands(call, AllowedQuantities::Placement, cx)?;
+        let [y, x] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Placement, cx)?;
         let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         Some(vector_value(self.kinematics.position_between(&y?, &x?)))
     }
 
     /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
     /// `v − ω × r`.
-    pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slash_operands(call, AllowedQuantities::Motion, cx)?;
+    pub fn resolve_relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [y, x, frame] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Motion, cx)?;
         let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         let frame = self.resolve_frame_link(frame, cx);
         Some(vector_value(self.kinematics.relative_velocity_in_frame(&y?, &x?, frame?, self.graph)))
@@ -263,7 +263,7 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
     /// and `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
     pub fn resolve_relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [y, x, frame] = self.slash_operands(call, AllowedQuantities::Acceleration, cx)?;
+        let [y, x, frame] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Acceleration, cx)?;
         let (y, x) = (self.placement_of_moving_point(y, cx), self.placement_of_moving_point(x, cx));
         let frame = self.resolve_frame_link(frame, cx);
         Some(vector_value(self.kinematics.relative_acceleration_in_frame(&y?, &x?, frame?, self.graph)))
@@ -271,14 +271,15 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 2] = self.slash_operands(call, AllowedQuantities::Motion, cx)?;
+        let frames: [_; 2] = self.operands_of_kinematic_quantity(call, AllowedQuantities::Motion, cx)?;
         let [b, a] = frames.map(|e| self.resolve_frame_link(e, cx));
         Some(vector_value(self.kinematics.angular_velocity_in_frame(b?, a?, self.graph)))
     }
 
     /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
-    pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: [_; 3] = self.slash_operands(call, AllowedQuantities::Acceleration, cx)?;
+    pub fn resolve_angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let frames: [_; 3] =
+            self.operands_of_kinematic_quantity(call, AllowedQuantities::Acceleration, cx)?;
         let [b, a, c] = frames.map(|e| self.resolve_frame_link(e, cx));
         Some(vector_value(self.kinematics.angular_acceleration_in_frame(b?, a?, c?, self.graph)))
     }
@@ -367,11 +368,11 @@ pub(super) fn vector_value<'g>(terms: Terms<'g>) -> Value<'g> {
 
 /// Converts a vector to a sum over the axes of links.
 pub(super) fn vector_terms_by_link<'g>(terms: Vec<(Axes, Vec3<'g>)>) -> Terms<'g> {
-    terms.into_iter().map(|(axes, v)| (link_of(&axes), v)).collect()
+    terms.into_iter().map(|(axes, v)| (link_of_axes(&axes), v)).collect()
 }
 
 /// Returns the link of axes; unresolved axes belong to the ground.
-fn link_of(axes: &Axes) -> Option<LinkId> {
+fn link_of_axes(axes: &Axes) -> Option<LinkId> {
     match axes {
         Axes::Link(link) => *link,
         Axes::Own | Axes::Of(_) => None,

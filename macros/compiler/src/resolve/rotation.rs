@@ -33,12 +33,12 @@ impl<'g> Scope<'_, 'g> {
                     (_, Some(k), [angle]) => {
                         return Some(Rotation::rotation_about_coordinate_axis(
                             k,
-                            self.resolve_plane_angle(angle, cx)?,
+                            self.resolve_angle_in_radians(angle, cx)?,
                         ));
                     }
                     (language::Rotation::Eigenaxis, _, [n, angle]) => {
                         let n = self.unit_vector(n, false, cx);
-                        let angle = self.resolve_plane_angle(angle, cx);
+                        let angle = self.resolve_angle_in_radians(angle, cx);
                         return Some(Rotation::rotation_about_axis(n?, angle?));
                     }
                     (language::Rotation::Quaternion, _, [x, y, z, w]) => {
@@ -68,7 +68,7 @@ impl<'g> Scope<'_, 'g> {
                 }
             }
             ExprKind::Array(_) => {
-                let matrix = self.resolve_matrix(step, cx)?;
+                let matrix = self.resolve_matrix_literal(step, cx)?;
                 return check_rotation_matrix(&matrix, &step.place, cx)
                     .then(|| Rotation::from_matrix(matrix));
             }
@@ -80,12 +80,12 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns an angle, rad. A plain number beyond a full revolution is most likely in degrees and is
     /// reported.
-    pub fn resolve_plane_angle(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+    pub fn resolve_angle_in_radians(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         if check_angle(e, cx) { self.resolve_scalar(e, cx) } else { None }
     }
 
     /// Returns a 3×3 matrix written as an array of rows.
-    pub fn resolve_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Mat3<'g>> {
+    pub fn resolve_matrix_literal(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Mat3<'g>> {
         let mut m = Mat3::zero(self.graph);
         let rows = match &e.kind {
             ExprKind::Array(rows) if rows.len() == 3 => rows,

@@ -163,7 +163,7 @@ pub struct Placed<'g> {
 }
 
 /// Coordinate on which force elements can act: full name, coordinate, and whether it is an angle.
-pub type PlainCoordinate = (String, Coordinate, bool);
+pub type NamedCoordinate = (String, Coordinate, bool);
 
 /// Coordinates of a joint, after numbering.
 #[derive(Debug)]
@@ -173,7 +173,7 @@ pub struct JointCoordinates {
     /// Index of the joint's first velocity in `v`.
     pub v: InV,
     /// Coordinates on which force elements can act.
-    pub plain: Vec<PlainCoordinate>,
+    pub plain: Vec<NamedCoordinate>,
 }
 
 /// Mass, centre of mass in body axes, and central inertia.
@@ -185,7 +185,7 @@ pub struct PlacedElements<'g> {
     /// Placements of the elements, by name of the element.
     pub places: BTreeMap<String, Placed<'g>>,
     /// Plain coordinates by full name; true for an angle.
-    pub coordinates: Vec<PlainCoordinate>,
+    pub coordinates: Vec<NamedCoordinate>,
     /// Coordinates of each joint.
     pub joint_coordinates: Vec<JointCoordinates>,
     /// First coordinate and velocity of released joints; `None` if no joint is released.

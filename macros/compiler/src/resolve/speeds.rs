@@ -95,11 +95,11 @@ fn speed_coefficients<'g>(
     let context = Context::new(AllowedQuantities::Motion, Some((None, Pose::identity(g))));
     let name_expression = syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
     let e = scope.call_in_context(context, |scope| scope.resolve_scalar(&name_expression, cx))?;
-    let place_of_value = || value.place.clone();
+    let source_place_of_value = || value.place.clone();
     let mut row = vec![g.zero(); model.nv()];
     velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
     if row.iter().all(|d| d.is_zero()) {
-        cx.report_error(place_of_value(), "this speed contains no rate").add_help(
+        cx.report_error(source_place_of_value(), "this speed contains no rate").add_help(
             "a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), \
              body.x)`",
         );
@@ -134,7 +134,7 @@ fn speed_coefficients<'g>(
             },
             _ => continue,
         };
-        cx.report_error(place_of_value(), what).add_help(help);
+        cx.report_error(source_place_of_value(), what).add_help(help);
         return None;
     }
     let at_rest = substitute_symbols(e, &|s| {
@@ -142,7 +142,7 @@ fn speed_coefficients<'g>(
     });
     let remainder = [vec![at_rest]];
     if !at_rest.is_zero() && !speeds::nonzero_columns(model, &remainder.to_vec()).is_empty() {
-        cx.report_error(place_of_value(), "a speed cannot have a term without rates").add_help(
+        cx.report_error(source_place_of_value(), "a speed cannot have a term without rates").add_help(
             "speeds are velocities and zero at rest: take the rates relative to the moving frame, or \
              declare an `#[output(…)]`",
         );

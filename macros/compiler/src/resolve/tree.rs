@@ -24,13 +24,13 @@ pub struct PlacementOrder {
 pub fn loop_closing_joints(description: &Description) -> Vec<bool> {
     let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
     for point in &description.points {
-        if let Some(base) = point.on.as_ref().and_then(base_name) {
+        if let Some(base) = point.on.as_ref().and_then(leading_body_name) {
             parents.insert(&point.name.text, base);
         }
     }
     for particle in &description.particles {
         if let Some(at) = &particle.at {
-            parents.insert(&particle.name.text, base_name(at).unwrap_or(GROUND));
+            parents.insert(&particle.name.text, leading_body_name(at).unwrap_or(GROUND));
         }
     }
     let mut closing = Vec::with_capacity(description.joints.len());
@@ -59,10 +59,10 @@ fn is_descendant(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -
 }
 
 /// Returns the body's name at the beginning of `body.at(vector)`.
-pub fn base_name(e: &Expr) -> Option<&str> {
+pub fn leading_body_name(e: &Expr) -> Option<&str> {
     match &e.kind {
         ExprKind::Name(name) => Some(name),
-        ExprKind::Method(base, ..) => base_name(base),
+        ExprKind::Method(base, ..) => leading_body_name(base),
         _ => None,
     }
 }

@@ -114,7 +114,7 @@ fn read_target(
             Some(Target::Between(ends.pop()?, second))
         }
         other => {
-            let second = arguments.take_second_argument(&other);
+            let second = arguments.take_end_of_bare_pair(&other);
             let help = match &other.kind {
                 _ if second.is_some() => {
                     let second = second.map_or_else(String::new, |second| second.to_source());

@@ -157,7 +157,7 @@ impl Arguments {
 
     /// Removes and returns the only expression without a key if both it and `first` are positions. It is most
     /// likely the second element of a pair without parentheses.
-    pub fn take_second_argument(&mut self, first: &Expr) -> Option<Expr> {
+    pub fn take_end_of_bare_pair(&mut self, first: &Expr) -> Option<Expr> {
         let is_place_expression =
             |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
         match self.plain.as_slice() {

@@ -33,7 +33,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         reading.mark_mechanism_unreadable();
     }
     let (arguments, runtime) = crate_path::take_crate_path(arguments, cx);
-    let (generic, refused) = find_scalar_type_parameter(&mut item, cx);
+    let (generic, refused) = separate_scalar_type_parameter(&mut item, cx);
     let mut description = Description::empty_description(name_from_identifier(&item.ident));
     let mut shell = Shell {
         attributes: item.attrs.clone(),
@@ -68,7 +68,7 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     let (mut requests, before) = (RequestedFunctions::default(), cx.len());
     let file = read_options(arguments.clone(), &mut description, &mut scalar, &mut requests, cx);
     if cx.len() > before {
-        reading.mark_unreadable_arguments(arguments);
+        reading.mark_if_options_unreadable(arguments);
     }
     if let Some((scalar, _)) = scalar {
         description.scalar = scalar;
@@ -148,7 +148,10 @@ fn invalid_rust_help(error: &syn::Error) -> &'static str {
 /// Returns the struct's type parameter, if one can be the scalar type, and the names of the other type
 /// parameters. Parameters that cannot be the scalar type are removed, so that the Rust compiler does not
 /// report them again.
-fn find_scalar_type_parameter(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String>, Vec<Ident>) {
+fn separate_scalar_type_parameter(
+    item: &mut ItemStruct,
+    cx: &mut Diagnostics,
+) -> (Option<String>, Vec<Ident>) {
     let (mut found, mut refused) = (None, Vec::new());
     let parameters = std::mem::take(&mut item.generics.params);
     let count = parameters.len();

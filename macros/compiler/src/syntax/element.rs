@@ -411,15 +411,17 @@ fn read_auxiliary_element(
         // `read_state` reads these fields, because they are also parameters.
         OtherKind::State => {}
         OtherKind::Potential => {
-            let value = read_expression(&name, kind, attribute, arguments, cx);
+            let value = read_single_expression_element(&name, kind, attribute, arguments, cx);
             description.energies.extend(value.map(|value| (name, value)));
         }
         OtherKind::Rayleigh => {
-            let value = read_expression(&name, kind, attribute, arguments, cx);
+            let value = read_single_expression_element(&name, kind, attribute, arguments, cx);
             description.dissipations.extend(value.map(|value| (name, value)));
         }
         OtherKind::Speed => {
-            let Some(value) = read_expression(&name, kind, attribute, arguments, cx) else { return };
+            let Some(value) = read_single_expression_element(&name, kind, attribute, arguments, cx) else {
+                return;
+            };
             description.speeds.push(name.clone());
             description.definitions.push(Definition { name, rank: Rank::Scalar, value, resolved_in: None });
         }
@@ -448,7 +450,7 @@ fn read_definition(
     cx: &mut Diagnostics,
 ) {
     let resolved_in = kind.row().own.first().and_then(|axes| arguments.take_expression_of_key(axes, cx));
-    let Some(value) = read_expression(&name, kind, attribute, arguments, cx) else { return };
+    let Some(value) = read_single_expression_element(&name, kind, attribute, arguments, cx) else { return };
     let list = match attribute {
         Some(OUTPUT) => &mut description.outputs,
         _ => &mut description.definitions,
@@ -457,7 +459,7 @@ fn read_definition(
 }
 
 /// Reads the expression of an element that consists of one expression, and the arguments of its row.
-fn read_expression(
+fn read_single_expression_element(
     name: &Name,
     kind: OtherKind,
     attribute: Option<&str>,

@@ -174,7 +174,7 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
         inner = if input.peek(token::Paren) {
             let (arguments, arguments_size, close) = match member.text == SurfaceId::Hull.name() {
                 true => parse_hull_arguments(input)?,
-                false => parse_arguments(input)?,
+                false => parse_parenthesised_arguments(input)?,
             };
             let place = inner.0.place.extend_to_end_of(&close.into());
             check_expression_size(
@@ -223,7 +223,7 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
         let name = parse_name(input)?;
         let place = name.place.clone();
         if input.peek(token::Paren) {
-            let (arguments, size, close) = parse_arguments(input)?;
+            let (arguments, size, close) = parse_parenthesised_arguments(input)?;
             return check_expression_size(
                 ExprKind::Call(Callee::new(name), arguments),
                 place.extend_to_end_of(&close.into()),
@@ -439,7 +439,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<ParsedExpression> {
 }
 
 /// Parses expressions in parentheses; returns them with their common size and the closing parenthesis.
-fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSize, Span)> {
+fn parse_parenthesised_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, ExpressionSize, Span)> {
     let content;
     let close = parenthesized!(content in input).span.close();
     let (items, size, _) = parse_list(&content)?;
@@ -452,7 +452,7 @@ fn parse_hull_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Expre
     let content;
     let close = parenthesized!(content in ahead).span.close();
     if !content.peek(LitStr) {
-        return parse_arguments(input);
+        return parse_parenthesised_arguments(input);
     }
     let path: LitStr = content.parse()?;
     if !content.is_empty() {

@@ -62,7 +62,7 @@ impl FieldReadability {
 
     /// Marks the mechanism as unreadable if the arguments of the attribute, which could not be read, contain
     /// an option with which fields are checked.
-    pub fn mark_unreadable_arguments(&mut self, arguments: TokenStream) {
+    pub fn mark_if_options_unreadable(&mut self, arguments: TokenStream) {
         let mut words = BTreeSet::new();
         collect_identifiers(arguments, &mut words);
         self.unreadable |= words.iter().any(|word| {

@@ -150,18 +150,18 @@ impl<'g> VectorisedMechanism<'g> {
         let g = self.model.graph;
         let merge_signed_lane_values = |velocity: &LaneVelocity| {
             let lanes: Vec<Expr<'g>> = velocity.lanes.iter().map(|k| whole[*k]).collect();
-            Some(g.lane_constants(&velocity.signs) * merge.merge_lanes(&lanes)?)
+            Some(g.lanes_from_constants(&velocity.signs) * merge.merge_lanes(&lanes)?)
         };
         self.velocities.iter().map(merge_signed_lane_values).collect()
     }
 
     /// Returns the symbols of a quantity, such as the velocities, one entry per velocity of the vectorised
     /// mechanism.
-    pub fn symbols_by_velocity(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
+    pub fn symbols_of_quantity(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let gather_lane_symbols = |velocity: &LaneVelocity| {
             let symbols: Vec<_> = velocity.lanes.iter().map(|k| of(*k).symbol()).collect();
-            g.lane_constants(&velocity.signs) * g.lane_input_of_symbols(&symbols)
+            g.lanes_from_constants(&velocity.signs) * g.lane_input_of_symbols(&symbols)
         };
         self.velocities.iter().map(gather_lane_symbols).collect()
     }
@@ -290,7 +290,7 @@ impl<'g> VectorisedMechanism<'g> {
             };
             let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(lane_entry).collect();
             let all = merge.merge_lanes(&lanes).unwrap_or_else(|| join_lanes(&lanes));
-            if velocity.lanes.len() == 1 { all } else { g.lane_constants(&velocity.signs) * all }
+            if velocity.lanes.len() == 1 { all } else { g.lanes_from_constants(&velocity.signs) * all }
         };
         self.velocities.iter().map(entry_in_lanes).collect()
     }
@@ -300,7 +300,9 @@ impl<'g> VectorisedMechanism<'g> {
     pub fn scatter_lanes_to_velocities(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let value_at_location = |place: &VectorisedVelocityPosition| match place.lane {
-            Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * of(place.index, k)).lane(k),
+            Some(k) => {
+                (g.lanes_from_constants(&self.velocities[place.index].signs) * of(place.index, k)).lane(k)
+            }
             None => of(place.index, 0),
         };
         self.places.iter().map(value_at_location).collect()
@@ -316,7 +318,9 @@ impl<'g> VectorisedMechanism<'g> {
     pub fn scatter_to_velocities(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let value_at_location = |place: &VectorisedVelocityPosition| match place.lane {
-            Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k),
+            Some(k) => {
+                (g.lanes_from_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k)
+            }
             None => values[place.index],
         };
         self.places.iter().map(value_at_location).collect()
@@ -331,7 +335,7 @@ impl<'g> VectorisedMechanism<'g> {
     /// Splits a matrix of the vectorised mechanism into the matrix of the whole mechanism, row by row.
     pub fn whole_mechanism_matrix(&self, matrix: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let lane_signs = |index: usize| g.lane_constants(&self.velocities[index].signs);
+        let lane_signs = |index: usize| g.lanes_from_constants(&self.velocities[index].signs);
         let mut whole = Vec::with_capacity(self.places.len() * self.places.len());
         for &VectorisedVelocityPosition { index: i, lane: row } in &self.places {
             for &VectorisedVelocityPosition { index: j, lane: column } in &self.places {

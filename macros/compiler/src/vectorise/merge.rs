@@ -92,7 +92,7 @@ impl<'g> LaneMerger<'g> {
             return Some(first);
         }
         if let Some(values) = lanes.iter().map(|e| e.constant_value()).collect::<Option<Vec<_>>>() {
-            return Some(self.graph.lane_constants(&values));
+            return Some(self.graph.lanes_from_constants(&values));
         }
         let ids: Vec<Id> = lanes.iter().map(|e| e.id()).collect();
         if let Some(known) = self.known.get(&ids) {
@@ -170,9 +170,9 @@ impl<'g> LaneMerger<'g> {
         let rests: Vec<Expr<'g>> = parts.iter().map(|part| part.2).collect();
         let scaled = match factors.iter().all(|c| c.abs() == 1.0) {
             true => self.merge_signed_lanes(&rests, &factors)?,
-            false => self.graph.lane_constants(&factors) * self.merge_lanes(&rests)?,
+            false => self.graph.lanes_from_constants(&factors) * self.merge_lanes(&rests)?,
         };
-        Some(self.graph.lane_constants(&offsets) + scaled)
+        Some(self.graph.lanes_from_constants(&offsets) + scaled)
     }
 
     /// Merges expressions with signs. Signs that differ between lanes are absorbed by constants of the
@@ -188,12 +188,12 @@ impl<'g> LaneMerger<'g> {
             return known.map(|id| self.graph.expr(id));
         }
         self.spend_steps(key.len())?;
-        let found = self.build_within_depth_limit(|merge| merge.merge_lanes_with_signs(lanes, signs));
+        let found = self.build_within_depth_limit(|merge| merge.merge_uncached_signed_lanes(lanes, signs));
         self.signed.insert(key, found.map(Expr::id));
         found
     }
 
-    fn merge_lanes_with_signs(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
+    fn merge_uncached_signed_lanes(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
         let first = *lanes.first()?;
         let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| split_affine(*e)).collect();
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
@@ -218,7 +218,7 @@ impl<'g> LaneMerger<'g> {
                 };
             }
         }
-        Some(self.graph.lane_constants(signs) * self.merge_lanes(lanes)?)
+        Some(self.graph.lanes_from_constants(signs) * self.merge_lanes(lanes)?)
     }
 
     /// Returns the first and the second operands of a commutative operation in all lanes. Operands are

@@ -10,4 +10,4 @@ mod velocities;
 pub use find::{LimbGroup, find_limb_groups};
 pub use limbs::{LimbRows, VectorisedMechanism, join_lanes};
 pub use merge::LaneMerger;
-pub use paths::{LaneGroup, PathsToRoot, PropagatedQuantity, PropagationVisitor};
+pub use paths::{LaneGroup, PathsToRoot, PropagatedQuantity, RootPropagationVisitor};

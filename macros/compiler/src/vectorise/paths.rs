@@ -13,7 +13,7 @@ pub trait PropagatedQuantity<'g>: Sized {
 }
 
 /// Algorithm that processes quantities while they are propagated from degrees of freedom to the root.
-pub trait PropagationVisitor<'g> {
+pub trait RootPropagationVisitor<'g> {
     /// Type of the quantity that is propagated from the links to the root.
     type Item: PropagatedQuantity<'g>;
     /// Returns the quantity that a degree of freedom propagates, in the frame of its own link.
@@ -107,7 +107,7 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
     }
 
     /// Propagates the quantities of all degrees of freedom to the root.
-    pub fn propagate_to_root<V: PropagationVisitor<'g>>(&self, visitor: &mut V) {
+    pub fn propagate_to_root<V: RootPropagationVisitor<'g>>(&self, visitor: &mut V) {
         for group in &self.groups {
             let lanes = self.gather_group_quantities(group, visitor);
             self.transform_group_to_ancestor(lanes, None, visitor);
@@ -115,7 +115,7 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
     }
 
     /// Returns the quantities of a group in the frame of the link of its last degree of freedom.
-    fn gather_group_quantities<V: PropagationVisitor<'g>>(
+    fn gather_group_quantities<V: RootPropagationVisitor<'g>>(
         &self,
         group: &[usize],
         visitor: &mut V,
@@ -142,7 +142,7 @@ impl<'a, 'g> PathsToRoot<'a, 'g> {
     }
 
     /// Transforms a group link by link to a link nearer to the root, or to the root.
-    fn transform_group_to_ancestor<V: PropagationVisitor<'g>>(
+    fn transform_group_to_ancestor<V: RootPropagationVisitor<'g>>(
         &self,
         mut group: LaneGroup<V::Item>,
         to: Option<usize>,

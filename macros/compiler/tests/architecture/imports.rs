@@ -7,12 +7,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Path of a module from the crate's root, as a list of names.
-type Module = Vec<String>;
+type ModulePath = Vec<String>;
 
 /// Source file of the compiler with its imports, for checks of the architecture.
 struct File {
     path: PathBuf,
-    module: Module,
+    module: ModulePath,
     /// Tokens of the code, without comments, strings, unit tests and imports.
     tokens: Vec<String>,
     /// Names that the source file defines.
@@ -24,7 +24,7 @@ struct File {
 /// Source files of the crate, with the dependencies between them.
 pub struct SourceDependencies {
     files: Vec<File>,
-    by_module: BTreeMap<Module, usize>,
+    by_module: BTreeMap<ModulePath, usize>,
 }
 
 impl SourceDependencies {
@@ -96,7 +96,7 @@ impl SourceDependencies {
 
     fn resolve_import_path(&self, module: &[String], path: &[String], depth: usize) -> Option<usize> {
         let [first, rest @ ..] = path else { return None };
-        let child: Module = module.iter().chain([first]).cloned().collect();
+        let child: ModulePath = module.iter().chain([first]).cloned().collect();
         if self.by_module.contains_key(&child) {
             return self.resolve_import_path(&child, rest, depth);
         }
@@ -156,7 +156,7 @@ impl File {
     fn read_file_imports(source: &Path, path: PathBuf) -> File {
         let text = fs::read_to_string(&path).unwrap();
         let path = path.strip_prefix(source).unwrap().to_path_buf();
-        let mut module: Module = path
+        let mut module: ModulePath = path
             .with_extension("")
             .components()
             .map(|c| c.as_os_str().to_string_lossy().into_owned())

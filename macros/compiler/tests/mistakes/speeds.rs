@@ -2,7 +2,7 @@
 
 use super::{ErrorRow, check_error_rows};
 
-fn mechanism_setting(fields: &str) -> (String, String) {
+fn cart_and_arm_mechanism_source(fields: &str) -> (String, String) {
     let own = "a: f64,
         #[body(mass = 1)] cart: Body, #[body(mass = 1, com = y, inertia = sphere(1, 1))] arm: Body,
         #[joint(ground -> cart, along = x)] rail: Sleeve, #[joint(cart -> arm, about = z)] hinge: Pin,

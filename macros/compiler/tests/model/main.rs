@@ -14,13 +14,13 @@ use std::path::Path;
 
 /// Compares the model of a mechanism with these fields; indentation is ignored.
 fn check_model(fields: &str, expected: &str) {
-    assert_same_trimmed_lines(&facts_text(fields, None), expected);
+    assert_same_trimmed_lines(&model_text_or_messages(fields, None), expected);
 }
 
 /// Compares the model of a URDF file with these contents of `<robot>`; indentation is ignored.
 fn check_urdf(inside: &str, expected: &str) {
     assert_same_trimmed_lines(
-        &facts_text("", Some(&format!("<robot name=\"r\">{inside}</robot>"))),
+        &model_text_or_messages("", Some(&format!("<robot name=\"r\">{inside}</robot>"))),
         expected,
     );
 }
@@ -32,7 +32,7 @@ fn assert_same_trimmed_lines(actual: &str, expected: &str) {
     assert!(trimmed_lines(actual) == trimmed_lines(expected), "expected\n{expected}\nfound\n{actual}");
 }
 
-fn facts_text(fields: &str, urdf: Option<&str>) -> String {
+fn model_text_or_messages(fields: &str, urdf: Option<&str>) -> String {
     let mut cx = Diagnostics::new();
     let item = format!("struct S {{ {fields} }}").parse().unwrap();
     let Some(mut source) = read_source("".parse().unwrap(), item, Path::new(""), &mut cx) else {
@@ -173,7 +173,7 @@ fn coordinates_are_named_by_joint_in_declaration_order() {
         let fields = format!("{BODY} b: Body, #[joint(ground -> b, {axes})] j: {kind},");
         let expected =
             if v.is_empty() { vec![format!("q: {q}")] } else { vec![format!("q: {q}"), format!("v: {v}")] };
-        let found = facts_text(&fields, None);
+        let found = model_text_or_messages(&fields, None);
         let names: Vec<&str> = found.lines().take(expected.len()).map(str::trim).collect();
         assert_eq!(names, expected.iter().map(|line| line.trim()).collect::<Vec<_>>(), "{kind}: {found}");
     }
@@ -363,7 +363,7 @@ fn link_with_inertia_must_have_mass() {
     );
     // Bodies that are fixed to the ground appear in no equation.
     let fixed = format!("<robot>{}</robot>", robot_with_joint_type("fixed"));
-    assert!(!facts_text("", Some(&fixed)).contains("no mass"));
+    assert!(!model_text_or_messages("", Some(&fixed)).contains("no mass"));
 }
 
 /// Checks that inconsistent moments of inertia of rounding-error magnitude, which exporters write for bodies
@@ -390,7 +390,9 @@ fn inertia_of_rounding_magnitude_counts_as_zero() {
         let text = robot_with_inertia(mass, moment);
         let moving = text.replace("JOINT", "revolute");
         match real {
-            true => assert!(facts_text("", Some(&format!("<robot>{moving}</robot>"))).starts_with("q: j\n")),
+            true => assert!(
+                model_text_or_messages("", Some(&format!("<robot>{moving}</robot>"))).starts_with("q: j\n")
+            ),
             false => check_urdf(&moving, &inconsistent_inertia_message(moment)),
         }
         // Bodies that are fixed to the ground appear in no equation.
@@ -432,7 +434,7 @@ fn errors_are_reported_together_and_once() {
 #[test]
 fn two_point_elements_act_without_other_elements() {
     let plain = "#[body(mass = 1, inertia = 1)] hull: Body, #[joint(ground -> hull)] pose: Free,";
-    let links = facts_text(plain, None);
+    let links = model_text_or_messages(plain, None);
     let links = links.lines().next().expect("there is a link");
     for element in [
         "stiffness = 3)] e: Spring",
@@ -440,7 +442,10 @@ fn two_point_elements_act_without_other_elements() {
         "inertance = 3)] e: Inerter",
         "mu = 3)] e: Gravity",
     ] {
-        let found = facts_text(&format!("{plain} #[acts(between = (ground.at(x), hull), {element},"), None);
+        let found = model_text_or_messages(
+            &format!("{plain} #[acts(between = (ground.at(x), hull), {element},"),
+            None,
+        );
         assert!(found.starts_with(links), "{element}: {found}");
     }
 }

@@ -16,7 +16,7 @@ fn compile_named_programs(arguments: &str, item: &str, functions: &[&str]) -> Ve
 
 /// Returns the programs of these functions, and the number of expressions in the graph.
 fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<Program>, usize) {
-    with_output(arguments, item, |output, graph| {
+    with_compiled_output(arguments, item, |output, graph| {
         let program_of_function_name = |name: &&str| {
             let f = output.functions.iter().find(|f| f.name == *name).expect("the function is generated");
             f.program.clone()
@@ -26,7 +26,7 @@ fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<P
 }
 
 /// Compiles a mechanism and passes the result, with its graph of expressions, to a function.
-fn with_output<R>(arguments: &str, item: &str, f: impl FnOnce(&Output, &Graph) -> R) -> R {
+fn with_compiled_output<R>(arguments: &str, item: &str, f: impl FnOnce(&Output, &Graph) -> R) -> R {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
@@ -332,14 +332,14 @@ fn prepared_mass_parameters_add_few_operations() {
 #[test]
 fn loops_over_links_compute_the_derivatives_of_long_chains_only() {
     let has_loops = |n: usize| {
-        with_output("derivatives", &chain_source(n, false), |output, _| {
+        with_compiled_output("derivatives", &chain_source(n, false), |output, _| {
             output.functions.iter().any(|f| f.loops.is_some())
         })
     };
     assert!(!has_loops(6));
     assert!(has_loops(20));
     let quadruped = r#"urdf = "../../models/urdf/solo12.urdf", base = free, derivatives"#;
-    assert!(with_output(quadruped, "struct Solo;", |output, _| {
+    assert!(with_compiled_output(quadruped, "struct Solo;", |output, _| {
         output.functions.iter().all(|f| f.loops.is_none())
     }));
 }

@@ -4,7 +4,7 @@
 
 use crate::kane::{self, Measure, State};
 use crate::random::Random;
-use crate::spec::{End, Spec, Style, random_mechanism_spec};
+use crate::spec::{End, GeneratorSettings, Spec, random_mechanism_spec};
 use crate::words;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -29,7 +29,7 @@ struct Drive {
 
 /// Checks the mechanism of a seed. Returns false if its prescribed motions are nearly dependent.
 pub fn check_driven_mechanism(seed: u64) -> bool {
-    let style = Style { bodies: 4, limbs: 0, decades: 0.3, noise: None };
+    let style = GeneratorSettings { bodies: 4, limbs: 0, decades: 0.3, noise: None };
     let mut spec = random_mechanism_spec(9_000_000 + seed, style);
     for body in &mut spec.bodies {
         // No prescribed motion constrains the coordinate of a slider.

@@ -131,7 +131,7 @@ fn overlong_mechanisms_are_rejected_at_any_capacity() {
 #[test]
 fn generated_functions_of_random_mechanisms_agree() {
     let all = test_seeds(60);
-    let compared: Vec<usize> = all.clone().map(agreement::check_all_functions).collect();
+    let compared: Vec<usize> = all.clone().map(agreement::check_random_mechanism).collect();
     let (many, most) = (compared.iter().filter(|n| **n > 20).count() as u64, all.end - all.start);
     assert!(8 * many > most, "only {many} of {most} mechanisms have much to compare");
 }
@@ -140,12 +140,19 @@ fn generated_functions_of_random_mechanisms_agree() {
 fn generated_functions_of_chosen_mechanisms_agree() {
     for (arguments, fields, functions) in chosen::MECHANISMS {
         let item = format!("pub struct Any {{ {fields} }}");
-        let compared = agreement::check_all(arguments, &item, functions, 0);
+        let compared = agreement::check_functions_of_mechanism(arguments, &item, functions, 0);
         assert!(compared > 20, "{compared} comparisons of #[mechanism({arguments})]\n{item}");
     }
     let item = format!("pub struct Any {{ {} }}", chosen::body_with_limbs_source(2, 3));
     let functions = ["inverse_dynamics_derivatives_into", "mass_matrix_into"];
-    assert!(agreement::check_all("gravity = -9.81 * y, derivatives, packed", &item, &functions, 0) > 20);
+    assert!(
+        agreement::check_functions_of_mechanism(
+            "gravity = -9.81 * y, derivatives, packed",
+            &item,
+            &functions,
+            0
+        ) > 20
+    );
 }
 
 /// Checks a mechanism with many springs, whose passive forces are computed by one function that other
@@ -155,7 +162,10 @@ fn separately_computed_passive_forces_agree() {
     let fields = chosen::body_with_springs_source(SPRINGS);
     let item = format!("pub struct Any {{ {fields} }}");
     let functions = ["__passive_forces", "__passive_derivatives", "inverse_dynamics_derivatives"];
-    assert!(agreement::check_all("gravity = -9.81 * y, derivatives", &item, &functions, 0) > 20);
+    assert!(
+        agreement::check_functions_of_mechanism("gravity = -9.81 * y, derivatives", &item, &functions, 0)
+            > 20
+    );
     let text = generated_code_or_errors("gravity = -9.81 * y, derivatives", &item);
     for row in
         ["| passive forces, called by other functions |", "| their derivatives, called by other functions |"]

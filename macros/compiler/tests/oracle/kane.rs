@@ -165,7 +165,7 @@ fn distance_between_ends(world: &World, a: &End, b: &End) -> Jet {
     dot(d, d).sqrt()
 }
 
-fn length(world: &World, path: &Path) -> Jet {
+fn length_of_path(world: &World, path: &Path) -> Jet {
     match path {
         Path::Rope([a, b, c]) => distance_between_ends(world, a, b) + distance_between_ends(world, b, c),
         Path::Cable { ends, around, radius, axis } => cable_length(world, ends, around, *radius, *axis),
@@ -297,7 +297,8 @@ fn generalized_force(spec: &Spec, now: &World, partial: &World) -> C {
                     * distance_between_ends(partial, a, b).first_time_derivative()
             }
             Element::Along(law, path) => {
-                tension_of_law(*law, length(now, path)) * length(partial, path).first_time_derivative()
+                tension_of_law(*law, length_of_path(now, path))
+                    * length_of_path(partial, path).first_time_derivative()
             }
             Element::On(law, body, k) => {
                 tension_of_law(*law, now.coordinates[*body][*k])
@@ -346,7 +347,7 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
 
 /// Returns the configuration after an imaginary step along one velocity on the configuration manifold,
 /// `q ⊕ i h e`.
-pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
+pub fn configuration_after_imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
     stepped_configuration(spec, q, k, C::new(0.0, h))
 }
 

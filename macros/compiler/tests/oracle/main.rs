@@ -24,7 +24,7 @@ mod sites;
 mod spec;
 mod words;
 
-use spec::{Style, random_mechanism_spec};
+use spec::{GeneratorSettings, random_mechanism_spec};
 
 /// Returns the seeds of a test. The variable `LINKWORK_ORACLE` replaces their number by `20000`, or their
 /// range by `400..405`.
@@ -34,7 +34,7 @@ fn test_seeds(usual: u64) -> std::ops::Range<u64> {
     from.parse().unwrap_or(0)..to.parse().unwrap_or(usual)
 }
 
-const PLAIN: Style = Style { bodies: 6, limbs: 0, decades: 0.3, noise: None };
+const PLAIN: GeneratorSettings = GeneratorSettings { bodies: 6, limbs: 0, decades: 0.3, noise: None };
 
 #[test]
 fn random_trees_satisfy_kanes_equations() {
@@ -47,7 +47,10 @@ fn random_trees_satisfy_kanes_equations() {
 fn random_limbs_satisfy_kanes_equations() {
     for seed in test_seeds(20) {
         let limbs = 2 + seed as usize % 4;
-        programs::check_mechanism(&random_mechanism_spec(1_000_000 + seed, Style { limbs, ..PLAIN }), seed);
+        programs::check_mechanism(
+            &random_mechanism_spec(1_000_000 + seed, GeneratorSettings { limbs, ..PLAIN }),
+            seed,
+        );
     }
 }
 
@@ -55,7 +58,7 @@ fn random_limbs_satisfy_kanes_equations() {
 fn mass_ratios_of_twelve_decades_satisfy_kanes_equations() {
     for seed in test_seeds(30) {
         programs::check_mechanism(
-            &random_mechanism_spec(2_000_000 + seed, Style { decades: 6.0, ..PLAIN }),
+            &random_mechanism_spec(2_000_000 + seed, GeneratorSettings { decades: 6.0, ..PLAIN }),
             seed,
         );
     }
@@ -70,7 +73,7 @@ fn nearly_identical_limbs_satisfy_kanes_equations() {
         // Heavy limbs on a light trunk differ more in their moments of inertia about the trunk's joint than
         // in their masses. Masses that are smaller than the others by thirteen powers of ten are treated as
         // zero.
-        let style = Style { limbs, decades: 5.5, noise, ..PLAIN };
+        let style = GeneratorSettings { limbs, decades: 5.5, noise, ..PLAIN };
         programs::check_mechanism(&random_mechanism_spec(4_000_000 + seed, style), seed);
     }
 }
@@ -86,7 +89,7 @@ fn driven_mechanisms_satisfy_kanes_equations() {
 fn noisy_right_angles_satisfy_kanes_equations() {
     for seed in test_seeds(30) {
         let noise = 10.0_f64.powi(-16 + (seed % 14) as i32);
-        let style = Style { bodies: 8, noise: Some(noise), ..PLAIN };
+        let style = GeneratorSettings { bodies: 8, noise: Some(noise), ..PLAIN };
         programs::check_mechanism(&random_mechanism_spec(3_000_000 + seed, style), seed);
     }
 }

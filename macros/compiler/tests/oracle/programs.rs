@@ -194,7 +194,10 @@ impl Case<'_> {
             |list: Vec<C>| -> Vec<f64> { list.iter().map(|x| x.im / STEP).collect() };
         let mut expected = Vec::new();
         for k in 0..nv {
-            let stepped = State { q: kane::imaginary_step(self.spec, &state.q, k, STEP), ..state.clone() };
+            let stepped = State {
+                q: kane::configuration_after_imaginary_step(self.spec, &state.q, k, STEP),
+                ..state.clone()
+            };
             expected.extend(imaginary_parts_over_step(kane::inverse_dynamics(self.spec, &stepped)));
         }
         for k in 0..nv {
@@ -257,8 +260,9 @@ impl Case<'_> {
         let mut unit = [vec![0.0; nv], vec![0.0; nv], vec![0.0; nv]];
         unit[entry / nv][entry % nv] = 1.0;
         let power_derivative_along = |state: &State, along: &[Vec<f64>; 3]| {
-            let all = (0..nv)
-                .fold(state.q.clone(), |q, k| kane::imaginary_step(self.spec, &q, k, STEP * along[0][k]));
+            let all = (0..nv).fold(state.q.clone(), |q, k| {
+                kane::configuration_after_imaginary_step(self.spec, &q, k, STEP * along[0][k])
+            });
             let add_imaginary_step = |list: &[C], rates: &[f64]| -> Vec<C> {
                 list.iter().zip(rates).map(|(x, rate)| x + C::new(0.0, STEP * rate)).collect()
             };

@@ -375,10 +375,12 @@ impl Robot {
                 _ if joint.locked => Pose::identity(),
                 Some((leader, factor, offset)) => {
                     let angle = coordinate_series(state, entries[leader]);
-                    joint.joint_pose(angle * Jet::constant_series(factor) + Jet::constant_series(offset))
+                    joint.pose_at_coordinate(
+                        angle * Jet::constant_series(factor) + Jet::constant_series(offset),
+                    )
                 }
-                None if joint.kind < 3 => joint.joint_pose(coordinate_series(state, entries[k])),
-                None => joint.pose_of_joint(state, entries[k]),
+                None if joint.kind < 3 => joint.pose_at_coordinate(coordinate_series(state, entries[k])),
+                None => joint.pose_at_state(state, entries[k]),
             };
             let there = compose_poses(&places[joint.parent], &start);
             places.push(compose_poses(&there, &moved));
@@ -407,7 +409,7 @@ impl Joint {
 
     /// Returns the pose of a joint that rotates about its axis or slides along it, at a value of its
     /// coordinate.
-    fn joint_pose(&self, coordinate: Jet) -> Pose {
+    fn pose_at_coordinate(&self, coordinate: Jet) -> Pose {
         match KINDS[self.kind] {
             "prismatic" => Pose { p: scaled_vector(coordinate, self.unit_axis()), ..Pose::identity() },
             _ => Pose { r: rotation_about_axis(self.unit_axis(), coordinate), ..Pose::identity() },
@@ -415,7 +417,7 @@ impl Joint {
     }
 
     /// Returns the pose of a joint with several coordinates, or none.
-    fn pose_of_joint(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
+    fn pose_at_state(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
         match KINDS[self.kind] {
             "floating" => floating_pose(state, [q, v]),
             "planar" => {

@@ -166,7 +166,7 @@ pub struct Spec {
 
 /// Settings of the generator of random mechanisms.
 #[derive(Clone, Copy, Debug)]
-pub struct Style {
+pub struct GeneratorSettings {
     /// Maximum number of bodies of a random mechanism.
     pub bodies: usize,
     /// Number of identical limbs; zero for a random tree.
@@ -194,7 +194,7 @@ impl Source {
     }
 
     /// Returns a coordinate axis or a random unit vector.
-    fn random_axis(&mut self, style: &Style) -> [f64; 3] {
+    fn random_axis(&mut self, style: &GeneratorSettings) -> [f64; 3] {
         let mut axis = [0.0; 3];
         if style.noise.is_some() || !self.happens_one_time_in(3) {
             axis[self.index_below(3)] = if self.happens_one_time_in(2) { 1.0 } else { -1.0 };
@@ -208,7 +208,7 @@ impl Source {
         unit_vector(axis)
     }
 
-    fn random_rotations(&mut self, style: &Style) -> Vec<(usize, f64)> {
+    fn random_rotations(&mut self, style: &GeneratorSettings) -> Vec<(usize, f64)> {
         (0..self.index_below(3))
             .map(|_| {
                 let angle = match style.noise {
@@ -223,7 +223,7 @@ impl Source {
             .collect()
     }
 
-    fn random_joint_placement(&mut self, style: &Style) -> Place {
+    fn random_joint_placement(&mut self, style: &GeneratorSettings) -> Place {
         match self.index_below(4) {
             0 => Place::default(),
             1 => Place { at: self.random_vector(0.5), turns: Vec::new() },
@@ -231,11 +231,11 @@ impl Source {
         }
     }
 
-    fn random_mass(&mut self, style: &Style) -> f64 {
+    fn random_mass(&mut self, style: &GeneratorSettings) -> f64 {
         10.0_f64.powf(self.0.uniform_number(style.decades)) * (1.3 + self.0.uniform_number(0.8))
     }
 
-    fn random_body(&mut self, kind: Kind, parent: Option<usize>, style: &Style) -> Body {
+    fn random_body(&mut self, kind: Kind, parent: Option<usize>, style: &GeneratorSettings) -> Body {
         let mass = self.random_mass(style);
         // Moments of a cuboid are always physically possible.
         let sides = self.random_vector(0.4).map(|s| s * s + 0.05);
@@ -332,7 +332,7 @@ impl Source {
     fn random_element(&mut self, bodies: &[Body]) -> Option<Element> {
         let one = self.index_below(bodies.len());
         // Forces cannot move a body that is welded to the ground.
-        if is_fixed(bodies, one) {
+        if is_welded_to_ground(bodies, one) {
             return None;
         }
         Some(match self.index_below(9) {
@@ -388,7 +388,7 @@ fn has_rotating_joint(bodies: &[Body], body: usize) -> bool {
     own || bodies[body].parent.is_some_and(|parent| has_rotating_joint(bodies, parent))
 }
 
-fn is_fixed(bodies: &[Body], body: usize) -> bool {
+fn is_welded_to_ground(bodies: &[Body], body: usize) -> bool {
     rigidly_connected_root(bodies, body).is_none()
 }
 
@@ -415,7 +415,7 @@ const LIMB_KINDS: [Kind; 12] = [
 ];
 
 /// Returns the random mechanism that a seed determines.
-pub fn random_mechanism_spec(seed: u64, style: Style) -> Spec {
+pub fn random_mechanism_spec(seed: u64, style: GeneratorSettings) -> Spec {
     let mut source = Source(Random::new(seed));
     let mut bodies: Vec<Body> = Vec::new();
     let rigged = if style.limbs > 0 { add_identical_limbs(&mut source, &style, &mut bodies) } else { 0 };
@@ -441,7 +441,7 @@ pub fn random_mechanism_spec(seed: u64, style: Style) -> Spec {
 }
 
 /// Adds identical limbs to a trunk. Returns the number of further elements to generate.
-fn add_identical_limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
+fn add_identical_limbs(source: &mut Source, style: &GeneratorSettings, bodies: &mut Vec<Body>) -> usize {
     let trunk = match source.index_below(4) {
         0 => None,
         1 => Some(Kind::Free),

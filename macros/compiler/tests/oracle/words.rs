@@ -108,7 +108,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
         }
         Element::Along(law, path) => {
             let (words, kind) = force_law_source_text(*law, "free_length");
-            writeln!(out, "#[acts(on = {}, {words})] element{k}: {kind},", length(path))
+            writeln!(out, "#[acts(on = {}, {words})] element{k}: {kind},", force_path_source_text(path))
         }
         Element::On(law, body, coordinate) => {
             let kind = bodies[*body].kind;
@@ -142,7 +142,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
     };
 }
 
-fn length(path: &Path) -> String {
+fn force_path_source_text(path: &Path) -> String {
     match path {
         Path::Rope([a, b, c]) => {
             format!("norm(r({0} / {1})) + norm(r({1} / {2}))", end_text(a), end_text(b), end_text(c))

@@ -29,7 +29,7 @@ fn participation_of_states(mode: &Mode, states: &[&str]) -> f64 {
 }
 
 /// Removes the mode of maximum `key` among the modes for which `fits` is true from the list, and returns it.
-fn take_matching_mode(
+fn take_largest_matching_mode(
     modes: &mut Vec<Mode>,
     fits: impl Fn(&Mode) -> bool,
     key: impl Fn(&Mode) -> f64,
@@ -48,8 +48,8 @@ impl FlightModes {
     ///
     /// [`Error::NotConverged`], [`Error::Unknown`] for a system without states of these names.
     pub fn from_system(system: &StateSpace) -> Result<Self, Error> {
-        let is_state = |name: &&str| system.states().iter().any(|state| state.name == *name);
-        if !LONGITUDINAL.iter().chain(&LATERAL).any(is_state) {
+        let is_state_name = |name: &&str| system.states().iter().any(|state| state.name == *name);
+        if !LONGITUDINAL.iter().chain(&LATERAL).any(is_state_name) {
             let known = system.states().iter().map(|state| state.name.clone()).collect();
             return Err(Error::Unknown { kind: "state", name: LONGITUDINAL.join(", "), known });
         }
@@ -70,19 +70,19 @@ impl FlightModes {
         let yaw_share = |mode: &Mode| participation_of_states(mode, &["v", "r"]);
         let is_aperiodic_lateral = |mode: &Mode| is_lateral_mode(mode) && !is_oscillating_mode(mode);
         Ok(Self {
-            short_period: take_matching_mode(&mut modes, is_short_period, Mode::frequency),
-            phugoid: take_matching_mode(&mut modes, is_phugoid, surge_share),
-            dutch_roll: take_matching_mode(
+            short_period: take_largest_matching_mode(&mut modes, is_short_period, Mode::frequency),
+            phugoid: take_largest_matching_mode(&mut modes, is_phugoid, surge_share),
+            dutch_roll: take_largest_matching_mode(
                 &mut modes,
                 |mode| is_lateral_mode(mode) && is_oscillating_mode(mode) && yaw_share(mode) > 0.3,
                 yaw_share,
             ),
-            roll: take_matching_mode(
+            roll: take_largest_matching_mode(
                 &mut modes,
                 |mode| is_aperiodic_lateral(mode) && participation_of_states(mode, &["p"]) > 0.3,
                 Mode::frequency,
             ),
-            spiral: take_matching_mode(
+            spiral: take_largest_matching_mode(
                 &mut modes,
                 |mode| is_aperiodic_lateral(mode) && participation_of_states(mode, &["phi"]) > 0.3,
                 |mode| -mode.frequency(),

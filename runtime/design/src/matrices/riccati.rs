@@ -43,7 +43,7 @@ impl Cost {
         self
     }
 
-    fn check_cost_weights(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<usize, Error> {
+    fn checked_state_count(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<usize, Error> {
         let n = checked_square_size("A", a)?;
         check_matrix("B", b, n, b.ncols())?;
         check_matrix("Q", &self.q, n, n)?;
@@ -110,7 +110,7 @@ pub struct Riccati {
 /// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
 /// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
-    let n = cost.check_cost_weights(a, b)?;
+    let n = cost.checked_state_count(a, b)?;
     check_stabilisable_modes(a, b, cost, |mode| mode.re >= 0.0, |mode| mode.re.abs())?;
     let [f, g, q] = cost.regulator_without_cross_terms(a, b)?;
     let mut h = DMatrix::zeros(2 * n, 2 * n);
@@ -227,7 +227,7 @@ pub(crate) fn is_uncontrollable_mode(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C
 /// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
 /// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
-    match cost.check_cost_weights(a, b) {
+    match cost.checked_state_count(a, b) {
         Err(Error::Singular { .. }) if cost.r.clone().symmetric_eigenvalues().iter().all(|x| *x >= 0.0) => {
             return solve_with_singular_input_weight(a, b, cost);
         }

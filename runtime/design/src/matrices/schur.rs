@@ -90,7 +90,7 @@ impl Schur {
         let mut high = n.saturating_sub(1);
         let mut steps = 0;
         while high > 0 {
-            let low = start_of_active_block(&mut t, high, size);
+            let low = isolate_active_block(&mut t, high, size);
             if low == high {
                 (high, steps) = (high - 1, 0);
                 continue;
@@ -181,7 +181,7 @@ fn nonzero_pivot(x: C, least: f64) -> C {
 
 /// Returns the first row of the active block that ends at row `high`. The subdiagonal entry above that block
 /// is set to zero.
-fn start_of_active_block(t: &mut CMatrix, high: usize, size: f64) -> usize {
+fn isolate_active_block(t: &mut CMatrix, high: usize, size: f64) -> usize {
     for k in (1..=high).rev() {
         let mut near = t[(k - 1, k - 1)].norm() + t[(k, k)].norm();
         if near == 0.0 {

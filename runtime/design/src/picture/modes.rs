@@ -82,7 +82,7 @@ fn write_mode_svg(out: &mut String, name: &str, mode: &Mode, y: f64) {
     let before = if name.is_empty() { String::new() } else { format!("{name}: ") };
     write_text_row(out, 0.0, "#000", &format!("{before}{heading}"));
     for (row, (name, part)) in mode.participants().into_iter().take(5).enumerate() {
-        let place = mode.index_of_state_name(name);
+        let place = mode.state_index_or_zero(name);
         let shape = mode.shape.get(place).copied().unwrap_or_default();
         let unit = mode.unit_of_state(name).map_or(String::new(), |unit| format!(" {unit}"));
         let words = format!(

@@ -194,7 +194,7 @@ impl Panel {
         let (mut x, y) =
             (as_i32(drawing_units_from_pixels(84)), as_i32(drawing_units_from_pixels(NAMES / 2 + 2)));
         let style = text_style(14).pos(Pos::new(HPos::Left, VPos::Center));
-        let draw_word = |x: &mut i32, word: &str| {
+        let draw_legend_name = |x: &mut i32, word: &str| {
             let place = (*x + as_i32(drawing_units_from_pixels(26)), y);
             *x += as_i32(drawing_units_from_pixels(26 + 20))
                 + (word.chars().count() * drawing_units_from_pixels(8) as usize) as i32;
@@ -206,7 +206,7 @@ impl Panel {
                 let line =
                     PathElement::new([(x, y), (end_of_legend_line(x), y)], colour.stroke_width(2 * UNITS));
                 area.draw(&line).map_err(drawing_error)?;
-                draw_word(&mut x, &curve.name)?;
+                draw_legend_name(&mut x, &curve.name)?;
             }
         }
         let thick = BLACK.stroke_width(2 * UNITS);
@@ -217,7 +217,7 @@ impl Panel {
                 Mark::Circle => area.draw(&Circle::new(middle, drawing_units_from_pixels(6), thick)),
             }
             .map_err(drawing_error)?;
-            draw_word(&mut x, name)?;
+            draw_legend_name(&mut x, name)?;
         }
         Ok(())
     }

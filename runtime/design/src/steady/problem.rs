@@ -36,7 +36,7 @@ pub fn dynamic_matrix<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) ->
     DMatrix::from_column_slice(R, C, m.as_slice())
 }
 
-fn dynamic_vector<const N: usize>(x: &SVector<f64, N>) -> DVector<f64> {
+fn dynamically_sized_vector<const N: usize>(x: &SVector<f64, N>) -> DVector<f64> {
     DVector::from_column_slice(x.as_slice())
 }
 
@@ -69,15 +69,15 @@ where
             |h: f64| m.constraint_rates(t, &m.integrate(q, &unit_displacement(j, h)), v);
         rates_by_q.set_column(
             j,
-            &dynamic_vector(
+            &dynamically_sized_vector(
                 &((constraint_rates_displaced(STEP) - constraint_rates_displaced(-STEP)) / (2.0 * STEP)),
             ),
         );
     }
     ConstraintResiduals {
         names: &const { M::CONSTRAINTS },
-        residuals: dynamic_vector(&m.constraint_residuals(t, q)),
-        rates: dynamic_vector(&m.constraint_rates(t, q, v)),
+        residuals: dynamically_sized_vector(&m.constraint_residuals(t, q)),
+        rates: dynamically_sized_vector(&m.constraint_rates(t, q, v)),
         jacobian: dynamic_matrix(&m.constraint_jacobian(t, q)),
         rates_by_q,
     }
@@ -97,7 +97,7 @@ where
     let by = m.output_derivatives(t, q, v, a, u);
     OutputSensitivities {
         names: M::OUTPUTS.to_vec(),
-        values: dynamic_vector(&m.outputs(t, q, v, a, u)),
+        values: dynamically_sized_vector(&m.outputs(t, q, v, a, u)),
         by_q: dynamic_matrix(&by.by_q),
         by_v: dynamic_matrix(&by.by_v),
         by_a: dynamic_matrix(&by.by_a),
@@ -319,7 +319,7 @@ where
             let by_u = by_force * force_by_u;
             // Accelerations without constraints. Zero if the unconstrained mass matrix is not positive
             // definite.
-            let push = dynamic_vector(&(tau - Mechanism::bias_forces(m, t, q, v)));
+            let push = dynamically_sized_vector(&(tau - Mechanism::bias_forces(m, t, q, v)));
             let free = dynamic_matrix(&Mechanism::mass_matrix(m, t, q))
                 .cholesky()
                 .map_or(0.0, |c| c.solve(&push).amax());
@@ -336,14 +336,16 @@ where
         for (j, unknown) in self.unknowns.iter().enumerate() {
             let UnknownQuantity::Parameter(k) = *unknown else { continue };
             let step = STEP * if place.parameters[k] == 0.0 { 1.0 } else { place.parameters[k].abs() };
-            let residuals_displaced = |h: f64| {
+            let residuals_with_displaced_parameter = |h: f64| {
                 let mut place = place.clone();
                 place.parameters[k] += h;
                 Ok::<_, Error>(self.residuals_with_generated_derivatives(&place)?.residuals)
             };
-            equations
-                .jacobian
-                .set_column(j, &((residuals_displaced(step)? - residuals_displaced(-step)?) / (2.0 * step)));
+            equations.jacobian.set_column(
+                j,
+                &((residuals_with_displaced_parameter(step)? - residuals_with_displaced_parameter(-step)?)
+                    / (2.0 * step)),
+            );
         }
         Ok(equations)
     }
@@ -378,7 +380,7 @@ where
     }
 
     fn push_constraint_rows(&self, bounds: &ConstraintResiduals, rows: &mut Vec<ConditionRow>) {
-        let residual_floor = |i: usize| TAKEN * bounds.jacobian.row(i).norm();
+        let derivative_floor = |i: usize| TAKEN * bounds.jacobian.row(i).norm();
         for (i, residual) in bounds.residuals.iter().enumerate() {
             let constraint_residual_derivative = |unknown| match unknown {
                 UnknownQuantity::Coordinate(k) => bounds.jacobian[(i, k)],
@@ -387,7 +389,7 @@ where
             rows.push(ConditionRow {
                 residual: *residual,
                 by: self.row_over_all_unknowns(constraint_residual_derivative),
-                floor: residual_floor(i),
+                floor: derivative_floor(i),
             });
         }
         for (i, rate) in bounds.rates.iter().enumerate() {
@@ -399,7 +401,7 @@ where
             rows.push(ConditionRow {
                 residual: *rate,
                 by: self.row_over_all_unknowns(constraint_rate_derivative),
-                floor: residual_floor(i),
+                floor: derivative_floor(i),
             });
         }
     }

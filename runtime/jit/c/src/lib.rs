@@ -98,7 +98,7 @@ fn run_guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
 }
 
 /// Runs a function and returns its value, or the value `otherwise` if the function fails.
-fn value_or_default<T>(otherwise: T, run: impl FnOnce() -> Result<T, Failure>) -> T {
+fn value_or_fallback<T>(otherwise: T, run: impl FnOnce() -> Result<T, Failure>) -> T {
     let mut found = otherwise;
     run_guarded(|| {
         found = run()?;
@@ -200,18 +200,18 @@ pub unsafe extern "C" fn lw_free(robot: *mut LwRobot) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_mechanism(robot: *const LwRobot) -> *const c_char {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(std::ptr::null(), || Ok(unsafe { raw::shared(robot) }?.name.as_ptr()))
+    value_or_fallback(std::ptr::null(), || Ok(unsafe { raw::shared(robot) }?.name.as_ptr()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_count(robot: *const LwRobot, list: c_int) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || Ok(unsafe { raw::shared(robot) }?.names_and_units_of_list(list)?.len()))
+    value_or_fallback(0, || Ok(unsafe { raw::shared(robot) }?.names_and_units_of_list(list)?.len()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_name(robot: *const LwRobot, list: c_int, index: usize) -> *const c_char {
-    value_or_default(std::ptr::null(), || {
+    value_or_fallback(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
         let list = unsafe { raw::shared(robot) }?.names_and_units_of_list(list)?;
         Ok(list.get(index).ok_or(Failure::Index(index))?.0.as_ptr())
@@ -220,7 +220,7 @@ pub unsafe extern "C" fn lw_name(robot: *const LwRobot, list: c_int, index: usiz
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_unit(robot: *const LwRobot, list: c_int, index: usize) -> *const c_char {
-    value_or_default(std::ptr::null(), || {
+    value_or_fallback(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
         let list = unsafe { raw::shared(robot) }?.names_and_units_of_list(list)?;
         Ok(list.get(index).ok_or(Failure::Index(index))?.1.as_ptr())
@@ -314,7 +314,7 @@ pub unsafe extern "C" fn lw_limits(
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_documentation(robot: *const LwRobot, function: usize) -> *const c_char {
-    value_or_default(std::ptr::null(), || {
+    value_or_fallback(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
         Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.documentation.as_ptr())
     })
@@ -323,7 +323,7 @@ pub unsafe extern "C" fn lw_documentation(robot: *const LwRobot, function: usize
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_arguments(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || {
+    value_or_fallback(0, || {
         Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.arguments.len())
     })
 }
@@ -359,7 +359,7 @@ pub unsafe extern "C" fn lw_argument(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_results(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || {
+    value_or_fallback(0, || {
         Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.results.len())
     })
 }
@@ -390,7 +390,7 @@ pub unsafe extern "C" fn lw_result(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_length(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.0.length()))
+    value_or_fallback(0, || Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.0.length()))
 }
 
 #[unsafe(no_mangle)]

@@ -1,6 +1,6 @@
 //! Simulations, and states that satisfy the constraints, as functions of C.
 
-use crate::{Failure, LwRobot, raw, run_guarded, value_or_default};
+use crate::{Failure, LwRobot, raw, run_guarded, value_or_fallback};
 use linkwork_jit::{Error, Inputs, Method, Overlaps, Robot};
 use std::ffi::{c_char, c_int, c_void};
 
@@ -22,7 +22,7 @@ pub struct LwSimulation {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_sample(robot: *const LwRobot) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value_or_default(0, || Ok(values_per_sample(&unsafe { raw::shared(robot) }?.robot)))
+    value_or_fallback(0, || Ok(values_per_sample(&unsafe { raw::shared(robot) }?.robot)))
 }
 
 fn values_per_sample(robot: &Robot) -> usize {

@@ -1,6 +1,6 @@
 //! Interpolation tables of a robot, as functions of C.
 
-use crate::{Failure, LwRobot, raw, run_guarded, value_or_default};
+use crate::{Failure, LwRobot, raw, run_guarded, value_or_fallback};
 use linkwork::TableError;
 use linkwork_jit::AnyTable;
 use std::ffi::c_int;
@@ -11,7 +11,7 @@ const EXTRAPOLATED: c_int = 2;
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_variables(robot: *const LwRobot, table: usize) -> usize {
-    value_or_default(0, || {
+    value_or_fallback(0, || {
         // SAFETY: a robot of this library, as the header says.
         let robot = &unsafe { raw::shared(robot) }?.robot;
         Ok(robot.tables().get(table).ok_or(Failure::Index(table))?.1)

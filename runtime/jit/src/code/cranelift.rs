@@ -131,7 +131,7 @@ impl CraneliftTranslator<'_> {
                 self.registers[usize::from(to)] = Some(value);
             }
             Step::Store(from, to, _) => {
-                let value = self.value(Place::Register(from))?;
+                let value = self.value_at_place(Place::Register(from))?;
                 self.store(value, to)?;
             }
             Step::Copy(from, to, _) => {
@@ -147,17 +147,17 @@ impl CraneliftTranslator<'_> {
                 let value = self.translate_operation(op, places)?;
                 self.registers[usize::from(to)] = Some(value);
             }
-            Step::Sines => self.call_of_sines()?,
+            Step::Sines => self.write_sines_call()?,
         }
         Ok(())
     }
 
     /// Writes the angles into their array, and the call that computes their sines and cosines.
-    fn call_of_sines(&mut self) -> Result<(), String> {
+    fn write_sines_call(&mut self) -> Result<(), String> {
         let plan = self.plan;
         for (group, first) in plan.angles.iter().zip((0..).step_by(3 * WIDEST)) {
             for (lane, from) in group.lanes().enumerate() {
-                let value = self.value(from)?;
+                let value = self.value_at_place(from)?;
                 self.store(value, Memory::Angle(first + lane))?;
             }
         }
@@ -168,30 +168,30 @@ impl CraneliftTranslator<'_> {
     }
 
     fn translate_operation(&mut self, op: Op, [a, b, c]: [Place; 3]) -> Result<Value, String> {
-        let a = self.value(a)?;
+        let a = self.value_at_place(a)?;
         Ok(match op {
             Op::Neg(_) => self.builder.ins().fneg(a),
             Op::Call(Elementary::Sqrt, _) => self.builder.ins().sqrt(a),
             Op::Call(Elementary::Abs, _) => self.builder.ins().fabs(a),
-            Op::Call(f, _) => self.number(f.function_name(), &[a])?,
+            Op::Call(f, _) => self.call_with_number_result(f.function_name(), &[a])?,
             Op::Add(..) => {
-                let b = self.value(b)?;
+                let b = self.value_at_place(b)?;
                 self.builder.ins().fadd(a, b)
             }
             Op::Sub(..) => {
-                let b = self.value(b)?;
+                let b = self.value_at_place(b)?;
                 self.builder.ins().fsub(a, b)
             }
             Op::Mul(..) => {
-                let b = self.value(b)?;
+                let b = self.value_at_place(b)?;
                 self.builder.ins().fmul(a, b)
             }
             Op::Div(..) => {
-                let b = self.value(b)?;
+                let b = self.value_at_place(b)?;
                 self.builder.ins().fdiv(a, b)
             }
             Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => {
-                let [b, c] = [self.value(b)?, self.value(c)?];
+                let [b, c] = [self.value_at_place(b)?, self.value_at_place(c)?];
                 let [a, c] = match op {
                     Op::MulSub(..) => [a, self.builder.ins().fneg(c)],
                     Op::NegMulAdd(..) => [self.builder.ins().fneg(a), c],
@@ -200,28 +200,28 @@ impl CraneliftTranslator<'_> {
                 self.builder.ins().fma(a, b, c)
             }
             Op::Atan2(..) | Op::Pow(..) | Op::Extreme(..) => {
-                let b = self.value(b)?;
+                let b = self.value_at_place(b)?;
                 let name = match op {
                     Op::Atan2(..) => "atan2",
                     Op::Pow(..) => "pow",
                     Op::Extreme(Extreme::Min, ..) => "min",
                     _ => "max",
                 };
-                self.number(name, &[a, b])?
+                self.call_with_number_result(name, &[a, b])?
             }
             Op::Table(lookup, ..) => {
-                let [y, z] = [self.value(b)?, self.value(c)?];
+                let [y, z] = [self.value_at_place(b)?, self.value_at_place(c)?];
                 let orders = (0..lookup.variable_count())
                     .fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
                 let table = self.builder.ins().iconst(types::I64, lookup.table_index() as i64);
                 let orders = self.builder.ins().iconst(types::I64, orders as i64);
-                self.number("lookup", &[self.parameters[2], table, orders, a, y, z])?
+                self.call_with_number_result("lookup", &[self.parameters[2], table, orders, a, y, z])?
             }
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => return Err("a program has lanes".to_string()),
         })
     }
 
-    fn value(&mut self, place: Place) -> Result<Value, String> {
+    fn value_at_place(&mut self, place: Place) -> Result<Value, String> {
         match place {
             Place::Register(register) => {
                 let value = self.registers[usize::from(register)];
@@ -262,7 +262,7 @@ impl CraneliftTranslator<'_> {
         Ok((base, offset))
     }
 
-    fn number(&mut self, name: &str, arguments: &[Value]) -> Result<Value, String> {
+    fn call_with_number_result(&mut self, name: &str, arguments: &[Value]) -> Result<Value, String> {
         let result = self.call(name, arguments, Some(types::F64))?;
         result.ok_or_else(|| "a function has no result".to_string())
     }

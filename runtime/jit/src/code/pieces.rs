@@ -179,7 +179,7 @@ impl LaneSplitter<'_> {
     }
 
     /// Returns the result of a move between lanes, which is appended if it does not exist.
-    fn append_move(&mut self, op: Op, width: usize) -> Operand {
+    fn find_or_append_move(&mut self, op: Op, width: usize) -> Operand {
         let is_same_operation = |known: &Op| {
             *known == op && bits_of_operation_constants(known) == bits_of_operation_constants(&op)
         };
@@ -224,9 +224,9 @@ impl LaneSplitter<'_> {
             (Operand::Tuple(t), k) => Operand::Const(self.program.tuples[t][k]),
             (Operand::Gather(g), k) => Operand::Symbol(self.program.gathers[g][k]),
             (piece, 0) => piece,
-            (piece, 1) => self.append_move(Op::Lane(1, piece), 1),
+            (piece, 1) => self.find_or_append_move(Op::Lane(1, piece), 1),
             (piece, k) => {
-                let upper = self.append_move(Op::Lane(2, piece), 2);
+                let upper = self.find_or_append_move(Op::Lane(2, piece), 2);
                 self.lane_of_piece(upper, k - 2)
             }
         }
@@ -241,22 +241,22 @@ impl LaneSplitter<'_> {
         let entries = (0..width).map(|lane| (WIDEST * k + lane).min(own - 1));
         match operand {
             Operand::Const(_) | Operand::Symbol(_) if width == 1 => Ok(operand),
-            Operand::Const(c) => Ok(self.tuple(vec![c; width])),
+            Operand::Const(c) => Ok(self.constant_tuple(vec![c; width])),
             Operand::Tuple(t) => {
                 let list: Vec<f64> = entries.map(|lane| self.from.tuples[t][lane]).collect();
-                Ok(if width == 1 { Operand::Const(list[0]) } else { self.tuple(list) })
+                Ok(if width == 1 { Operand::Const(list[0]) } else { self.constant_tuple(list) })
             }
             Operand::Gather(g) => {
                 let list: Vec<Symbol> = entries.map(|lane| self.from.gathers[g][lane]).collect();
                 Ok(if width == 1 { Operand::Symbol(list[0]) } else { self.load_inputs_as_lanes(list) })
             }
-            Operand::Symbol(_) => Ok(self.append_move(Op::Lane(0, operand), width)),
+            Operand::Symbol(_) => Ok(self.find_or_append_move(Op::Lane(0, operand), width)),
             Operand::Value(v) => {
                 let pieces = &self.values[v].pieces;
                 match own {
                     1 if width > 1 => {
                         let scalar = pieces[0];
-                        Ok(self.copied(scalar, width))
+                        Ok(self.broadcast_scalar(scalar, width))
                     }
                     1 => Ok(pieces[0]),
                     _ => Ok(pieces[k]),
@@ -266,14 +266,14 @@ impl LaneSplitter<'_> {
     }
 
     /// Returns a scalar in all lanes.
-    fn copied(&mut self, scalar: Operand, width: usize) -> Operand {
+    fn broadcast_scalar(&mut self, scalar: Operand, width: usize) -> Operand {
         match scalar {
-            Operand::Const(c) => self.tuple(vec![c; width]),
-            scalar => self.append_move(Op::Lane(0, scalar), width),
+            Operand::Const(c) => self.constant_tuple(vec![c; width]),
+            scalar => self.find_or_append_move(Op::Lane(0, scalar), width),
         }
     }
 
-    fn tuple(&mut self, list: Vec<f64>) -> Operand {
+    fn constant_tuple(&mut self, list: Vec<f64>) -> Operand {
         let bits = |list: &[f64]| list.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
         let known = self.program.tuples.iter().position(|known| bits(known) == bits(&list));
         Operand::Tuple(known.unwrap_or_else(|| {
@@ -291,7 +291,7 @@ impl LaneSplitter<'_> {
         };
         if !places.windows(2).all(is_adjacent_slot_pair) {
             let lanes: Vec<Operand> = list.into_iter().map(Operand::Symbol).collect();
-            return self.scalars_joined_as_lanes(&lanes);
+            return self.join_scalars_in_piece(&lanes);
         }
         let known = self.program.gathers.iter().position(|known| *known == list);
         Operand::Gather(known.unwrap_or_else(|| {
@@ -301,19 +301,19 @@ impl LaneSplitter<'_> {
     }
 
     /// Returns one, two or four scalars as lanes of one value.
-    fn scalars_joined_as_lanes(&mut self, lanes: &[Operand]) -> Operand {
+    fn join_scalars_in_piece(&mut self, lanes: &[Operand]) -> Operand {
         match *lanes {
             [a, ref others @ ..] if others.iter().all(|other| is_same_operand(*other, a)) => {
                 match others.len() {
                     0 => a,
-                    count => self.copied(a, count + 1),
+                    count => self.broadcast_scalar(a, count + 1),
                 }
             }
-            [a, b] => self.append_move(Op::Join(1, a, b), 2),
+            [a, b] => self.find_or_append_move(Op::Join(1, a, b), 2),
             [a, b, c, d] => {
                 let (first, last) =
-                    (self.scalars_joined_as_lanes(&[a, b]), self.scalars_joined_as_lanes(&[c, d]));
-                self.append_move(Op::Join(2, first, last), WIDEST)
+                    (self.join_scalars_in_piece(&[a, b]), self.join_scalars_in_piece(&[c, d]));
+                self.find_or_append_move(Op::Join(2, first, last), WIDEST)
             }
             _ => lanes.first().copied().unwrap_or(Operand::Const(0.0)),
         }
@@ -325,7 +325,7 @@ impl LaneSplitter<'_> {
         let pieces = (0..lanes.div_ceil(WIDEST)).map(|k| {
             let width = width_of_piece(lanes, k);
             let list: Vec<Operand> = (0..width).map(|lane| all[(WIDEST * k + lane).min(lanes - 1)]).collect();
-            self.scalars_joined_as_lanes(&list)
+            self.join_scalars_in_piece(&list)
         });
         SplitValue { lanes, pieces: pieces.collect() }
     }
@@ -346,7 +346,7 @@ impl LaneSplitter<'_> {
             }
         };
         if n >= WIDEST {
-            let upper = self.append_move(Op::Lane(2, piece), 2);
+            let upper = self.find_or_append_move(Op::Lane(2, piece), 2);
             piece = self.push(Op::Add(piece, upper), 2);
         }
         let last = self.lane_of_piece(piece, 1);

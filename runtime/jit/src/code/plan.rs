@@ -44,7 +44,7 @@ pub enum Place {
 #[cfg(any(test, target_arch = "aarch64"))]
 impl Place {
     /// Returns the place of the number `k` places further on in memory.
-    fn following(self, k: usize) -> Place {
+    fn offset_place(self, k: usize) -> Place {
         match self {
             Place::Memory(Memory::Input(slot, index)) => Place::Memory(Memory::Input(slot, index + k)),
             other => other,
@@ -222,7 +222,7 @@ impl Planner<'_> {
             }
         }
         stores.iter_mut().for_each(|targets| join_adjacent_stores(targets, results));
-        self.run(&live, &stores)
+        self.plan_instructions(&live, &stores)
     }
 
     /// Returns for each value whether an instruction uses it.
@@ -239,7 +239,7 @@ impl Planner<'_> {
     }
 
     /// Plans instructions and the stores of their values.
-    fn run(&mut self, live: &[bool], stores: &[Vec<Target>]) -> Result<(), String> {
+    fn plan_instructions(&mut self, live: &[bool], stores: &[Vec<Target>]) -> Result<(), String> {
         let n = self.program.instructions.len();
         self.places.fill(None);
         for k in (0..n).rev().filter(|k| live[*k]) {

@@ -96,7 +96,7 @@ impl Random {
 
 /// Evaluates a program one operation after the other, where some values are already known. Returns all
 /// values.
-fn values(
+fn evaluate_all_values(
     program: &Program,
     value: &dyn Fn(&[f64], Operand) -> f64,
     table: &AnyTable,
@@ -257,7 +257,7 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
         Operand::Value(k) => values[k],
         Operand::Tuple(_) | Operand::Gather(_) => f64::NAN,
     };
-    let before = values(program, &value, table, &HashMap::new());
+    let before = evaluate_all_values(program, &value, table, &HashMap::new());
     let angles = Angles::find_angles(program);
     let mut known = HashMap::new();
     for (k, op) in program.instructions.iter().enumerate().filter(|(k, _)| angles.covered[*k]) {
@@ -266,7 +266,7 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
         write_sines_and_cosines(array.as_mut_ptr(), 1);
         known.insert(k, array[if f == Function::Sin { 1 } else { 2 }]);
     }
-    let all = values(program, &value, table, &known);
+    let all = evaluate_all_values(program, &value, table, &known);
     program.outputs.iter().map(|output| value(&all, *output)).collect()
 }
 

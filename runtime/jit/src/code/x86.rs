@@ -20,7 +20,7 @@ pub fn is_supported() -> bool {
 }
 
 /// Function that returns the address of a function by name, for calls from generated code.
-type HelperAddresses = fn(&str) -> Option<*const u8>;
+type HelperLookup = fn(&str) -> Option<*const u8>;
 
 /// Register with the address of workspace and angles, plus [`BIAS`] bytes.
 const FRAME: u8 = RBP;
@@ -34,7 +34,7 @@ const ALIGNMENT: i32 = 32;
 const PAGE: i32 = 4096;
 
 /// Writes the code of a plan. Further constants are appended to those of the plan.
-pub fn write(plan: &mut Allocation, results: usize, helpers: HelperAddresses) -> Result<Vec<u8>, String> {
+pub fn write(plan: &mut Allocation, results: usize, helpers: HelperLookup) -> Result<Vec<u8>, String> {
     // Masks of the sign and of everything else, for whole registers.
     let masks = plan.constants.len().next_multiple_of(4);
     plan.constants.resize(masks, 0.0);
@@ -54,7 +54,7 @@ pub fn write(plan: &mut Allocation, results: usize, helpers: HelperAddresses) ->
     let frame = writer.write_prologue()?;
     plan.steps.iter().try_for_each(|step| writer.step(*step))?;
     writer.write_epilogue(frame);
-    writer.large_angles()?;
+    writer.write_large_angle_code()?;
     Ok(writer.code.bytes)
 }
 
@@ -64,7 +64,7 @@ struct Writer<'a> {
     results: usize,
     /// Index of the sign masks among the constants.
     masks: usize,
-    helpers: HelperAddresses,
+    helpers: HelperLookup,
     registers: Registers,
     /// Inputs whose addresses are in registers, in the order of [`Registers::pointers`].
     pointers: Vec<Pointer>,
@@ -90,9 +90,9 @@ impl Writer<'_> {
             self.code.bytes.extend([0x89, 0x04, 0x24]); // mov [rsp], eax
         }
         self.code.add_to_stack(-(frame % PAGE));
-        self.code.write_effective_address(FRAME, RSP, BIAS + ALIGNMENT - 1);
+        self.code.write_effective_address_load(FRAME, RSP, BIAS + ALIGNMENT - 1);
         self.code.bytes.extend([0x48, 0x83, 0xE5, -ALIGNMENT as i8 as u8]); // and rbp, -32
-        self.code.write_effective_address(constants, RSI, BIAS);
+        self.code.write_effective_address_load(constants, RSI, BIAS);
         for (to, from) in [(results, RCX), (more, 8), (inputs, RDI), (tables, RDX)] {
             if to != from {
                 self.code.copy(to, from);
@@ -128,14 +128,20 @@ impl Writer<'_> {
             Step::Operation(op, to, places, 1) if is_call(&op) => self.write_function_call(op, to, places)?,
             Step::Operation(op, to, places, width) => {
                 let places = places.map(|place| self.operand(place));
-                self.operation(op, to, places, width)?;
+                self.write_operation_code(op, to, places, width)?;
             }
             Step::Sines => self.sines()?,
         }
         Ok(())
     }
 
-    fn operation(&mut self, op: Op, to: u8, [a, b, c]: [Rm; 3], width: usize) -> Result<(), String> {
+    fn write_operation_code(
+        &mut self,
+        op: Op,
+        to: u8,
+        [a, b, c]: [Rm; 3],
+        width: usize,
+    ) -> Result<(), String> {
         match op {
             Op::Add(..) => self.write_commutative(ADD, to, a, b, width),
             Op::Mul(..) => self.write_commutative(MULTIPLY, to, a, b, width),
@@ -152,12 +158,12 @@ impl Writer<'_> {
                     Rm::Register(register) => register,
                     Rm::Memory(..) => to,
                 };
-                self.code.instruction(on_lanes(SQUARE_ROOT, width), to, other, a);
+                self.code.instruction(encoding_on_lanes(SQUARE_ROOT, width), to, other, a);
             }
             // The opcodes of the forms differ by constants.
-            Op::MulAdd(..) => self.product(0x99, to, [a, b, c], width),
-            Op::MulSub(..) => self.product(0x9B, to, [a, b, c], width),
-            Op::NegMulAdd(..) => self.product(0x9D, to, [a, b, c], width),
+            Op::MulAdd(..) => self.write_fused_product(0x99, to, [a, b, c], width),
+            Op::MulSub(..) => self.write_fused_product(0x9B, to, [a, b, c], width),
+            Op::NegMulAdd(..) => self.write_fused_product(0x9D, to, [a, b, c], width),
             Op::Lane(k, _) => self.write_lane_move(k, to, a, width),
             Op::Join(1, ..) => self.write_join_of_numbers(to, a, b),
             Op::Join(2, ..) => self.write_join_of_pairs(to, a, b),
@@ -215,7 +221,7 @@ impl Writer<'_> {
 
     /// Writes an instruction whose operands can be exchanged.
     fn write_commutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm, width: usize) {
-        let code = on_lanes(code, width);
+        let code = encoding_on_lanes(code, width);
         match (a, b) {
             (Rm::Register(a), b) => self.code.instruction(code, to, a, b),
             (a, Rm::Register(b)) => self.code.instruction(code, to, b, a),
@@ -227,7 +233,7 @@ impl Writer<'_> {
     }
 
     fn write_noncommutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm, width: usize) {
-        let code = on_lanes(code, width);
+        let code = encoding_on_lanes(code, width);
         let first = match a {
             Rm::Register(a) => a,
             Rm::Memory(..) => {
@@ -241,9 +247,9 @@ impl Writer<'_> {
     /// Writes a fused product and sum. `first` is the opcode of the form with the factor and the sum in
     /// exchanged places (132); 16 more is that of a product with the result's register (213), 32 more of a
     /// sum in the result's register (231).
-    fn product(&mut self, first: u8, to: u8, [a, b, c]: [Rm; 3], width: usize) {
+    fn write_fused_product(&mut self, first: u8, to: u8, [a, b, c]: [Rm; 3], width: usize) {
         use Rm::{Memory, Register};
-        let [exchanged, product, sum] = [0, 16, 32].map(|more| on_lanes(fused(first + more), width));
+        let [exchanged, product, sum] = [0, 16, 32].map(|more| encoding_on_lanes(fused(first + more), width));
         let is_destination_register = |rm: Rm| matches!(rm, Register(register) if register == to);
         // A factor in the result's register, or otherwise one in memory, comes first.
         let [a, b] = match (a, b) {
@@ -359,7 +365,7 @@ impl Writer<'_> {
 
     fn store(&mut self, from: u8, to: Memory, width: usize) {
         let to = self.memory(to);
-        self.code.instruction(on_lanes(STORE, width), from, 0, to);
+        self.code.instruction(encoding_on_lanes(STORE, width), from, 0, to);
     }
 
     fn constant(&self, index: usize) -> Rm {

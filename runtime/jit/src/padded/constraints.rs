@@ -2,7 +2,7 @@
 
 use super::Padded;
 use crate::internal::InternalFunction;
-use crate::names::{List, placeholder_numbers};
+use crate::names::{NameListKind, placeholder_numbers};
 use crate::robot::{Robot, State};
 use linkwork::__private::{
     Elimination, Responses, Structure, careful_response, least_solution, nearly_singular,
@@ -193,7 +193,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constrained<NQ, NV, NU, NV, NV>
     for Padded<NQ, NV, NU, R>
 {
-    const CONSTRAINTS: [&'static str; NV] = placeholder_numbers(List::Constraints);
+    const CONSTRAINTS: [&'static str; NV] = placeholder_numbers(NameListKind::Constraints);
 
     fn holonomic(&self) -> usize {
         self.robot().shared.constraints.holonomic

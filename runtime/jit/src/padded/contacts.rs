@@ -3,7 +3,7 @@
 use super::{Padded, write_block};
 use crate::error::Error;
 use crate::internal::InternalFunction;
-use crate::names::{List, placeholder_numbers};
+use crate::names::{NameListKind, placeholder_numbers};
 use crate::robot::{Robot, State};
 use linkwork::__private::{differentiate_step, held_derivatives};
 use linkwork::constraint::Projected;
@@ -81,9 +81,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 {
     type Scalar = f64;
 
-    const CONFIGURATION: [&'static str; NQ] = placeholder_numbers(List::Configuration);
-    const VELOCITIES: [&'static str; NV] = placeholder_numbers(List::Velocities);
-    const INPUTS: [&'static str; NU] = placeholder_numbers(List::Inputs);
+    const CONFIGURATION: [&'static str; NQ] = placeholder_numbers(NameListKind::Configuration);
+    const VELOCITIES: [&'static str; NV] = placeholder_numbers(NameListKind::Velocities);
+    const INPUTS: [&'static str; NU] = placeholder_numbers(NameListKind::Inputs);
 
     forward! {
         neutral() -> Vector<NQ>;
@@ -147,7 +147,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize, R: Borrow<Robot>>
     Contacts<NQ, NV, NU, NK, NR> for PaddedContacts<NQ, NV, NU, NK, NR, R>
 {
-    const CONTACTS: [&'static str; NK] = placeholder_numbers(List::Contacts);
+    const CONTACTS: [&'static str; NK] = placeholder_numbers(NameListKind::Contacts);
     const CONTACT_ROWS: [Rows; NK] = [Rows { first: NR, count: 0 }; NK];
 
     fn contact_tables(&self) -> ([Rows; NK], [usize; NK]) {

@@ -155,7 +155,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let way = self.convert_velocity(InternalFunction::RatesOfSpeeds, q, dv);
         let mut there = *q;
         let charts = &self.robot().shared.charts;
-        crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
+        crate::configuration_space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
         (way, there)
     }
 

@@ -403,7 +403,7 @@ impl Driver<'_, '_, '_> {
                         budget *= 2;
                         reached.t
                     }
-                    Err(error) if error.is_too_long() => {
+                    Err(error) if error.is_step_limit_error() => {
                         from = reached;
                         total = u64::MAX;
                         section.times.iter().copied().find(|t| *t > reached.t).unwrap_or(section.end)

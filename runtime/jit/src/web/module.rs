@@ -49,7 +49,7 @@ impl BinaryModule {
     /// The program has lanes, or reads values that are no inputs of the layout.
     pub fn add(&mut self, name: &str, program: &Program, layout: &Layout) -> Result<(), String> {
         let kind = self.type_index(vec![I32; layout.len() + 1], Vec::new());
-        let mut writer = BinaryWriter {
+        let mut writer = FunctionBodyWriter {
             module: self,
             program,
             layout,
@@ -143,7 +143,7 @@ enum Value {
     Nested(usize),
 }
 
-struct BinaryWriter<'a> {
+struct FunctionBodyWriter<'a> {
     module: &'a mut BinaryModule,
     program: &'a Program,
     layout: &'a Layout,
@@ -152,7 +152,7 @@ struct BinaryWriter<'a> {
     locals: usize,
 }
 
-impl BinaryWriter<'_> {
+impl FunctionBodyWriter<'_> {
     fn write_body(&mut self) -> Result<(), String> {
         let program = self.program;
         for (k, op) in program.instructions.iter().enumerate() {

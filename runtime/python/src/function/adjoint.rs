@@ -1,6 +1,6 @@
 //! Computation of vector–Jacobian products for Python.
 
-use super::{ARGUMENTS, Argument, Kind, Signature};
+use super::{ARGUMENTS, Argument, EvaluationMethod, FunctionDefinition};
 use crate::robot::{Robot, set_parameters};
 use crate::shared::FirstFailedState;
 use linkwork_jit::{AdjointStepper, Error, Sensitivity, VectorJacobian};
@@ -63,7 +63,7 @@ impl VectorJacobianComputation {
     }
 }
 
-impl Signature {
+impl FunctionDefinition {
     /// Writes the vector–Jacobian products of consecutive states.
     pub(super) fn differentiate(
         &self,
@@ -103,14 +103,16 @@ impl Signature {
     /// Returns the computation of derivatives, for the given frame if the function takes a frame.
     fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<VectorJacobianComputation, Error> {
         Ok(match &self.kind {
-            Kind::Generated(f) => VectorJacobianComputation::Product(robot.clone(), f.vector_jacobian()?),
-            Kind::Frames(all) => {
+            EvaluationMethod::Generated(f) => {
+                VectorJacobianComputation::Product(robot.clone(), f.vector_jacobian()?)
+            }
+            EvaluationMethod::Frames(all) => {
                 VectorJacobianComputation::Product(robot.clone(), all[frame].vector_jacobian()?)
             }
-            Kind::Placements(all) => {
+            EvaluationMethod::Placements(all) => {
                 VectorJacobianComputation::Placement(robot.clone(), all[frame].vector_jacobian()?)
             }
-            Kind::Step => VectorJacobianComputation::Step(Box::new(AdjointStepper::new(robot)?)),
+            EvaluationMethod::Step => VectorJacobianComputation::Step(Box::new(AdjointStepper::new(robot)?)),
             _ => return Err(Error::Value(format!("`{}` has no vector–Jacobian product", self.name))),
         })
     }

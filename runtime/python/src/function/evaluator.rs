@@ -1,6 +1,6 @@
 //! Computation of a function's results for one state.
 
-use super::{ConstraintProjection, Kind, Output, Signature};
+use super::{ConstraintSolverFunction, EvaluationMethod, FunctionDefinition, Output};
 use linkwork_jit::{Error, Stepper};
 
 /// Computation of a function's results for one state, with its workspace.
@@ -9,22 +9,22 @@ pub(super) enum Evaluator {
     Placement(linkwork_jit::Robot, linkwork_jit::Function),
     Step(Box<Stepper>, bool),
     Derivatives(linkwork_jit::Robot, bool),
-    Constraint(linkwork_jit::Robot, ConstraintProjection),
+    Constraint(linkwork_jit::Robot, ConstraintSolverFunction),
 }
 
-impl Signature {
+impl FunctionDefinition {
     /// Returns the computation of results, for the given frame if the function takes a frame.
     pub(super) fn evaluator(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Evaluator, Error> {
         let cloned_robot = || robot.clone();
         Ok(match &self.kind {
-            Kind::Generated(f) => Evaluator::Generated(cloned_robot(), f.clone()),
-            Kind::Frames(all) => Evaluator::Generated(cloned_robot(), all[frame].clone()),
-            Kind::Placements(all) => Evaluator::Placement(cloned_robot(), all[frame].clone()),
-            Kind::Step => Evaluator::Step(Box::new(Stepper::new(&cloned_robot())?), false),
-            Kind::Transition => Evaluator::Step(Box::new(Stepper::new(&cloned_robot())?), true),
-            Kind::IntegrateDerivatives => Evaluator::Derivatives(cloned_robot(), false),
-            Kind::TangentRateDerivatives => Evaluator::Derivatives(cloned_robot(), true),
-            Kind::Constraint(which) => Evaluator::Constraint(cloned_robot(), *which),
+            EvaluationMethod::Generated(f) => Evaluator::Generated(cloned_robot(), f.clone()),
+            EvaluationMethod::Frames(all) => Evaluator::Generated(cloned_robot(), all[frame].clone()),
+            EvaluationMethod::Placements(all) => Evaluator::Placement(cloned_robot(), all[frame].clone()),
+            EvaluationMethod::Step => Evaluator::Step(Box::new(Stepper::new(&cloned_robot())?), false),
+            EvaluationMethod::Transition => Evaluator::Step(Box::new(Stepper::new(&cloned_robot())?), true),
+            EvaluationMethod::IntegrateDerivatives => Evaluator::Derivatives(cloned_robot(), false),
+            EvaluationMethod::TangentRateDerivatives => Evaluator::Derivatives(cloned_robot(), true),
+            EvaluationMethod::Constraint(which) => Evaluator::Constraint(cloned_robot(), *which),
         })
     }
 
@@ -51,7 +51,9 @@ impl Evaluator {
         match self {
             Evaluator::Generated(robot, f) => robot.evaluate_into(f, arguments, out),
             Evaluator::Placement(robot, f) => placement(robot, f, arguments, out),
-            Evaluator::Step(stepper, jacobians) => step(stepper, *jacobians, arguments, out),
+            Evaluator::Step(stepper, jacobians) => {
+                write_runge_kutta_step(stepper, *jacobians, arguments, out)
+            }
             Evaluator::Constraint(robot, which) => {
                 write_constraint_satisfying_state(robot, *which, arguments, out)
             }
@@ -87,7 +89,7 @@ pub(super) fn placement(
 /// Writes a configuration or velocity that satisfies the constraints.
 fn write_constraint_satisfying_state(
     robot: &mut linkwork_jit::Robot,
-    which: ConstraintProjection,
+    which: ConstraintSolverFunction,
     arguments: &[&[f64]],
     out: &mut [f64],
 ) -> Result<(), Error> {
@@ -98,10 +100,10 @@ fn write_constraint_satisfying_state(
     }
     let nonzero_indices = |list: &[f64]| (0..list.len()).filter(|k| list[*k] != 0.0).collect::<Vec<usize>>();
     let found = match (which, rest) {
-        (ConstraintProjection::Assemble, [q, held]) => robot.assemble(q, &nonzero_indices(held)),
-        (ConstraintProjection::ProjectConfiguration, [q]) => robot.project_configuration(q),
-        (ConstraintProjection::ProjectVelocity, [q, v]) => robot.project_velocity(q, v),
-        (ConstraintProjection::CompleteVelocity, [q, v, held]) => {
+        (ConstraintSolverFunction::Assemble, [q, held]) => robot.assemble(q, &nonzero_indices(held)),
+        (ConstraintSolverFunction::ProjectConfiguration, [q]) => robot.project_configuration(q),
+        (ConstraintSolverFunction::ProjectVelocity, [q, v]) => robot.project_velocity(q, v),
+        (ConstraintSolverFunction::CompleteVelocity, [q, v, held]) => {
             robot.complete_velocity(q, v, &nonzero_indices(held))
         }
         _ => Err(Error::Internal("the arguments of a function of constraints".to_string())),
@@ -111,7 +113,12 @@ fn write_constraint_satisfying_state(
 }
 
 /// Writes the state after a Runge–Kutta step, and the Jacobians of the step if requested.
-fn step(stepper: &mut Stepper, jacobians: bool, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
+fn write_runge_kutta_step(
+    stepper: &mut Stepper,
+    jacobians: bool,
+    arguments: &[&[f64]],
+    out: &mut [f64],
+) -> Result<(), Error> {
     let (t, rest) = match arguments {
         [t, rest @ ..] if rest.len() == 4 => (t[0], rest),
         rest => (0.0, rest),

@@ -1,6 +1,6 @@
 //! Names, arguments and results of the functions of a robot.
 
-use super::{Argument, ConstraintProjection, Function, Kind, Output, Signature};
+use super::{Argument, ConstraintSolverFunction, EvaluationMethod, Function, FunctionDefinition, Output};
 use linkwork_jit::{Error, Stepper};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -49,11 +49,11 @@ fn results(f: &linkwork_jit::Function) -> Vec<Output> {
     f.results().iter().map(output_of_matrix).collect()
 }
 
-fn vector(name: &str, length: usize) -> Argument {
+fn vector_argument(name: &str, length: usize) -> Argument {
     Argument { name: name.to_string(), length: Some(length) }
 }
 
-fn matrix(name: &str, rows: usize, columns: usize) -> Output {
+fn matrix_output(name: &str, rows: usize, columns: usize) -> Output {
     Output { name: name.to_string(), shape: vec![rows, columns] }
 }
 
@@ -63,11 +63,13 @@ impl Function {
         documentation: &str,
         arguments: Vec<Argument>,
         results: Vec<Output>,
-        kind: Kind,
+        kind: EvaluationMethod,
     ) -> Function {
         let (name, documentation) = (name.to_string(), documentation.to_string());
         let frames = HashMap::new();
-        Function { signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }) }
+        Function {
+            signature: Arc::new(FunctionDefinition { name, documentation, arguments, results, frames, kind }),
+        }
     }
 
     /// Returns all functions of a mechanism as Python methods.
@@ -76,16 +78,22 @@ impl Function {
         let mut all: Vec<Function> = plain
             .map(|f| {
                 let (arguments, results) = (arguments(&f), results(&f));
-                Function::new(f.name(), f.documentation(), arguments, results, Kind::Generated(f.clone()))
+                Function::new(
+                    f.name(),
+                    f.documentation(),
+                    arguments,
+                    results,
+                    EvaluationMethod::Generated(f.clone()),
+                )
             })
             .collect();
         all.extend(
             FRAMES
                 .iter()
-                .filter_map(|(name, documentation)| function_of_frame_name(robot, name, documentation)),
+                .filter_map(|(name, documentation)| function_with_frame_argument(robot, name, documentation)),
         );
         let has_function = |name: &str| robot.function(name).is_ok();
-        if Stepper::new(robot).is_ok_or_missing() {
+        if Stepper::new(robot).is_ok_or_lacks_parameters() {
             all.extend(runge_kutta_step_functions(
                 robot,
                 has_function("linearize") && has_function("tangent_rate"),
@@ -99,16 +107,16 @@ impl Function {
             all.push(Function::new(
                 "integrate_derivatives",
                 "Derivatives of `integrate(q, dv)` by displacements of `q` and by `dv`.",
-                vec![vector("q", robot.nq()), vector("dv", n)],
-                vec![matrix("by_q", n, n), matrix("by_dv", n, n)],
-                Kind::IntegrateDerivatives,
+                vec![vector_argument("q", robot.nq()), vector_argument("dv", n)],
+                vec![matrix_output("by_q", n, n), matrix_output("by_dv", n, n)],
+                EvaluationMethod::IntegrateDerivatives,
             ));
             all.push(Function::new(
                 "tangent_rate_derivatives",
                 "Derivatives of `tangent_rate(dv, v)` by `dv` and by `v`.",
-                vec![vector("dv", n), vector("v", n)],
-                vec![matrix("by_dv", n, n), matrix("by_v", n, n)],
-                Kind::TangentRateDerivatives,
+                vec![vector_argument("dv", n), vector_argument("v", n)],
+                vec![matrix_output("by_dv", n, n), matrix_output("by_v", n, n)],
+                EvaluationMethod::TangentRateDerivatives,
             ));
         }
         all
@@ -116,18 +124,22 @@ impl Function {
 }
 
 /// Whether a result is available, or will be once all parameters have values.
-trait OkOrMissing {
-    fn is_ok_or_missing(&self) -> bool;
+trait OkOrLacksParameters {
+    fn is_ok_or_lacks_parameters(&self) -> bool;
 }
 
-impl<T> OkOrMissing for Result<T, Error> {
-    fn is_ok_or_missing(&self) -> bool {
+impl<T> OkOrLacksParameters for Result<T, Error> {
+    fn is_ok_or_lacks_parameters(&self) -> bool {
         matches!(self, Ok(_) | Err(Error::Missing(_)))
     }
 }
 
 /// Returns the function that takes the name of a frame, if the mechanism has frames.
-fn function_of_frame_name(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Option<Function> {
+fn function_with_frame_argument(
+    robot: &linkwork_jit::Robot,
+    name: &str,
+    documentation: &str,
+) -> Option<Function> {
     let names = robot.frames();
     let own = names.iter().map(|frame| robot.function(&format!("{name}({frame})")).ok());
     let own = own.collect::<Option<Vec<_>>>()?;
@@ -135,15 +147,15 @@ fn function_of_frame_name(robot: &linkwork_jit::Robot, name: &str, documentation
     let (arguments, mut results) = (arguments(first), results(first));
     let kind = match name {
         "frame_placement" => {
-            results = vec![matrix("result", 4, 4)];
-            Kind::Placements(own)
+            results = vec![matrix_output("result", 4, 4)];
+            EvaluationMethod::Placements(own)
         }
-        _ => Kind::Frames(own),
+        _ => EvaluationMethod::Frames(own),
     };
     let frames = names.iter().enumerate().map(|(k, name)| (name.clone(), k)).collect();
     let (name, documentation) = (name.to_string(), documentation.to_string());
     Some(Function {
-        signature: Arc::new(Signature { name, documentation, arguments, results, frames, kind }),
+        signature: Arc::new(FunctionDefinition { name, documentation, arguments, results, frames, kind }),
     })
 }
 
@@ -152,14 +164,15 @@ fn runge_kutta_step_functions(robot: &linkwork_jit::Robot, with_jacobians: bool)
     let [nq, nv, nu] = [robot.nq(), robot.nv(), robot.nu()];
     let scalar_argument = |name: &str| Argument { name: name.to_string(), length: None };
     let time = robot.depends_on_time().then(|| scalar_argument("t"));
-    let state = [vector("q", nq), vector("v", nv), vector("u", nu), scalar_argument("h")];
+    let state =
+        [vector_argument("q", nq), vector_argument("v", nv), vector_argument("u", nu), scalar_argument("h")];
     let arguments: Vec<Argument> = time.into_iter().chain(state).collect();
     let vector_output = |name: &str, n: usize| Output { name: name.to_string(), shape: vec![n] };
     let state = vec![vector_output("q", nq), vector_output("v", nv)];
     let mut jacobians = state.clone();
     for of in ["q", "v"] {
         for (by, columns) in [("q", nv), ("v", nv), ("u", nu)] {
-            jacobians.push(matrix(&format!("{of}_by_{by}"), nv, columns));
+            jacobians.push(matrix_output(&format!("{of}_by_{by}"), nv, columns));
         }
     }
     let step = Function::new(
@@ -168,7 +181,7 @@ fn runge_kutta_step_functions(robot: &linkwork_jit::Robot, with_jacobians: bool)
          the state after it.",
         arguments.clone(),
         state,
-        Kind::Step,
+        EvaluationMethod::Step,
     );
     let transition_function_signature = || {
         Function::new(
@@ -178,7 +191,7 @@ fn runge_kutta_step_functions(robot: &linkwork_jit::Robot, with_jacobians: bool)
              displacements, as `integrate` takes them.",
             arguments,
             jacobians,
-            Kind::Transition,
+            EvaluationMethod::Transition,
         )
     };
     if with_jacobians { vec![step, transition_function_signature()] } else { vec![step] }
@@ -187,7 +200,7 @@ fn runge_kutta_step_functions(robot: &linkwork_jit::Robot, with_jacobians: bool)
 /// Returns the functions that find states which satisfy the constraints.
 fn constraint_solver_functions(robot: &linkwork_jit::Robot) -> [Function; 4] {
     let [nq, nv] = [robot.nq(), robot.nv()];
-    let (q, v, held) = (vector("q", nq), vector("v", nv), vector(HELD, nv));
+    let (q, v, held) = (vector_argument("q", nq), vector_argument("v", nv), vector_argument(HELD, nv));
     let number = Argument { name: "t".to_string(), length: None };
     let time_argument = || robot.depends_on_time().then(|| number.clone());
     let with_time_argument =
@@ -200,7 +213,7 @@ fn constraint_solver_functions(robot: &linkwork_jit::Robot) -> [Function; 4] {
              not change.",
             with_time_argument(&[&q, &held]),
             single_vector_output(nq),
-            Kind::Constraint(ConstraintProjection::Assemble),
+            EvaluationMethod::Constraint(ConstraintSolverFunction::Assemble),
         ),
         Function::new(
             "project_configuration",
@@ -208,24 +221,25 @@ fn constraint_solver_functions(robot: &linkwork_jit::Robot) -> [Function; 4] {
              energy.",
             with_time_argument(&[&q]),
             single_vector_output(nq),
-            Kind::Constraint(ConstraintProjection::ProjectConfiguration),
+            EvaluationMethod::Constraint(ConstraintSolverFunction::ProjectConfiguration),
         ),
         Function::new(
             "project_velocity",
             "Velocity nearest to `v` that satisfies the constraints, in the metric of the kinetic energy.",
             with_time_argument(&[&q, &v]),
             single_vector_output(nv),
-            Kind::Constraint(ConstraintProjection::ProjectVelocity),
+            EvaluationMethod::Constraint(ConstraintSolverFunction::ProjectVelocity),
         ),
         Function::new(
             "complete_velocity",
             "Velocity with the entries `held` of `v` that satisfies the constraints.",
             with_time_argument(&[&q, &v, &held]),
             single_vector_output(nv),
-            Kind::Constraint(ConstraintProjection::CompleteVelocity),
+            EvaluationMethod::Constraint(ConstraintSolverFunction::CompleteVelocity),
         ),
     ]
 }
 
-/// Name of the argument that selects velocities by nonzero entries.
+/// Name of the argument whose nonzero entries mark velocities that the search for a consistent state holds
+/// fixed.
 const HELD: &str = "held";

@@ -329,7 +329,7 @@ impl<T: Real, const NV: usize> PermittedAccelerations<T, NV> {
             jacobian.data.0.iter_mut().zip(&normal).for_each(|(column, n)| column[row] = *n);
             bias[row] = -super::dot(&normal, &self.bend.data.0[0]);
         }
-        let (mass, force) = system.weighted_mass_and_forces(structure);
+        let (mass, force) = system.augmented_mass_and_forces(structure);
         let groups = core::array::from_fn(|k| k);
         let open = Structure { groups, determining: &[], rank: structure.rank };
         let system = DynamicsEquations {

@@ -10,10 +10,10 @@ use nalgebra::SVector;
 /// Part of the largest diagonal entry of `W` that counts as zero for a pivot, in rounding errors.
 const ROUNDINGS: f64 = 64.0;
 
-/// `B`, row by row: the effect of each impulse on `w`, the velocity in the metric of the kinetic energy. A
-/// contact has entries in the columns of its bodies.
+/// Factor `B` of the Delassus matrix `W = B Bᵀ`: the effect of each impulse on `w`, the velocity in the
+/// metric of the kinetic energy. A contact has entries in the columns of its bodies.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct ImpulseBasisRows<T, const NR: usize> {
+pub(in super::super) struct DelassusFactor<T, const NR: usize> {
     rows: ContactRowMatrix<T, NR>,
     /// Columns of the first entry of each row that is not zero, and behind the last.
     reach: TotalArray<(usize, usize), NR>,
@@ -94,7 +94,7 @@ impl<T: Real> ImpulseDerivativeBlock<T> {
     }
 }
 
-impl<T: Real, const NR: usize> ImpulseBasisRows<T, NR> {
+impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
     /// Returns `B` without columns, which is not computed yet.
     pub(in super::super) fn uncomputed_basis() -> Self {
         let rows = ContactRowMatrix::repeat_entry(RowList::repeat_entry(T::zero()));
@@ -135,7 +135,7 @@ impl<T: Real, const NR: usize> ImpulseBasisRows<T, NR> {
     }
 
     /// Sets the rows to `chosen` ones of another matrix `B`.
-    pub(super) fn select_rows<const N: usize>(&mut self, from: &ImpulseBasisRows<T, N>, chosen: &[usize]) {
+    pub(super) fn select_rows<const N: usize>(&mut self, from: &DelassusFactor<T, N>, chosen: &[usize]) {
         if from.rank == 0 {
             return;
         }
@@ -156,7 +156,7 @@ impl<T: Real, const NR: usize> ImpulseBasisRows<T, NR> {
     }
 
     /// Finds the entries of the first `size` rows that are not zero.
-    fn find_nonzero_ranges(&mut self, size: usize) {
+    fn update_nonzero_ranges(&mut self, size: usize) {
         self.size = size;
         for (row, reach) in self.rows.iter().zip(self.reach.iter_mut()).take(size) {
             let row = row.get(..self.rank).unwrap_or_default();
@@ -352,7 +352,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             (0..rank).for_each(|j| self.basis.rows[i][j] = columns[j][i]);
         }
         self.basis.rank = rank;
-        self.basis.find_nonzero_ranges(size);
+        self.basis.update_nonzero_ranges(size);
     }
 }
 

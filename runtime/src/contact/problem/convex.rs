@@ -228,11 +228,11 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
         rates: &RowList<T, NR>,
         wanted: &mut RowList<T, NR>,
     ) {
-        let predicted_impulse = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
+        let unprojected_impulse = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
         let n = cone.normal;
-        wanted[n] = predicted_impulse(n, rates[n] + cone.raised - cone.least);
+        wanted[n] = unprojected_impulse(n, rates[n] + cone.raised - cone.least);
         for (_, part) in cone.existing_friction_kinds() {
-            (part.first..part.first + part.count).for_each(|i| wanted[i] = predicted_impulse(i, rates[i]));
+            (part.first..part.first + part.count).for_each(|i| wanted[i] = unprojected_impulse(i, rates[i]));
         }
     }
 

@@ -53,12 +53,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         &self,
         kept: &TotalArray<bool, NK>,
     ) -> RowList<T, NR> {
-        self.impulses_closing_with_workspace(kept, &mut ImpulseEquations::new())
+        self.enforcing_impulses_with_workspace(kept, &mut ImpulseEquations::new())
     }
 
     /// Computes the impulses of [`impulses_enforcing_contacts`](Self::impulses_enforcing_contacts) with a
     /// given workspace.
-    pub(super) fn impulses_closing_with_workspace(
+    pub(super) fn enforcing_impulses_with_workspace(
         &self,
         kept: &TotalArray<bool, NK>,
         equations: &mut ImpulseEquations<T, NR>,
@@ -204,7 +204,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut forces = RowList::repeat_entry(T::zero());
         if !slips.contains(&true) {
             let mut equations = ImpulseEquations::new();
-            forces = self.impulses_closing_with_workspace(&TotalArray::repeat_entry(true), &mut equations);
+            forces = self.enforcing_impulses_with_workspace(&TotalArray::repeat_entry(true), &mut equations);
             *has_ill_conditioned_factors = self.has_ill_conditioned_factors(&equations, &forces);
             let (accelerations, most) =
                 (self.contact_velocities_after(&forces), self.contact_velocity_rounding_error(&forces));
@@ -244,7 +244,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let left = residual_accelerations(forces);
             let most = self
                 .contact_velocity_rounding_error(forces)
-                .max(self.largest_free_contact_velocity() * self.regularisation_of_row());
+                .max(self.largest_free_contact_velocity() * self.relative_regularisation());
             (0..self.count).filter(|k| self.has_gap_function(*k)).find(|k| {
                 // It is where it is no number, too.
                 let is_held = left[self.rows[*k].first].abs() <= most;
@@ -271,8 +271,9 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ) -> bool {
         let ImpulseEquations { matrix, content } = equations;
         let least = epsilon::<T>().sqrt().sqrt();
-        let pivot_at = |i: usize| matrix.as_ref().map_or(T::zero(), |matrix| matrix[i][i]);
-        let is_small_pivot = |i: usize| pivot_at(i) * self.delassus_matrix_entry(i, i) * least > T::one();
+        let reciprocal_pivot_at = |i: usize| matrix.as_ref().map_or(T::zero(), |matrix| matrix[i][i]);
+        let is_small_pivot =
+            |i: usize| reciprocal_pivot_at(i) * self.delassus_matrix_entry(i, i) * least > T::one();
         // Forces that move light bodies far cancel each other.
         let cancels = self.contact_velocity_rounding_error(forces) * least
             > self.largest_free_contact_velocity() * epsilon() * constant(ROUNDINGS);
@@ -386,10 +387,10 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the derivatives of [`force_derivatives`](Self::force_derivatives) if no contact slides and the
     /// rows are independent: `−W⁻¹`; otherwise `None`.
     fn sticking_force_derivatives(&self, slips: &TotalArray<bool, NK>) -> Option<SMatrix<T, NR, NR>> {
-        let is_regular_sticking = |k: usize| !slips[k] && self.step[k] > T::zero();
+        let sticks_and_responds = |k: usize| !slips[k] && self.step[k] > T::zero();
         let mut system = zero_matrix();
         self.copy_submatrix(&RowList::new(core::array::from_fn(|i| i), 0), self.size, &mut system);
-        if !(0..self.count).all(is_regular_sticking) || !factorise_symmetric(&mut system, self.size, false) {
+        if !(0..self.count).all(sticks_and_responds) || !factorise_symmetric(&mut system, self.size, false) {
             return None;
         }
         let places = self.places;
@@ -441,7 +442,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
     }
 
-    pub(super) fn regularisation_of_row(&self) -> T {
+    pub(super) fn relative_regularisation(&self) -> T {
         epsilon::<T>().sqrt()
     }
 

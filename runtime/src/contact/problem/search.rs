@@ -214,7 +214,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let approach = self.contact_mask_of_condition(|k| {
             self.free[self.rows_of_contact(k).0] < self.least[self.pressed_by[k]]
         });
-        let stuck = self.evaluate_impulse_trial(self.impulses_closing_with_workspace(&approach, equations));
+        let stuck = self.evaluate_impulse_trial(self.enforcing_impulses_with_workspace(&approach, equations));
         // Nearly dependent rows may have impulses that are worse than none.
         let stuck = match stuck.worst.0 <= self.largest_free_contact_velocity() * constant(NONSENSE) {
             true => stuck,

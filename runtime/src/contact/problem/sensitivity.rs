@@ -32,9 +32,9 @@ pub(in super::super) struct SlipRotationImpulses<T, const NR: usize> {
     /// Half of the difference of the friction impulses from those against the slip velocities, for contacts
     /// that slide throughout the step; zero in the other rows.
     pub(in super::super) impulses: SVector<T, NR>,
-    /// Derivatives with respect to the impulses at the start.
+    /// Derivatives of `impulses` with respect to the impulses at the start of the step.
     pub(in super::super) by_impulses: SMatrix<T, NR, NR>,
-    /// Derivatives with respect to the slip velocities.
+    /// Derivatives of `impulses` with respect to the slip velocities.
     pub(in super::super) by_slip: SMatrix<T, NR, NR>,
 }
 

@@ -1,7 +1,7 @@
 //! Stages of one Dormand–Prince step of order 5, with error estimate and interpolating polynomial.
 
 use crate::Real;
-use crate::integrate::adaptive::{StepTrial, TrialStep};
+use crate::integrate::adaptive::{TrialStepArguments, TrialStepResult};
 use crate::integrate::stages::{RungeKuttaRates, rates_at_stage, weighted_sum_of_rates};
 use crate::integrate::{Dynamics, Step};
 use crate::private::constant;
@@ -10,9 +10,9 @@ use crate::private::constant;
 /// and Wanner, II, table 5.2 and (6.12)).
 pub(super) fn dormand_prince_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &TrialStep<'_, T, NQ, NV>,
-) -> StepTrial<T, NQ, NV> {
-    let TrialStep { start, acceleration, scale, h, t } = *attempt;
+    attempt: &TrialStepArguments<'_, T, NQ, NV>,
+) -> TrialStepResult<T, NQ, NV> {
+    let TrialStepArguments { start, acceleration, scale, h, t } = *attempt;
     let time_at_fraction = |part: f64| start.t + h * constant(part);
     let k1 = &RungeKuttaRates { displacement: start.v, velocity: *acceleration };
     let change = weighted_sum_of_rates(h, [(1.0 / 5.0, k1)]);
@@ -79,5 +79,5 @@ pub(super) fn dormand_prince_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usi
         ..step
     };
     let error = scale.relative_error(&step, &displacement, &error);
-    StepTrial { step, acceleration: Some(k7.velocity), error }
+    TrialStepResult { step, acceleration: Some(k7.velocity), error }
 }

@@ -24,7 +24,7 @@ pub(crate) fn is_available() -> bool {
 
 /// Whether AVX2 and FMA speed up arithmetic with numbers of type `T`: `f64` or `f32`.
 #[inline(always)]
-pub(crate) fn has_faster_instructions<T: Real>() -> bool {
+pub(crate) fn speeds_up_scalar_type<T: Real>() -> bool {
     TypeId::of::<T>() == TypeId::of::<f64>() || TypeId::of::<T>() == TypeId::of::<f32>()
 }
 

@@ -48,7 +48,7 @@ macro_rules! four_bar {
 
         impl $name {
             /// Returns an instance with these lengths and random masses, springs and gravity.
-            pub fn random_instance(random: &mut Random, style: &Style, lengths: [f64; 4]) -> Self {
+            pub fn random_instance(random: &mut Random, style: &MagnitudeRanges, lengths: [f64; 4]) -> Self {
                 let [base, l1, l2, l3] = lengths;
                 let (mut mass, angle) = (|| style.random_mass(random), 2.0);
                 let [m1, m2, m3] = [mass(), mass(), mass()];
@@ -184,12 +184,12 @@ pub struct Row {
 }
 
 /// Ranges from which random masses and springs are drawn, in powers of ten.
-pub struct Style {
+pub struct MagnitudeRanges {
     pub masses: f64,
     pub springs: f64,
 }
 
-impl Style {
+impl MagnitudeRanges {
     pub fn random_mass(&self, random: &mut Random) -> f64 {
         10_f64.powf(random.uniform_number(self.masses))
     }

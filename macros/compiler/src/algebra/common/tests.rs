@@ -14,16 +14,16 @@ fn ring_with_nine_atoms() -> Ring {
         6..8 => AtomRank::Rate,
         _ => AtomRank::Acceleration,
     });
-    (0..9).for_each(|k| _ = ring.monomial_of_atom(Atom::Symbol(Symbol(k))).unwrap());
+    (0..9).for_each(|k| _ = ring.intern_atom_as_monomial(Atom::Symbol(Symbol(k))).unwrap());
     ring
 }
 
 fn value_of_items(items: &[Item], atoms: &[f64]) -> f64 {
-    let power_of_atom = |(k, n): (usize, u8)| atoms[k].powi(n.into());
+    let value_of_atom_power = |(k, n): (usize, u8)| atoms[k].powi(n.into());
     let item_value = |item: &Item| {
         let sums = item.sums.iter().map(|sum| value_of_items(&sum.items, atoms).powi(sum.power.into()));
         item.coefficient
-            * item.factor.atoms_with_powers().map(power_of_atom).product::<f64>()
+            * item.factor.atoms_with_powers().map(value_of_atom_power).product::<f64>()
             * sums.product::<f64>()
     };
     items.iter().map(item_value).sum()
@@ -60,7 +60,7 @@ fn factored_sums_keep_their_values() {
         let plain: usize = p
             .terms
             .iter()
-            .map(|t| order.printed_length(&[Item::item_without_sums(t.coefficient, t.monomial)]))
+            .map(|t| order.printed_length(&[Item::from_monomial(t.coefficient, t.monomial)]))
             .sum();
         for scope in [FactorScope::All, FactorScope::Kinds, FactorScope::None] {
             let found = items_of_polynomial(&ring, &order, &p, scope);

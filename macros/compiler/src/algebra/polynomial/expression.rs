@@ -24,16 +24,12 @@ pub fn polynomial_to_expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomia
                     polynomial_to_expression(graph, ring, a).pow(polynomial_to_expression(graph, ring, b))
                 }
                 Atom::Table(_, lookup, x) => {
-                    let function_argument_expression = |k: usize| {
+                    let table_argument_or_zero = |k: usize| {
                         x.get(k).map_or(graph.zero(), |x| polynomial_to_expression(graph, ring, x))
                     };
                     graph.table_lookup(
                         *lookup,
-                        [
-                            function_argument_expression(0),
-                            function_argument_expression(1),
-                            function_argument_expression(2),
-                        ],
+                        [table_argument_or_zero(0), table_argument_or_zero(1), table_argument_or_zero(2)],
                     )
                 }
                 Atom::Extreme(f, a, b) => polynomial_to_expression(graph, ring, a)

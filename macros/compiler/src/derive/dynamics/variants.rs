@@ -68,7 +68,7 @@ impl<'g> Variants<'g> {
         Variants { all, joints, specialisation, speeds, limbs, bias: CheapestBias::default() }
     }
 
-    pub fn find_cheapest_bias_program(&mut self) {
+    pub fn store_cheapest_bias_program(&mut self) {
         let (variant, program) =
             self.specialisation.cheapest_candidate(self.inverse_dynamics_candidates(false));
         let simd = self
@@ -214,8 +214,8 @@ impl<'g> Variants<'g> {
 }
 
 /// Returns the number of multipliers whose individual accelerations are outputs.
-fn multiplier_acceleration_count(model: &Model<'_>) -> usize {
-    if model.is_overdetermined() { model.constraints.len() } else { 0 }
+fn count_of_multiplier_accelerations(model: &Model<'_>) -> usize {
+    if model.is_overconstrained() { model.constraints.len() } else { 0 }
 }
 
 impl<'g> Variants<'g> {
@@ -227,7 +227,7 @@ impl<'g> Variants<'g> {
             return self.friction_solution_program(ResultKind::Accelerations(0), &force, &biases);
         }
         let Some(pivots) = &variant.model.dependent else {
-            let answers = multiplier_acceleration_count(&variant.model);
+            let answers = count_of_multiplier_accelerations(&variant.model);
             return self.multipliers_program(ResultKind::Accelerations(answers), &force, &biases);
         };
         self.cheapest_program(ResultKind::Accelerations(0), |model| {
@@ -241,7 +241,7 @@ impl<'g> Variants<'g> {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::force_and_bias_symbols(&variant.model);
         self.multipliers_program(
-            ResultKind::Answers(multiplier_acceleration_count(&variant.model)),
+            ResultKind::Answers(count_of_multiplier_accelerations(&variant.model)),
             &force,
             &bias,
         )
@@ -257,7 +257,7 @@ impl<'g> Variants<'g> {
     fn multipliers_program(&self, role: ResultKind, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
         self.cheapest_program(role, |model| {
             let rows = constraints::jacobian(model);
-            if model.is_overdetermined() {
+            if model.is_overconstrained() {
                 let mass = crba::mass_matrix(model, &self.joints);
                 return constraints::minimum_norm_terms(&mass, &rows, force.to_vec(), bias, &self.joints);
             }

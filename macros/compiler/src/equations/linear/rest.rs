@@ -13,7 +13,7 @@ use crate::diag::Diagnostics;
 use crate::equations::print::PolynomialWriter;
 use crate::expr::diff::TINY;
 use crate::expr::eval::{Tape, nodes_in_order};
-use crate::expr::exact::replace_exactly;
+use crate::expr::exact::substitute_with_exact_sines;
 use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity, SuppliedQuantity};
@@ -48,16 +48,16 @@ impl<'g> EquilibriumValues<'g> {
 
     /// Evaluates expressions at the equilibrium.
     pub fn evaluate_at_equilibrium(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let zero_like_expression = |e: &Expr<'g>| Some(e.zero());
+        let zero_in_graph_of = |e: &Expr<'g>| Some(e.zero());
         let first = e.first();
-        let moved = replace_exactly(e, &|s| match Quantity::from_symbol(s) {
+        let moved = substitute_with_exact_sines(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.configuration.get(k).copied(),
             Quantity::Input(k) => self.inputs.get(k).copied(),
             Quantity::Given(SuppliedQuantity::Multiplier, k) => self.multipliers.get(k).copied(),
-            Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero_like_expression),
+            Quantity::Velocity(_) | Quantity::Acceleration(_) => first.and_then(zero_in_graph_of),
             _ => None,
         });
-        replace_exactly(&moved, &|s| match Quantity::from_symbol(s) {
+        substitute_with_exact_sines(&moved, &|s| match Quantity::from_symbol(s) {
             Quantity::Parameter(k) => self.states.iter().find(|(of, _)| *of == k).map(|(_, value)| *value),
             _ => None,
         })

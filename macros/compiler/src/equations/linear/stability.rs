@@ -73,7 +73,7 @@ pub fn analyse_stability(c: CharacteristicPolynomial) -> Option<Stability> {
         (_, false) => lienard_chipart_conditions(&rest, &mut ring, &positive),
         (_, true) => oscillation_conditions(&rest, conservative, &mut ring, &positive),
     };
-    ring.monomial_of_atom(Atom::Symbol(ROOT.symbol()))?;
+    ring.intern_atom_as_monomial(Atom::Symbol(ROOT.symbol()))?;
     let oscillates = matches!(verdict, StabilityVerdict::Oscillation(_));
     let frequency = match rest.as_slice() {
         [last, middle, first] if middle.terms.is_empty() && oscillates => {
@@ -104,7 +104,7 @@ fn divide_by_common_monomial(ring: &Ring, coefficients: &mut [Polynomial], sign:
             .fold(divisor, |m, _| m.checked_product(Monomial::first_power_of_atom(atom)).unwrap_or(m));
     }
     for p in coefficients {
-        *p = scaled_to_whole(&divide_by_monomial(p, divisor), sign);
+        *p = multiplied_and_rounded(&divide_by_monomial(p, divisor), sign);
     }
     odd
 }
@@ -116,7 +116,7 @@ fn natural_frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> 
     if let [Term { monomial: Monomial::ONE, coefficient }] = square.terms.as_slice() {
         return Some(Polynomial::from_number(coefficient.sqrt()));
     }
-    Some(Polynomial::single_term(ring.monomial_of_atom(Atom::Call(Function::Sqrt, square))?, 1.0))
+    Some(Polynomial::from_term(ring.intern_atom_as_monomial(Atom::Call(Function::Sqrt, square))?, 1.0))
 }
 
 /// Returns the conditions of Liénard and Chipart: every other coefficient and every other Hurwitz determinant
@@ -280,9 +280,9 @@ fn remove_positive_factors(p: &Polynomial, ring: &mut Ring, positive: &[Symbol])
         .into_iter()
         .find(|sign| has_only_positive_terms(&left.multiplied_by_number(*sign), ring, positive));
     if let (Some(sign), true) = (sign, factor != Monomial::ONE) {
-        return Some(Polynomial::single_term(factor, sign));
+        return Some(Polynomial::from_term(factor, sign));
     }
-    Some(scaled_to_whole(&divide_by_monomial(&p, divisor), 1.0 / common_coefficient_divisor([&p])))
+    Some(multiplied_and_rounded(&divide_by_monomial(&p, divisor), 1.0 / common_coefficient_divisor([&p])))
 }
 
 /// Returns the common monomial of all terms, `None` for zero.
@@ -307,7 +307,7 @@ fn common_coefficient_divisor<'a>(all: impl IntoIterator<Item = &'a Polynomial>)
 }
 
 /// Multiplies a polynomial by a number, and rounds coefficients that are integers up to rounding error.
-fn scaled_to_whole(p: &Polynomial, factor: f64) -> Polynomial {
+fn multiplied_and_rounded(p: &Polynomial, factor: f64) -> Polynomial {
     let scale_and_round_term = |t: &Term| {
         let coefficient = t.coefficient * factor;
         let rounded = coefficient.round();
@@ -325,7 +325,7 @@ fn multiplied_by_even_denominators(all: &[Polynomial], ring: &mut Ring) -> Optio
         let [Term { monomial, .. }] = p.terms.as_slice() else { continue };
         let monomial = *monomial;
         let power = out.iter().flat_map(|p| &p.terms).map(|t| t.monomial.power_of_atom(k)).max().unwrap_or(0);
-        let factor = Polynomial::single_term(monomial, 1.0);
+        let factor = Polynomial::from_term(monomial, 1.0);
         for _ in 0..power.saturating_sub(power % 2) {
             out = out.iter().map(|p| ring.multiply_and_reduce(p, &factor)).collect::<Option<_>>()?;
         }

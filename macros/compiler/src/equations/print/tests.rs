@@ -145,11 +145,11 @@ fn formatted_latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>)
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
     let mut normal = NormalFormCache::new(&graph, rank_of_symbol);
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
-    let name_with_primes = |s: Symbol| {
+    let name_and_primes = |s: Symbol| {
         let name = NAMES[s.0 as usize].trim_end_matches('\'');
         (SymbolName::parse(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
     };
-    PolynomialWriter::new_with_style(&normal.ring, Latex { name: &name_with_primes }).format_polynomial(&p)
+    PolynomialWriter::new_with_style(&normal.ring, Latex { name: &name_and_primes }).format_polynomial(&p)
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::*;
 
 /// Calls `f` with the linear equations of every equilibrium of a struct, as polynomials, plain text and
 /// LaTeX.
-fn check_linear_equations(
+fn visit_linear_equations(
     gravity: &str,
     item: &str,
     f: impl for<'g> Fn(&Model<'g>, &LinearisedEquations, &str, &str),
@@ -130,7 +130,7 @@ const LAG: &str = "struct Lag { m: f64, k: f64, lag: f64, gain: f64,
 fn pendulum_linearises_to_its_natural_frequency() {
     let pendulum_with_equilibrium = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
     let assert_lines_contained = |equilibrium: &str, lines: &'static [&'static str]| {
-        check_linear_equations(
+        visit_linear_equations(
             "-g * y",
             &pendulum_with_equilibrium(equilibrium),
             |model, found, plain, _| {
@@ -171,11 +171,11 @@ fn pendulum_linearises_to_its_natural_frequency() {
 fn linear_equations_are_derivatives_of_the_dynamics() {
     for (gravity, item) in [("-7 * y", DOUBLE_PENDULUM), ("-7 * y", CART_POLE), ("-7 * z", SPHERICAL)] {
         let item = item.trim_end().trim_end_matches('}').to_string() + "#[equilibrium] rest: Equilibrium }";
-        check_linear_equations(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
+        visit_linear_equations(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
             check_linear_rows(model, found);
         });
     }
-    check_linear_equations("-9.81 * z", LAG, |model, found, plain, _| {
+    visit_linear_equations("-9.81 * z", LAG, |model, found, plain, _| {
         check_linear_rows(model, found);
         assert!(plain.contains("power' + (gain rail + power)/lag = 0\n"), "{plain}");
     });
@@ -191,7 +191,7 @@ fn particle_on_a_wire_has_geometric_stiffness() {
         #[constraint(place.x * place.x + place.y * place.y = l * l)] wire: Holonomic,
         #[equilibrium(place.y = -l)] low: Equilibrium,
         #[equilibrium(place.y = l)] high: Equilibrium }";
-    check_linear_equations("-g * y", item, |_, _, plain, _| {
+    visit_linear_equations("-g * y", item, |_, _, plain, _| {
         let low = plain.starts_with("low");
         let expected: &[&str] = match low {
             true => &[
@@ -216,7 +216,7 @@ fn orientation_deviations_are_small_rotations() {
         #[body(mass = m, com = -l * z, inertia = diagonal(a, a, c))] bob: Body,
         #[joint(ground -> bob)] tip: Ball,
         #[equilibrium] down: Equilibrium }";
-    check_linear_equations("-g * z", item, |_, _, plain, latex| {
+    visit_linear_equations("-g * z", item, |_, _, plain, latex| {
         for line in [
             "(m l² + a) tip.rx'' + m g l tip.rx = 0\n",
             "c tip.rz'' = 0\n",
@@ -238,7 +238,7 @@ fn bead_on_a_spinning_hoop_is_in_relative_equilibrium() {
         #[particle(mass = m, at = radius * (sin(theta) * hoop.x - cos(theta) * hoop.z))] bead: Particle,
         #[equilibrium] bottom: Equilibrium,
         #[equilibrium(theta = acos(g / (spin * spin * radius)))] side: Equilibrium }";
-    check_linear_equations("-g * z", item, |_, _, plain, _| {
+    visit_linear_equations("-g * z", item, |_, _, plain, _| {
         let expected = match plain.starts_with("bottom") {
             true => ["omega = sqrt(g/radius - spin²)\n", "    g - radius spin² > 0\n"],
             false => ["side: theta = acos(g/(radius spin²));", "    -g² + radius² spin⁴ > 0\n"],
@@ -259,7 +259,7 @@ fn skate_edge_leaves_the_lateral_position_free() {
         #[energy(c / 2 * pose.angle * pose.angle)] coil: Potential,
         #[constraint(rate(pose.x) * sin(pose.angle) - rate(pose.y) * cos(pose.angle) = 0)] edge: Nonholonomic,
         #[equilibrium] rest: Equilibrium }";
-    check_linear_equations("0 * x", item, |_, _, plain, _| {
+    visit_linear_equations("0 * x", item, |_, _, plain, _| {
         for line in [
             "m pose.x'' + k pose.x = 0\n",
             "m pose.y'' = -lambda1\n",
@@ -290,7 +290,7 @@ fn polynomials_of_high_degree_are_printed_completely() {
             "struct Three {{ k: f64, b: f64, {} {states} #[equilibrium] rest: Equilibrium }}",
             oscillators.concat()
         );
-        check_linear_equations("0 * x", &item, |_, found, plain, _| {
+        visit_linear_equations("0 * x", &item, |_, found, plain, _| {
             let found = found.stability.as_ref().map(|stability| stability.coefficients.len() - 1);
             assert_eq!(found, degree, "{plain}");
             assert_eq!(plain.contains("s⁷"), degree.is_some(), "{plain}");

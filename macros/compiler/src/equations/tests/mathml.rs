@@ -78,7 +78,7 @@ fn check_mathml_page(model: &Model<'_>) {
     let written = format_equations(model, &e);
     let (plain, page) = (sides_of_equations(&written.plain), equations_of_page(&written.mathml));
     assert_eq!(plain.len(), page.len(), "{}", written.mathml);
-    let rates = written::marks_of_coordinate_rates(model);
+    let rates = written::coordinate_rate_flags(model);
     let names = written::typeset_names_with_extra_names(model, &[]);
     let symbols = (0..model.parameters.len())
         .map(Quantity::Parameter)

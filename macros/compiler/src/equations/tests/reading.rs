@@ -41,7 +41,7 @@ fn check_printed_linear_rows(
 
 /// Calls `f` with the printed linear equations of all equilibria, and with a numerical model of the
 /// mechanism.
-fn with_linear_equations<R>(
+fn call_with_linear_equations<R>(
     gravity: &str,
     item: &str,
     f: impl for<'g> FnOnce(Numbers<'g>, Vec<ParsedEquations>) -> R,
@@ -49,13 +49,13 @@ fn with_linear_equations<R>(
     with_model(gravity, item, |model| {
         let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
-        let text_of_equilibrium = |at| {
+        let equations_about_equilibrium = |at| {
             let mut cx = Diagnostics::new();
             let found = super::super::linear::derive_linear_equations(&model, &joints, &mass, at, &mut cx);
             let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
             ParsedEquations::parse(&super::super::linear::format_linear_equations(&model, at, &found).plain)
         };
-        let texts = model.equilibria.iter().map(text_of_equilibrium).collect();
+        let texts = model.equilibria.iter().map(equations_about_equilibrium).collect();
         f(Numbers::new(&model), texts)
     })
 }
@@ -112,7 +112,7 @@ const BALANCE: &str = "struct CartPole {
 fn linear_equations_linearise_lagranges_equations() {
     let names = ["cart_mass", "pole_mass", "length", "stiffness", "damping"];
     let mut next = random_generator(3, 0.3, 2.3);
-    with_linear_equations("-9.81 * y", BALANCE, |numbers, texts| {
+    call_with_linear_equations("-9.81 * y", BALANCE, |numbers, texts| {
         for _ in 0..20 {
             let values: Vec<f64> = (0..5).map(|_| next()).collect();
             let parameters = value_lookup_by_name(&names, &values);
@@ -153,7 +153,7 @@ const CRAFT: &str = "struct Craft {
 fn small_rotations_linearise_lagranges_equations() {
     let (names, values) = (["m", "a", "c", "arm", "drag"], [1.3, 0.2, 0.35, 0.1, 0.4]);
     let joints = ["pose.dx", "pose.dy", "pose.dz", "pose.rx", "pose.ry", "pose.rz"];
-    with_linear_equations("-9.81 * z", CRAFT, |numbers, texts| {
+    call_with_linear_equations("-9.81 * z", CRAFT, |numbers, texts| {
         let a =
             numbers.linear_system_matrix(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &[9.81 * 1.3, 0.0], &values);
         check_printed_linear_rows(&texts[0], &joints, &a, &value_lookup_by_name(&names, &values));
@@ -193,7 +193,7 @@ const ROW: &str = "struct Row {
 fn stability_conditions_of_three_masses_agree_with_eigenvalues() {
     let names = ["k1", "k2", "k3", "d"];
     let mut next = random_generator(5, -0.6, 2.2);
-    with_linear_equations("0 * x", ROW, |numbers, texts| {
+    call_with_linear_equations("0 * x", ROW, |numbers, texts| {
         let text = &texts[0];
         assert_eq!(text.verdict, "Asymptotically stable where");
         let (mut stable, mut unstable) = (0, 0);
@@ -248,7 +248,7 @@ const ZIEGLER: &str = "struct Ziegler {
 fn follower_force_makes_a_column_flutter() {
     let names = ["m", "l", "k", "p"];
     let mut next = random_generator(9, 0.5, 2.5);
-    with_linear_equations("0 * x", ZIEGLER, |numbers, texts| {
+    call_with_linear_equations("0 * x", ZIEGLER, |numbers, texts| {
         let text = &texts[0];
         assert_eq!(text.verdict, "Stable, all deviations oscillate, where");
         for _ in 0..150 {
@@ -286,7 +286,7 @@ const HOOP: &str = "struct Hoop {
 #[test]
 fn bead_on_a_hoop_has_textbook_frequencies() {
     let names = ["g", "m", "radius", "spin"];
-    with_linear_equations("-g * z", HOOP, |numbers, texts| {
+    call_with_linear_equations("-g * z", HOOP, |numbers, texts| {
         for values in
             [[9.81, 0.7, 0.5, 6.0], [1.6, 0.7, 0.8, 2.1], [9.81, 0.7, 0.5, 4.0], [2.0, 0.3, 1.0, 1.0]]
         {
@@ -345,7 +345,7 @@ const LATE: &str = "struct Late {
 fn actuator_lag_destabilises_control() {
     let names = ["m", "c", "k", "lag", "gain"];
     let mut next = random_generator(12, 0.1, 2.1);
-    with_linear_equations("0 * x", LATE, |_, texts| {
+    call_with_linear_equations("0 * x", LATE, |_, texts| {
         let (mut stable, mut unstable) = (0, 0);
         for _ in 0..200 {
             let values = [next(), 0.3 * next(), next(), next(), next()];
@@ -381,7 +381,7 @@ const LADDER: &str = "struct Ladder {
 /// `U = −m g l cos θ / 2`.
 #[test]
 fn constrained_ladder_oscillates_like_a_pendulum() {
-    with_linear_equations("-9.81 * y", LADDER, |_, texts| {
+    call_with_linear_equations("-9.81 * y", LADDER, |_, texts| {
         for values in [[1.0, 2.0], [0.4, 0.7]] {
             let parameters = value_lookup_by_name(&["m", "l"], &values);
             let square = evaluate_text(&texts[0].frequency, &parameters).powi(2);

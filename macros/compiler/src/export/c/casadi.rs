@@ -11,8 +11,8 @@ use super::super::handwritten::METHODS;
 use super::super::mechanism::{ExportObstacle, ExportedMechanism};
 use super::super::names::replace_invalid_characters;
 use super::super::signatures::{Array, ExportedSignature};
-use super::super::template::Template;
-use super::super::tokens::{contains_word, numeric_literal};
+use super::super::template::TemplateValues;
+use super::super::tokens::{c_numeric_literal, contains_word};
 use std::fmt::Write;
 
 /// Matrix argument or result, with its size as C expressions.
@@ -59,7 +59,7 @@ struct CasadiWriter<'a> {
     i: &'a ExportedMechanism<'a>,
     /// Value of each fixed parameter; `None` for a parameter that is an argument.
     fixed: Vec<Option<f64>>,
-    template: Template,
+    template: TemplateValues,
 }
 
 /// Returns the text of the CasADi source file; `given` are the values of the fixed parameters.
@@ -72,7 +72,7 @@ pub fn casadi_source(i: &ExportedMechanism<'_>, given: &[(String, f64)]) -> Resu
         let at = i.model.parameters.iter().position(|known| known == name);
         fixed[at.ok_or_else(|| ExportObstacle::NoParameter(name.clone()))?] = Some(*value);
     }
-    let mut w = CasadiWriter { i, fixed, template: Template::default() };
+    let mut w = CasadiWriter { i, fixed, template: TemplateValues::default() };
     w.define_placeholders();
     let mut text = w.template.fill(include_str!("templates/casadi.c"));
     w.external_functions().iter().for_each(|external| w.write_external(&mut text, external));
@@ -178,10 +178,10 @@ impl CasadiWriter<'_> {
     /// Returns the declarations of the tables, which the program defines.
     fn table_declarations(&self) -> String {
         let p = &self.i.prefix;
-        let declaration = |table: &String| {
+        let table_declaration = |table: &String| {
             format!("/* A table, which the program defines. */\nextern const {p}_table {p}_{table};\n\n")
         };
-        self.i.tables.iter().map(declaration).collect()
+        self.i.tables.iter().map(table_declaration).collect()
     }
 
     /// Returns the assignments that fill the parameter struct from fixed values and arguments.
@@ -189,7 +189,7 @@ impl CasadiWriter<'_> {
         let mut text = String::new();
         let mut next = 0;
         for (member, value) in self.i.parameters.iter().zip(&self.fixed) {
-            let value = value.map(numeric_literal).unwrap_or_else(|| {
+            let value = value.map(c_numeric_literal).unwrap_or_else(|| {
                 next += 1;
                 format!("given ? given[{}] : 0.0", next - 1)
             });
@@ -209,18 +209,18 @@ impl CasadiWriter<'_> {
             let step = self.i.signature(&format!("{method}_step"));
             all.extend(step.map(|f| self.external_from_signature(f)));
             if self.has_exact_jacobians() && self.i.has_transitions {
-                let mut template = Template::default();
+                let mut template = TemplateValues::default();
                 template.add_value("METHOD", method);
                 all.extend(self.template_functions(&template, include_str!("templates/casadi_step.c")));
             }
         }
         for (constant, _) in self.i.frame_names().iter().filter(|_| !self.i.output.frames.is_empty()) {
-            let mut template = Template::default();
+            let mut template = TemplateValues::default();
             template.add_value("FRAME", constant);
             template.add_value("POINT", &replace_invalid_characters(constant).to_ascii_lowercase());
             all.extend(self.template_functions(&template, include_str!("templates/casadi_position.c")));
         }
-        let template = Template::default();
+        let template = TemplateValues::default();
         all.extend(self.template_functions(&template, include_str!("templates/casadi_functions.c")));
         all
     }
@@ -243,7 +243,7 @@ impl CasadiWriter<'_> {
     }
 
     /// Returns the functions of a template. A line `//// name : inputs -> outputs + work` precedes each body.
-    fn template_functions(&self, values: &Template, text: &str) -> Vec<CasadiExternalFunction> {
+    fn template_functions(&self, values: &TemplateValues, text: &str) -> Vec<CasadiExternalFunction> {
         let text = values.fill(&self.template.fill(text));
         let sections = text.split("//// ").filter_map(|section| section.split_once('\n'));
         let external = |(head, body): (&str, &str)| {

@@ -13,12 +13,12 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
     };
     match f.shape {
         Shape::Inverse(n) => {
-            let inverse = InverseOutputs::new(body, f, "result", n, &[]);
+            let inverse = InverseMassMatrixOutputs::new(body, f, "result", n, &[]);
             write(body, &|k| Some(inverse.element_of_output(k)));
             inverse.complete(body);
         }
         Shape::Accelerated(n) => {
-            let inverse = InverseOutputs::new(body, f, "inverse", n, &[("result", n)]);
+            let inverse = InverseMassMatrixOutputs::new(body, f, "inverse", n, &[("result", n)]);
             write(body, &|k| Some(inverse.element_of_output(k)));
             inverse.complete(body);
             if let InverseForm::BlockArrow { trunk, .. } = inverse.form {
@@ -30,7 +30,8 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             }
         }
         Shape::Forward(n) => {
-            let inverse = InverseOutputs::new(body, f, "by_tau", n, &[("by_q", n * n), ("by_v", n * n)]);
+            let inverse =
+                InverseMassMatrixOutputs::new(body, f, "by_tau", n, &[("by_q", n * n), ("by_v", n * n)]);
             // The accelerations, which are the last outputs, are not returned.
             let mut program = f.program.clone();
             program.outputs.truncate(inverse.output_count());
@@ -44,11 +45,12 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
             if n > 0 {
                 let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", n * n);
             }
-            let inverse = InverseOutputs::new(body, f, "inverse", n, &[("by_q", n * n), ("by_v", n * n)]);
+            let inverse =
+                InverseMassMatrixOutputs::new(body, f, "inverse", n, &[("by_q", n * n), ("by_v", n * n)]);
             let rest = inverse.output_count();
             write(body, &|k| match k < rest {
                 true => Some(inverse.element_of_output(k)),
-                false => Some(assembled_array_element(n, m, k - rest)),
+                false => Some(system_matrix_element(n, m, k - rest)),
             });
             inverse.complete(body);
             write_inverse_products(body, n, "inverse", "by_q", n);
@@ -61,7 +63,7 @@ pub fn write_composed_body(body: &mut String, f: &Function, scope: &Scope<'_>, i
 }
 
 /// Inverse mass matrix that the outputs of a program determine, after the outputs of other arrays.
-struct InverseOutputs<'a> {
+struct InverseMassMatrixOutputs<'a> {
     form: &'a InverseForm,
     name: &'static str,
     n: usize,
@@ -71,7 +73,7 @@ struct InverseOutputs<'a> {
     before: Vec<(&'static str, usize)>,
 }
 
-impl<'a> InverseOutputs<'a> {
+impl<'a> InverseMassMatrixOutputs<'a> {
     /// Describes the inverse that a function stores in an array, and declares the arrays of its structure.
     fn new(
         body: &mut String,
@@ -79,13 +81,13 @@ impl<'a> InverseOutputs<'a> {
         name: &'static str,
         n: usize,
         before: &[(&'static str, usize)],
-    ) -> InverseOutputs<'a> {
+    ) -> InverseMassMatrixOutputs<'a> {
         let form = &f.structure.inverse;
         let trunk: &[usize] = match form {
             InverseForm::Explicit => &[],
             InverseForm::LowRankUpdate(trunk) | InverseForm::BlockArrow { trunk, .. } => trunk,
         };
-        let inverse = InverseOutputs { form, name, n, trunk, before: before.to_vec() };
+        let inverse = InverseMassMatrixOutputs { form, name, n, trunk, before: before.to_vec() };
         if trunk.is_empty() {
             return inverse;
         }
@@ -179,7 +181,7 @@ fn write_composed_forward_derivatives(
 
 /// Returns the array element for an output: derivatives with respect to inputs, then the block for
 /// displacements.
-fn assembled_array_element(n: usize, m: usize, k: usize) -> String {
+fn system_matrix_element(n: usize, m: usize, k: usize) -> String {
     match k < n * m {
         true => format!("by_input[{}]", k / n * 2 * n + n + k % n),
         false => format!("by_state[{}]", (k - n * m) / n * 2 * n + (k - n * m) % n),
@@ -211,7 +213,7 @@ fn write_linear_system_by_calls(
     write_program(body, &f.program, scope, &|k| match k {
         k if k < n => Some(format!("tau[{k}]")),
         k if k < rest => Some(format!("more[{}]", k - n)),
-        k => Some(assembled_array_element(n, m, k - rest)),
+        k => Some(system_matrix_element(n, m, k - rest)),
     });
     let call = i.call("forward_dynamics_derivatives", &["q", "v", "tau", "by_q", "by_v", "inverse"]);
     let _ = writeln!(body, "    {call};");

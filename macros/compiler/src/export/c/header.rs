@@ -78,11 +78,11 @@ pub fn c_parameter_type_definitions(i: &ExportedMechanism<'_>) -> String {
 /// Returns the C constants for the indices of the frames.
 pub fn frame_index_constants(i: &ExportedMechanism<'_>) -> String {
     let upper = i.prefix.to_ascii_uppercase();
-    let constant = |(k, (name, about)): (usize, &(String, String))| {
+    let frame_constant = |(k, (name, about)): (usize, &(String, String))| {
         format!("    {upper}_FRAME_{name} = {k}, /* {} */\n", comment_safe_text(about))
     };
     let frames = if i.output.frames.is_empty() { Vec::new() } else { i.frame_names() };
-    let constants: String = frames.iter().enumerate().map(constant).collect();
+    let constants: String = frames.iter().enumerate().map(frame_constant).collect();
     match frames.is_empty() {
         true => String::new(),
         false => format!("/* Frames by number. */\nenum {{\n{constants}}};\n\n"),

@@ -2,7 +2,7 @@
 //! names begin with `lw_`, which no name of a mechanism does (`names::c_name_prefix`).
 
 use super::super::mechanism::ExportedMechanism;
-use super::super::template::Template;
+use super::super::template::TemplateValues;
 use super::super::tokens::replaced;
 
 /// Arithmetic of the code.
@@ -43,7 +43,7 @@ pub fn with_helpers(code: &str, i: &ExportedMechanism<'_>, arithmetic: Arithmeti
         Arithmetic::Single => include_str!("templates/single_angles.c"),
         Arithmetic::Kernel => "",
     };
-    let mut template = Template::default();
+    let mut template = TemplateValues::default();
     template.add_condition("OWN_SINES", arithmetic == Arithmetic::Reproducible);
     let columns = 2 * i.nv() + i.nu() + usize::from(!i.model.time);
     template.add_value("PREFIX", &i.prefix);

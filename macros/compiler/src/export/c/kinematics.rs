@@ -1,10 +1,10 @@
 //! Functions that templates in C define: of the configuration manifold, of steps and of named frames.
 
 use super::super::body::{Scope, write_program};
-use super::super::handwritten::{LIMITS, joint_signatures};
+use super::super::handwritten::{LIMITS, joint_manifold_signatures};
 use super::super::mechanism::{ExportedMechanism, is_zero};
 use super::super::signatures::ExportedSignature;
-use super::super::template::Template;
+use super::super::template::TemplateValues;
 use super::functions::{definition, function_head};
 use crate::catalogue::{Argument, Id};
 use crate::lower::Program;
@@ -12,10 +12,11 @@ use crate::mechanism::{Chart, SuppliedQuantity};
 use std::fmt::Write;
 
 /// Returns the placeholders and conditions of the templates for a mechanism.
-pub fn mechanism_template(i: &ExportedMechanism<'_>) -> Template {
+pub fn mechanism_template_values(i: &ExportedMechanism<'_>) -> TemplateValues {
     let (n, m, time) = (i.nv(), i.nu(), i.model.time);
-    let mut template = Template::default();
-    let (handwritten, joints) = (&i.functions[i.public.len() + i.reactions.len()..], joint_signatures(i));
+    let mut template = TemplateValues::default();
+    let (handwritten, joints) =
+        (&i.functions[i.public.len() + i.reactions.len()..], joint_manifold_signatures(i));
     for f in handwritten {
         template.add_value(&f.name, &function_head(i, f));
     }
@@ -50,7 +51,7 @@ pub fn mechanism_template(i: &ExportedMechanism<'_>) -> Template {
         template.add_value(list, &join(&velocities));
     }
     let derivatives = i.find(Id::InputDerivatives);
-    let has_block = |at: usize| derivatives.is_some_and(|f| (at..at + n * n).any(|k| !is_zero(f, k)));
+    let has_nonzero_block = |at: usize| derivatives.is_some_and(|f| (at..at + n * n).any(|k| !is_zero(f, k)));
     let conditions = [
         ("OWN", i.takes_parameter_struct()),
         ("TIME", time),
@@ -59,8 +60,8 @@ pub fn mechanism_template(i: &ExportedMechanism<'_>) -> Template {
         ("DERIVATIVES", i.has_derivatives()),
         ("TRANSITIONS", i.has_transitions),
         ("LINKS", !i.output.links.is_empty()),
-        ("FORCES_BY_Q", has_block(n)),
-        ("FORCES_BY_V", has_block(n + n * n)),
+        ("FORCES_BY_Q", has_nonzero_block(n)),
+        ("FORCES_BY_V", has_nonzero_block(n + n * n)),
     ];
     conditions.into_iter().for_each(|(name, holds)| template.add_condition(name, holds));
     add_values(&mut template, i);
@@ -68,9 +69,9 @@ pub fn mechanism_template(i: &ExportedMechanism<'_>) -> Template {
 }
 
 /// Adds the values of placeholders for arguments, names and sizes.
-fn add_values(template: &mut Template, i: &ExportedMechanism<'_>) {
+fn add_values(template: &mut TemplateValues, i: &ExportedMechanism<'_>) {
     let (n, m, time) = (i.nv(), i.nu(), i.model.time);
-    let choose = |holds: bool, text: &'static str| if holds { text } else { "" };
+    let text_if = |holds: bool, text: &'static str| if holds { text } else { "" };
     let (rates, changes) = if i.has_speeds() { ("rates", "changes") } else { ("v", "a") };
     let start = if i.has_speeds() { ["@OWN@q, ", "@OWN_DECLARED@const double *q, "] } else { ["", ""] };
     let forces = i.call("generalized_forces", &[i.input_arguments(), &["tau"]].concat());
@@ -80,18 +81,18 @@ fn add_values(template: &mut Template, i: &ExportedMechanism<'_>) {
         ("CHANGES", &changes),
         ("START", &start[0]),
         ("START_DECLARED", &start[1]),
-        ("OWN", &choose(i.takes_parameter_struct(), "self, ")),
-        ("OWN_DECLARED", &choose(i.takes_parameter_struct(), "const struct @PREFIX@ *self, ")),
+        ("OWN", &text_if(i.takes_parameter_struct(), "self, ")),
+        ("OWN_DECLARED", &text_if(i.takes_parameter_struct(), "const struct @PREFIX@ *self, ")),
         (
             "UNUSED",
-            &(choose(i.takes_parameter_struct(), "    (void)(self);\n").to_string()
-                + choose(time, "    (void)(t);\n")),
+            &(text_if(i.takes_parameter_struct(), "    (void)(self);\n").to_string()
+                + text_if(time, "    (void)(t);\n")),
         ),
-        ("T", &choose(time, "t, ")),
-        ("T_DECLARED", &choose(time, "double t, ")),
-        ("LATER", &choose(time, "t + s, ")),
-        ("H_DECLARED", &choose(!time, ", double *by_h")),
-        ("H_PASSED", &choose(!time, ", by_h")),
+        ("T", &text_if(time, "t, ")),
+        ("T_DECLARED", &text_if(time, "double t, ")),
+        ("LATER", &text_if(time, "t + s, ")),
+        ("H_DECLARED", &text_if(!time, ", double *by_h")),
+        ("H_PASSED", &text_if(!time, ", by_h")),
         ("PREFIX", &i.prefix),
         ("NQ", &i.nq().max(1)),
         ("NV", &n.max(1)),
@@ -107,13 +108,14 @@ fn add_values(template: &mut Template, i: &ExportedMechanism<'_>) {
 
 /// Returns the definitions of limits, and of functions of the configuration manifold, of steps and of frames.
 pub fn kinematic_definitions(i: &ExportedMechanism<'_>, is_late: bool) -> String {
-    let template = mechanism_template(i);
+    let template = mechanism_template_values(i);
     let mut text = limits_definition(i);
-    let joints = joint_signatures(i);
+    let joints = joint_manifold_signatures(i);
     let (functions, hidden) = if i.has_speeds() { (&joints, "static ") } else { (&i.functions, "") };
     for name in ["integrate", "difference", "tangent_rate"] {
-        let has_name = |f: &&ExportedSignature| f.name.strip_prefix("joints_").unwrap_or(&f.name) == name;
-        if let Some(f) = functions.iter().rev().find(has_name) {
+        let has_name_without_prefix =
+            |f: &&ExportedSignature| f.name.strip_prefix("joints_").unwrap_or(&f.name) == name;
+        if let Some(f) = functions.iter().rev().find(has_name_without_prefix) {
             let _ = writeln!(text, "{hidden}{}", definition(i, f, &chart_statements(i, name)));
         }
     }
@@ -175,7 +177,7 @@ fn limits_definition(i: &ExportedMechanism<'_>) -> String {
 
 /// Returns the functions of named frames. Links are traversed from the ground outwards, with one step per
 /// link.
-fn frame_definitions(i: &ExportedMechanism<'_>, mut template: Template, is_late: bool) -> String {
+fn frame_definitions(i: &ExportedMechanism<'_>, mut template: TemplateValues, is_late: bool) -> String {
     use Argument::{A, Q, V};
     let (links, frames) = (&i.output.links, &i.output.frames);
     let parent = |n| Argument::Given("p", SuppliedQuantity::Parent, n);
@@ -185,14 +187,14 @@ fn frame_definitions(i: &ExportedMechanism<'_>, mut template: Template, is_late:
         let arguments: Vec<Argument> = time.into_iter().chain(given.iter().copied()).collect();
         template.add_value(name, &recursion_step_definition(i, name, &arguments, &programs, is_late));
     };
-    let of_links = |program: fn(&crate::derive::LinkRecursionPrograms) -> &Program| {
+    let programs_of_links = |program: fn(&crate::derive::LinkRecursionPrograms) -> &Program| {
         links.iter().map(|link| Some(program(link))).collect::<Vec<_>>()
     };
-    add_step("link_placement", true, &[Q, parent(12)], of_links(|link| &link.placement));
-    add_step("link_twist", true, &[Q, V, parent(6)], of_links(|link| &link.twist));
-    add_step("link_acceleration", true, &[Q, V, A, parent(12)], of_links(|link| &link.acceleration));
+    add_step("link_placement", true, &[Q, parent(12)], programs_of_links(|link| &link.placement));
+    add_step("link_twist", true, &[Q, V, parent(6)], programs_of_links(|link| &link.twist));
+    add_step("link_acceleration", true, &[Q, V, A, parent(12)], programs_of_links(|link| &link.acceleration));
     let origin = Argument::Given("o", SuppliedQuantity::Origin, 3);
-    add_step("link_columns", true, &[Q, parent(12), origin], of_links(|link| &link.columns));
+    add_step("link_columns", true, &[Q, parent(12), origin], programs_of_links(|link| &link.columns));
     let is_copy = |frame: &crate::derive::FrameSteps| frame.is_link && frame.link.is_some();
     let placements = frames.iter().map(|frame| (!is_copy(frame)).then_some(&frame.placement)).collect();
     add_step("placement_on_link", false, &[parent(12)], placements);

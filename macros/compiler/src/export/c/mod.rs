@@ -18,5 +18,5 @@ pub(super) use header::{
     c_parameter_type_definitions, frame_index_constants, list_state_entries, size_macros,
 };
 pub(super) use kinematics::chart_statements;
-pub(super) use source::kernel_definitions;
+pub(super) use source::definitions_for_kernels;
 pub use source::{CSourceFiles, export_c_source};

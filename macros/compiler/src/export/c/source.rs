@@ -102,7 +102,7 @@ fn check_casadi(i: &ExportedMechanism<'_>, options: &Options) -> Result<(), Expo
 ///
 /// # Errors
 /// A program reads a value that does not exist.
-pub fn kernel_definitions(i: &ExportedMechanism<'_>) -> Result<String, ExportObstacle> {
+pub fn definitions_for_kernels(i: &ExportedMechanism<'_>) -> Result<String, ExportObstacle> {
     definitions(i, Arithmetic::Kernel)
 }
 

@@ -18,7 +18,7 @@ pub fn header_text(kernels: &Kernels<'_>) -> String {
 fn write_launch_function(text: &mut String, kernels: &Kernels<'_>, f: &ExportedSignature) {
     let p = &kernels.i.prefix;
     let upper = p.to_ascii_uppercase();
-    let _ = writeln!(text, "{}", kernels.kernel_condition(f));
+    let _ = writeln!(text, "{}", kernels.kernel_preprocessor_condition(f));
     text.push_str(&f.comment(&f.results));
     let mut declared = vec!["long long states".to_string()];
     let mut passed = vec!["states".to_string()];

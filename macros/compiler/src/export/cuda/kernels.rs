@@ -2,7 +2,7 @@
 
 use super::super::mechanism::ExportedMechanism;
 use super::super::signatures::{Array, ExportedSignature};
-use super::super::template::Template;
+use super::super::template::TemplateValues;
 use crate::catalogue::{Id, InverseForm};
 
 /// Products of row vectors with the Jacobians of inverse and forward dynamics.
@@ -62,18 +62,18 @@ impl<'a> JacobianProducts<'a> {
 
     /// Returns the definitions of the vector–Jacobian products.
     pub fn product_definitions(&self) -> String {
-        let choose = |holds: bool, text: &'static str| if holds { text } else { "" };
+        let text_if = |holds: bool, text: &'static str| if holds { text } else { "" };
         let inverse = match self.explicit_inverse {
             true => include_str!("templates/product_with_inverse.cu"),
             false => include_str!("templates/product_with_stored_inverse.cu"),
         };
         let (takes_parameter_struct, time) = (self.i.takes_parameter_struct(), self.i.model.time);
-        let mut template = Template::default();
+        let mut template = TemplateValues::default();
         template.add_value("INVERSE", &inverse);
-        template.add_value("OWN_DECLARED", &choose(takes_parameter_struct, "const @PREFIX@ *self, "));
-        template.add_value("OWN", &choose(takes_parameter_struct, "self, "));
-        template.add_value("T_DECLARED", &choose(time, "double t, "));
-        template.add_value("T", &choose(time, "t, "));
+        template.add_value("OWN_DECLARED", &text_if(takes_parameter_struct, "const @PREFIX@ *self, "));
+        template.add_value("OWN", &text_if(takes_parameter_struct, "self, "));
+        template.add_value("T_DECLARED", &text_if(time, "double t, "));
+        template.add_value("T", &text_if(time, "t, "));
         template.add_value("PREFIX", &self.i.prefix);
         template.add_value("NV", &self.i.nv());
         let texts = [

@@ -57,7 +57,7 @@ pub fn export_cuda_kernels(
     let kernels = Kernels { i: &i, functions, scalar };
     let convert_to_requested_precision =
         |text: String| if options.single { in_single_precision(&text) } else { text };
-    let definitions = c::kernel_definitions(&i)? + &products.product_definitions();
+    let definitions = c::definitions_for_kernels(&i)? + &products.product_definitions();
     Ok(KernelFiles {
         prefix: i.prefix.clone(),
         kernels: kernels.kernel_source(&definitions, &convert_to_requested_precision),
@@ -98,7 +98,7 @@ impl Kernels<'_> {
 
     /// Returns the condition of the preprocessor for a kernel: the macro `PREFIX_SELECTED` restricts the file
     /// to kernels whose own macro is defined.
-    fn kernel_condition(&self, f: &ExportedSignature) -> String {
+    fn kernel_preprocessor_condition(&self, f: &ExportedSignature) -> String {
         let upper = self.i.prefix.to_ascii_uppercase();
         format!("#if !defined({upper}_SELECTED) || defined({upper}_KERNEL_{})", f.name)
     }
@@ -135,7 +135,7 @@ impl Kernels<'_> {
         format!(
             "{}\nLW_KERNEL {p}_{}_kernel({}) {{\n    const long long i = LW_STATE;\n    if (i >= states) \
              {{\n        return;\n    }}\n{body}}}\n#endif\n\n",
-            self.kernel_condition(f),
+            self.kernel_preprocessor_condition(f),
             f.name,
             self.kernel_arguments(f).join(", "),
         )

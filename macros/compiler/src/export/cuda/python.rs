@@ -1,6 +1,6 @@
 //! Python module that compiles and launches the CUDA kernels.
 
-use super::super::signatures::array_list;
+use super::super::signatures::python_array_list;
 use super::Kernels;
 use std::fmt::Write;
 
@@ -17,8 +17,8 @@ pub fn python_module(kernels: &Kernels<'_>) -> String {
             all,
             "    {:?}: ({frame}, {}, {}),",
             f.name,
-            array_list(&f.arguments),
-            array_list(&f.results)
+            python_array_list(&f.arguments),
+            python_array_list(&f.results)
         );
     }
     include_str!("templates/cuda.py")

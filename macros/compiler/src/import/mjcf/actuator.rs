@@ -66,7 +66,7 @@ impl<'a> MjcfReader<'a> {
         for node in nodes {
             // Attributes common to all actuators may come from the defaults of any actuator type.
             let any = self.defaults.element_with_defaults(node, &ALL, 0, cx);
-            self.add_rotor_losses(&any, tendons, cx);
+            self.add_rotor_inertia_and_damping(&any, tendons, cx);
             let group = any.read_finite_attribute("group", cx).map_or(0.0, |group| group.value);
             let disabled = self.settings.disabled_groups.contains(&group);
             if disabled && !off {
@@ -255,7 +255,7 @@ impl<'a> MjcfReader<'a> {
 
     /// Adds the rotor inertia and the viscous damping of an actuator. They act on the joint or tendon even if
     /// the actuator is not used.
-    fn add_rotor_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+    fn add_rotor_inertia_and_damping(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let gear =
             element.numbers_with_defaults("gear", [1.0; 6], cx).map_or(1.0, |gear| gear.value[0].abs());
         let damping =

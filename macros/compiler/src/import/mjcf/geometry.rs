@@ -193,7 +193,7 @@ fn mass_properties_of_shape<'a>(
         return report_unsupported_shape(shape, "a shape that is fitted to a mesh", cx);
     }
     let (pose, size) = shape_pose_and_dimensions(kind, shape, settings, cx)?;
-    let (volume, moments) = solid_properties(kind, size);
+    let (volume, moments) = solid_volume_and_moments(kind, size);
     let mass = said.unwrap_or(density * volume);
     let inertia = diagonal_matrix(vector_times_scalar(moments, mass));
     Some(BodyMass { mass, com: [0.0; 3], inertia }.mass_properties_in_outer_frame(&pose))
@@ -276,7 +276,7 @@ pub(super) fn pose_and_half_length(
 }
 
 /// Returns the volume and the moments of inertia per unit mass of a solid with these half lengths.
-fn solid_properties(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
+fn solid_volume_and_moments(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
     let axisymmetric_moments = |xx: f64, zz: f64| [xx, xx, zz];
     match kind {
         "sphere" => (4.0 / 3.0 * PI * x * x * x, [0.4 * x * x; 3]),

@@ -26,7 +26,10 @@ impl MjcfReader<'_> {
             let pose = if joint.kind == JointKind::Free {
                 self.poses.get(&joint.child.text).copied().unwrap_or(FilePose::ZERO)
             } else {
-                parent.compose_with(&pose_of_origin(&joint.origin)).compose_with(&motion).compose_with(&back)
+                parent
+                    .compose_with(&pose_from_file_origin(&joint.origin))
+                    .compose_with(&motion)
+                    .compose_with(&back)
             };
             poses.insert(joint.child.text.clone(), pose);
         }
@@ -34,7 +37,7 @@ impl MjcfReader<'_> {
     }
 }
 
-fn pose_of_origin(origin: &FileOrigin) -> FilePose {
+fn pose_from_file_origin(origin: &FileOrigin) -> FilePose {
     let [roll, pitch, yaw] = origin.rpy.value;
     let rotation_about_axis = |axis, angle| axis_rotation(axis, angle);
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);

@@ -30,7 +30,7 @@ pub(super) struct BodyFrame {
 
 /// Path of a tendon around a surface.
 #[derive(Clone, Copy, PartialEq)]
-enum TendonPathAroundSurface {
+enum WrappingKind {
     /// Shortest path of a tendon around a sphere.
     Ball,
     /// Shortest path of a tendon around a cylinder.
@@ -44,7 +44,7 @@ enum TendonPathAroundSurface {
 struct WrappedSurface {
     frame: BodyFrame,
     radius: f64,
-    way: TendonPathAroundSurface,
+    way: WrappingKind,
 }
 
 /// Segment of a tendon path between two sites.
@@ -176,11 +176,7 @@ impl<'a> MjcfReader<'a> {
         let Some(side) =
             node.has_attribute("sidesite").then(|| read_name_attribute(node, "sidesite", cx)).flatten()
         else {
-            let way = if kind == "sphere" {
-                TendonPathAroundSurface::Ball
-            } else {
-                TendonPathAroundSurface::Shorter
-            };
+            let way = if kind == "sphere" { WrappingKind::Ball } else { WrappingKind::Shorter };
             return Some(Ok(WrappedSurface { frame, radius, way }));
         };
         let spot = self.find_site(&side, cx)?;
@@ -200,7 +196,7 @@ impl<'a> MjcfReader<'a> {
             ));
         }
         // Polar angle of the side, until the ends of the segment are known.
-        Some(Ok(WrappedSurface { frame, radius, way: TendonPathAroundSurface::Turning(libm::atan2(y, x)) }))
+        Some(Ok(WrappedSurface { frame, radius, way: WrappingKind::Turning(libm::atan2(y, x)) }))
     }
 
     /// Returns the position of a spot relative to a frame, in the configuration of the file.
@@ -211,8 +207,7 @@ impl<'a> MjcfReader<'a> {
     /// Determines the direction in which a segment passes a cylinder with a `sidesite`: the direction of
     /// rotation of the path through that site.
     fn choose_wrapping_side(&self, piece: &mut PathSegment, place: &Place) -> Option<ErrorTextWithHelp> {
-        let Some(WrappedSurface { frame, radius, way: TendonPathAroundSurface::Turning(side) }) =
-            &mut piece.around
+        let Some(WrappedSurface { frame, radius, way: WrappingKind::Turning(side) }) = &mut piece.around
         else {
             return None;
         };
@@ -285,10 +280,10 @@ impl Path {
     }
 
     /// Returns the expression of the length of a tendon path.
-    pub(super) fn path_length(&self) -> Expr {
+    pub(super) fn path_length_expression(&self) -> Expr {
         let at = &self.place;
         let sum = self.pieces.iter().map(|piece| {
-            let whole = piece.length_of_path_segment(at);
+            let whole = piece.segment_length_expression(at);
             let share_factor_expression = || Expr::number_at(piece.share, at);
             if piece.share == 1.0 {
                 whole
@@ -310,7 +305,7 @@ impl PathSegment {
         }
     }
 
-    fn length_of_path_segment(&self, at: &Place) -> Expr {
+    fn segment_length_expression(&self, at: &Place) -> Expr {
         let [a, b] = [&self.ends[0], &self.ends[1]].map(|end| end.position_expression_of_spot(at));
         let vector_between_ends = || Expr::binary_operation(BinaryOp::Div, a.clone(), b.clone());
         let Some(around) = &self.around else {
@@ -328,9 +323,9 @@ impl PathSegment {
         let axis_vector =
             |sign: f64| Expr::vector_at(matrix_times_vector(&around.frame.pose.axes, [0.0, 0.0, sign]), at);
         match around.way {
-            TendonPathAroundSurface::Ball => cable_call("sphere", Vec::new()),
-            TendonPathAroundSurface::Turning(sign) => cable_call("cylinder", vec![axis_vector(sign)]),
-            TendonPathAroundSurface::Shorter => Expr::function_call_expression(
+            WrappingKind::Ball => cable_call("sphere", Vec::new()),
+            WrappingKind::Turning(sign) => cable_call("cylinder", vec![axis_vector(sign)]),
+            WrappingKind::Shorter => Expr::function_call_expression(
                 "min",
                 [1.0, -1.0].map(|sign| cable_call("cylinder", vec![axis_vector(sign)])).into(),
                 at,
@@ -350,17 +345,15 @@ impl WrappedSurface {
             let straight = length(add(a, vector_times_scalar(b, -1.0)));
             if touched > 0.0 { tangents[0] + tangents[1] + self.radius * touched } else { straight }
         };
-        let length_of_turn = |sign: f64| {
+        let length_by_turning_direction = |sign: f64| {
             let angle =
                 libm::atan2(-sign * cross(a, b)[2], -dot(planar_components(a), planar_components(b))) + PI;
             libm::hypot(wrapped_path_length(planar_components(a), planar_components(b), angle), a[2] - b[2])
         };
         match self.way {
-            TendonPathAroundSurface::Ball => {
-                wrapped_path_length(a, b, libm::atan2(length(cross(a, b)), dot(a, b)))
-            }
-            TendonPathAroundSurface::Turning(sign) => length_of_turn(sign),
-            TendonPathAroundSurface::Shorter => length_of_turn(1.0).min(length_of_turn(-1.0)),
+            WrappingKind::Ball => wrapped_path_length(a, b, libm::atan2(length(cross(a, b)), dot(a, b))),
+            WrappingKind::Turning(sign) => length_by_turning_direction(sign),
+            WrappingKind::Shorter => length_by_turning_direction(1.0).min(length_by_turning_direction(-1.0)),
         }
     }
 }

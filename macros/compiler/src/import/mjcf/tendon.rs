@@ -103,7 +103,7 @@ impl<'a> MjcfReader<'a> {
         } else {
             let path = self.read_path(node, cx)?;
             let rest = path.as_ref().map_or(0.0, |path| path.length(&self.poses_with_relaxed_springs()));
-            (path.map(|path| DriveTarget::Length(path.path_length())), rest)
+            (path.map(|path| DriveTarget::Length(path.path_length_expression())), rest)
         };
         for (limited, range, what) in
             [("limited", "range", "limits"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]

@@ -40,12 +40,12 @@ const RELATIVE_TO: (u32, u32) = (1, 7);
 
 /// Reads `<pose relative_to="…">` of an element, or `<pose frame="…">` in old versions. Without either
 /// attribute, the pose is relative to `base`.
-pub(super) fn read_pose_element(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> SdfFrame {
-    let named_base_frame = |at: Place| Name { text: base.to_string(), place: at };
+pub(super) fn read_relative_pose(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> SdfFrame {
+    let base_frame_name = |at: Place| Name { text: base.to_string(), place: at };
     let mut poses = child_elements(node).filter(|child| child.tag_name().name() == "pose");
     let Some(found) = poses.next() else {
         return SdfFrame {
-            base: named_base_frame(element_source_position(node, cx)),
+            base: base_frame_name(element_source_position(node, cx)),
             pose: FilePose::ZERO,
             attached: None,
         };
@@ -60,7 +60,7 @@ pub(super) fn read_pose_element(node: Node<'_>, scope: &Scope, base: &str, cx: &
             let text = name_of_own_frame(found, name, scope).unwrap_or_else(|| scope.full_name(name));
             Name { text, place: cx.source_position(said.range_value().start) }
         }
-        None => named_base_frame(element_source_position(found, cx)),
+        None => base_frame_name(element_source_position(found, cx)),
     };
     let is_empty = nonblank_known_contents(found).next().is_none();
     let pose = if is_empty { FilePose::ZERO } else { read_pose(found, cx).unwrap_or(FilePose::ZERO) };
@@ -111,12 +111,12 @@ pub(super) fn pose_in_link(
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Option<FilePose> {
-    let frame = read_pose_element(node, scope, &link.text, cx);
+    let frame = read_relative_pose(node, scope, &link.text, cx);
     Some(
         frames
-            .resolve_pose(link, cx)?
+            .resolve_world_pose(link, cx)?
             .inverse_pose()
-            .compose_with(&frames.resolve_pose(&frame.base, cx)?.compose_with(&frame.pose)),
+            .compose_with(&frames.resolve_world_pose(&frame.base, cx)?.compose_with(&frame.pose)),
     )
 }
 
@@ -191,7 +191,7 @@ impl Frames {
     }
 
     /// Returns the pose of a frame relative to the world. Reports unknown names and cycles.
-    pub(super) fn resolve_pose(&self, name: &Name, cx: &mut Cx<'_>) -> Option<FilePose> {
+    pub(super) fn resolve_world_pose(&self, name: &Name, cx: &mut Cx<'_>) -> Option<FilePose> {
         let mut pose = FilePose::ZERO;
         let mut at = name.clone();
         for _ in 0..MAX_DEPTH {

@@ -113,7 +113,7 @@ fn expansion_steps(
     // Declarations of undeclared prefixes shift the bytes of the text, so pieces of it cannot be copied.
     if declared.get().is_some() {
         return match include {
-            None => copy_step_for_undeclared_prefixes(&document, file, read, cx),
+            None => copy_step_of_whole_file(&document, file, read, cx),
             Some(_) => {
                 report_undeclared_prefixes(document.root_element(), cx);
                 None
@@ -163,7 +163,7 @@ fn expansion_steps(
 }
 
 /// Returns the single copy step of a file with undeclared prefixes. Reports an `<include>` in it.
-fn copy_step_for_undeclared_prefixes(
+fn copy_step_of_whole_file(
     document: &roxmltree::Document<'_>,
     file: usize,
     read: &LoadedRobotFile,
@@ -259,14 +259,14 @@ fn read_include(
     let (mut own_name, mut pose, mut plugins) = (None, None, Vec::new());
     let mut seen: BTreeMap<&str, Node<'_>> = BTreeMap::new();
     for child in child_elements(node) {
-        let text_of_child = || nonblank_known_contents(child).find(Node::is_text).map(trimmed_range);
+        let text_range_of_child = || nonblank_known_contents(child).find(Node::is_text).map(trimmed_range);
         let kind = child.tag_name().name();
         if let Some(first) = seen.insert(kind, child).filter(|_| kind != "plugin") {
             report_duplicate(child, Some(first), cx);
         }
         match kind {
             "uri" => uri = read_trimmed_content(child, cx),
-            "name" => own_name = text_of_child(),
+            "name" => own_name = text_range_of_child(),
             "pose" => pose = Some(child.range()),
             "plugin" => plugins.push(child.range()),
             "static"

@@ -91,10 +91,10 @@ pub(super) fn read_joint(
         frame_name_at_joint_end(node, "child", scope, cx)?,
     );
     let (word, kind, axes) = read_joint_type(node, cx)?;
-    let at = frames.resolve_pose(joint, cx)?;
+    let at = frames.resolve_world_pose(joint, cx)?;
     // The ends of a joint may be frames that are attached to links.
     let (parent, child) = (frames.link_of_frame(&parent, cx)?, frames.link_of_frame(&child, cx)?);
-    let (outer, inner) = (frames.resolve_pose(&parent, cx)?, frames.resolve_pose(&child, cx)?);
+    let (outer, inner) = (frames.resolve_world_pose(&parent, cx)?, frames.resolve_world_pose(&child, cx)?);
     let anchor = inner.inverse_pose().compose_with(&at).at;
     let base = outer.inverse_pose().compose_with(&FilePose { at: at.at, axes: inner.axes });
     let number = axes.max(1);
@@ -235,9 +235,12 @@ impl AxisSource<'_> {
             .for_each(|node| check_attributes_of_value_element(node, &[], cx));
         misplaced::report_misplaced_contents(axis, &parts, AXIS_HELP, cx);
         let of_model =
-            Name { text: scope.full_name_of_scope_frame(), place: element_source_position(axis, cx) };
-        let usual =
-            if is_expressed_in_model_axes(axis, old, cx) { frames.resolve_pose(&of_model, cx)? } else { *at };
+            Name { text: scope.full_name_of_own_frame(), place: element_source_position(axis, cx) };
+        let usual = if is_expressed_in_model_axes(axis, old, cx) {
+            frames.resolve_world_pose(&of_model, cx)?
+        } else {
+            *at
+        };
         joint.axis = read_axis(xyz, axis, (&usual, inner), scope, frames, cx)?;
         if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
             read_dynamics(dynamics, &mut joint, robot, cx);
@@ -294,7 +297,8 @@ fn read_axis(
     let axes = match said.filter(|said| !said.value().trim().is_empty()) {
         Some(said) => {
             let text = scope.full_name(said.value().trim());
-            frames.resolve_pose(&Name { text, place: cx.source_position(said.range_value().start) }, cx)?
+            frames
+                .resolve_world_pose(&Name { text, place: cx.source_position(said.range_value().start) }, cx)?
         }
         None => *usual,
     };

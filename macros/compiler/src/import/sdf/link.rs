@@ -36,7 +36,7 @@ pub(super) fn read_link(
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
     check_attributes(node, &["name"], &[], cx);
-    frames.resolve_pose(name, cx)?;
+    frames.resolve_world_pose(name, cx)?;
     let mut body = massless_link(name.clone());
     report_unsupported_link_settings(node, options, cx);
     child_elements(node).for_each(|child| check_element_name(child, &LINK, cx));

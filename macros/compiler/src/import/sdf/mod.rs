@@ -15,7 +15,7 @@ use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot, origin_from_pose};
 use crate::import::whole::import_composed_text;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
-use frames::{Frames, SdfFrame, frame_elements_inside, name_in_owner, read_pose_element};
+use frames::{Frames, SdfFrame, frame_elements_inside, name_in_owner, read_relative_pose};
 use scope::{Scope, WORLD, WorldNames};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -166,7 +166,7 @@ fn read_root_element<'a>(
     let root = robot.links.get(order.root)?.name.clone();
     // If the root is a frame of the file, its pose relative to the world is known.
     if reader.frames.known.contains_key(&root.text) {
-        robot.root = Some(origin_from_pose(&reader.frames.resolve_pose(&root, cx)?, &root.place));
+        robot.root = Some(origin_from_pose(&reader.frames.resolve_world_pose(&root, cx)?, &root.place));
     }
     robot.gravity = gravity_of_world(top.world.or_else(|| first_child(root_node, "world")), cx);
     robot.left_out.extend(ignored_contents(root_node, options));
@@ -315,7 +315,7 @@ impl<'a> CollectedSdfElements<'a> {
         }
         for child in top.world.into_iter().flat_map(child_elements) {
             match child.tag_name().name() {
-                kind @ ("joint" | "frame") => self.read_model_element(child, kind, &world, false, cx),
+                kind @ ("joint" | "frame") => self.collect_element_of_model(child, kind, &world, false, cx),
                 _ => check_element_name(child, &WORLD_PARTS, cx),
             }
         }
@@ -344,8 +344,8 @@ impl<'a> CollectedSdfElements<'a> {
                     d.add_help("give the model a `<pose>`")
                 });
             }
-            let own = scope.full_name_of_scope_frame();
-            let mut frame = read_pose_element(node, &outer, &outer.full_name_of_scope_frame(), cx);
+            let own = scope.full_name_of_own_frame();
+            let mut frame = read_relative_pose(node, &outer, &outer.full_name_of_own_frame(), cx);
             frame.attached = match is_fixed {
                 true => Some(Name { text: WORLD.to_string(), place: element_source_position(node, cx) }),
                 false => canonical_link(node, &scope, cx),
@@ -360,7 +360,7 @@ impl<'a> CollectedSdfElements<'a> {
             for child in child_elements(node) {
                 match child.tag_name().name() {
                     kind @ ("link" | "joint" | "frame") => {
-                        self.read_model_element(child, kind, &scope, is_fixed, cx)
+                        self.collect_element_of_model(child, kind, &scope, is_fixed, cx)
                     }
                     "model" => {
                         if let Some(inner) = read_name_attribute(child, "name", cx) {
@@ -394,7 +394,7 @@ impl<'a> CollectedSdfElements<'a> {
     }
 
     /// Collects a link, a joint or a frame. Each of them defines a frame.
-    fn read_model_element(
+    fn collect_element_of_model(
         &mut self,
         node: Node<'a>,
         kind: &str,
@@ -410,14 +410,14 @@ impl<'a> CollectedSdfElements<'a> {
         let base = match kind {
             // The pose of a joint is relative to its child by default.
             "joint" => joint::frame_name_at_joint_end(node, "child", scope, cx)
-                .map_or(scope.full_name_of_scope_frame(), |child| child.text),
+                .map_or(scope.full_name_of_own_frame(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
                 Some(to) => scope.full_name(to),
-                None => scope.full_name_of_scope_frame(),
+                None => scope.full_name_of_own_frame(),
             },
-            _ => scope.full_name_of_scope_frame(),
+            _ => scope.full_name_of_own_frame(),
         };
-        let mut frame = read_pose_element(node, scope, &base, cx);
+        let mut frame = read_relative_pose(node, scope, &base, cx);
         let at = element_source_position(node, cx);
         let name_with_element_span = |text: &str| Name { text: text.to_string(), place: at.clone() };
         frame.attached = match kind {
@@ -425,7 +425,7 @@ impl<'a> CollectedSdfElements<'a> {
             _ => Some(name_with_element_span(&base)),
         };
         for own in frame_elements_inside(node) {
-            let mut frame = read_pose_element(own, scope, &part.text, cx);
+            let mut frame = read_relative_pose(own, scope, &part.text, cx);
             frame.attached = Some(name_with_element_span(&part.text));
             self.frames
                 .known
@@ -456,7 +456,8 @@ impl<'a> CollectedSdfElements<'a> {
             if carrier.text == WORLD && !hangs_from_world {
                 continue;
             }
-            let (at, base) = (self.frames.resolve_pose(mark, cx)?, self.frames.resolve_pose(&carrier, cx)?);
+            let (at, base) =
+                (self.frames.resolve_world_pose(mark, cx)?, self.frames.resolve_world_pose(&carrier, cx)?);
             let text = robot::unused_name(&format!("{}_weld", mark.text), |name| names.contains(name));
             names.insert(text.clone());
             let name = Name { text, place: mark.place.clone() };

@@ -78,7 +78,7 @@ impl Scope {
     }
 
     /// Returns the full name of the frame of the model, or of the world.
-    pub(super) fn full_name_of_scope_frame(&self) -> String {
+    pub(super) fn full_name_of_own_frame(&self) -> String {
         match self {
             Scope::Model(prefix) => full_model_frame_name(prefix),
             Scope::WorldNames(_) => WORLD.to_string(),

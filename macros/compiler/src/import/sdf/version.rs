@@ -30,13 +30,13 @@ pub(super) fn report_unsupported_sdf_version(root: Node<'_>, cx: &mut Cx<'_>) {
             let message = format!("{} is not a version of SDF", quote_word(version.value()));
             cx.report_error(&at, message, |d| d.add_help("expected a number, as in `version=\"1.9\"`"));
         }
-        Some(found) if found < FIRST => report_first_version(root, cx),
+        Some(found) if found < FIRST => report_version_one(root, cx),
         Some(_) => {}
     }
 }
 
 /// Reports an SDF file of version 1.0, whose elements have other names.
-pub(super) fn report_first_version(root: Node<'_>, cx: &mut Cx<'_>) {
+pub(super) fn report_version_one(root: Node<'_>, cx: &mut Cx<'_>) {
     cx.report_error(&element_source_position(root, cx), "version 1.0 of SDF is not supported", |d| {
         d.add_help("convert the file: `gz sdf -p robot.sdf > converted.sdf`")
     });

@@ -6,7 +6,7 @@ use crate::import::{FileOptions, read_imported_file};
 use std::fs;
 
 /// Returns the text of a file in a folder, or the errors without the name of the folder.
-fn import_test_file(folder: &Folder, file: &str) -> String {
+fn read_file_or_errors(folder: &Folder, file: &str) -> String {
     let mut cx = Diagnostics::new();
     let options = FileOptions { path: name_at_call_site(file), ..default_file_options() };
     let text = read_imported_file(&folder.0.join(file), &options, &mut cx);
@@ -17,18 +17,18 @@ fn import_test_file(folder: &Folder, file: &str) -> String {
 #[test]
 fn robot_file_is_read_from_its_path() {
     let folder = Folder::new("read", &[("urdf/r.urdf", "<robot/>")]);
-    assert_eq!(import_test_file(&folder, "urdf/r.urdf"), "<robot/>");
+    assert_eq!(read_file_or_errors(&folder, "urdf/r.urdf"), "<robot/>");
 }
 
 #[test]
 fn missing_file_error_lists_similar_files() {
     let folder = Folder::new("missing", &[("urdf/readme.txt", "")]);
-    let found = import_test_file(&folder, "urdf/pandas.urdf");
+    let found = read_file_or_errors(&folder, "urdf/pandas.urdf");
     assert_eq!(found, "there is no file `urdf/pandas.urdf`\n\n= help: looked for `…urdf/pandas.urdf`");
     folder.write_file("urdf/panda.urdf", b"");
-    let found = import_test_file(&folder, "urdf/pandas.urdf");
+    let found = read_file_or_errors(&folder, "urdf/pandas.urdf");
     assert_eq!(found, "there is no file `urdf/pandas.urdf`\n\n= help: did you mean `urdf/panda.urdf`?");
-    let found = import_test_file(&folder, "robots/panda.urdf");
+    let found = read_file_or_errors(&folder, "robots/panda.urdf");
     assert_eq!(
         found,
         "there is no file `robots/panda.urdf`\n\n= help: there is no directory `…robots` either"
@@ -38,18 +38,21 @@ fn missing_file_error_lists_similar_files() {
 #[test]
 fn binary_files_are_rejected() {
     let folder = Folder::new("refused", &[("urdf/r.urdf", "")]);
-    assert_eq!(import_test_file(&folder, "urdf"), "`urdf` is a directory, expected a URDF file");
+    assert_eq!(read_file_or_errors(&folder, "urdf"), "`urdf` is a directory, expected a URDF file");
     folder.write_file("r.urdf", b"<robot>\n\xff</robot>");
     assert_eq!(
-        import_test_file(&folder, "r.urdf"),
+        read_file_or_errors(&folder, "r.urdf"),
         "`r.urdf` is not UTF-8 text: line 2\n\n= help: save the file in UTF-8"
     );
     let file = fs::File::create(folder.0.join("large.urdf")).expect("a temporary file");
     file.set_len(40 << 20).expect("a sparse file");
-    assert_eq!(import_test_file(&folder, "large.urdf"), "`large.urdf` has 40 MiB, expected at most 16 MiB");
+    assert_eq!(
+        read_file_or_errors(&folder, "large.urdf"),
+        "`large.urdf` has 40 MiB, expected at most 16 MiB"
+    );
     #[cfg(unix)]
     {
-        let found = import_test_file(&folder, "r.urdf/x.urdf");
+        let found = read_file_or_errors(&folder, "r.urdf/x.urdf");
         assert!(found.starts_with("there is no file `r.urdf/x.urdf`"), "{found}");
         let options = FileOptions { path: name_at_call_site("null"), ..default_file_options() };
         let mut cx = Diagnostics::new();

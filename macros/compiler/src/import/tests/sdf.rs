@@ -244,7 +244,7 @@ fn included_sdf_models_replace_the_include_element() {
     let joints = "<link name='hull'/><joint name='i' type='revolute'><parent>hull</parent>\
                   <child>left::rim</child><axis/></joint><joint name='j' type='revolute'>\
                   <parent>hull</parent><child>wheel::rim</child><axis/></joint>";
-    let nested_model = |name: &str, pose: &str| {
+    let inner_model = |name: &str, pose: &str| {
         format!("<model name='{name}'>{pose}<link name='rim'><pose>0 0 1 0 0 0</pose></link></model>")
     };
     let (near, far) = ("<pose>1 0 0 0 0 0</pose>", "<pose>9 9 9 0 0 0</pose>");
@@ -252,7 +252,7 @@ fn included_sdf_models_replace_the_include_element() {
         "{joints}<include><name> left \
          </name>{near}<uri>model://parts</uri></include><include><uri>wheel.sdf</uri></include>"
     );
-    let whole = format!("{joints}{}{}", nested_model("left", near), nested_model("wheel", far));
+    let whole = format!("{joints}{}{}", inner_model("left", near), inner_model("wheel", far));
     let answer = folder.import_as_text(&sdf_options(), &wrap_in_model(&included));
     let expected =
         folder.import_as_text(&sdf_options(), &wrap_in_model(&whole)).replace("0 files", "2 files");

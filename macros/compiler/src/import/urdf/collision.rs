@@ -32,7 +32,7 @@ fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<File
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
         (Some(sphere), ..) => {
             check_attributes(sphere, &["radius"], &[], cx);
-            Shape::Sphere(length(sphere, "radius", cx)?)
+            Shape::Sphere(read_positive_length(sphere, "radius", cx)?)
         }
         (_, Some(cuboid), ..) => {
             check_attributes(cuboid, &["size"], &[], cx);
@@ -44,7 +44,8 @@ fn read_collision(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<File
         }
         (_, _, Some(round), ..) | (_, _, _, Some(round), _) => {
             check_attributes(round, &["radius", "length"], &[], cx);
-            let (radius, length) = (length(round, "radius", cx), length(round, "length", cx));
+            let (radius, length) =
+                (read_positive_length(round, "radius", cx), read_positive_length(round, "length", cx));
             if cylinder.is_some() {
                 Shape::Cylinder(radius?, length?)
             } else {
@@ -84,7 +85,7 @@ fn report_additional_shapes(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
     }
 }
 
-fn length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {
+fn read_positive_length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {
     let read = read_number_attribute(node, attribute, cx)?;
     require_positive_length(read.value, &read.place, cx)
 }

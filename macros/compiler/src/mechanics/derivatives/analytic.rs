@@ -20,7 +20,7 @@ use super::subtree::{Subtree, subtree_sums};
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, time_derivative, twists, velocity_gradient};
 use crate::mechanism::Model;
-use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, PropagationVisitor};
+use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, RootPropagationVisitor};
 
 /// Returns the derivatives of `M a + h` without springs, dashpots and other loads, in up to `most` lanes; one
 /// lane gives scalar code.
@@ -103,7 +103,7 @@ struct ForceDerivativeVisitor<'a, 'g> {
     out: ForceDerivatives<'g>,
 }
 
-impl<'g> PropagationVisitor<'g> for ForceDerivativeVisitor<'_, 'g> {
+impl<'g> RootPropagationVisitor<'g> for ForceDerivativeVisitor<'_, 'g> {
     type Item = DofContribution<'g>;
 
     fn start(&mut self, dof: usize) -> DofContribution<'g> {
@@ -152,7 +152,7 @@ impl<'g> DofContribution<'g> {
             by_q: momentum(&sum.inertia, &column.second).plus(&sum.map(&column.first)),
             by_v: sum.map(&column.subspace).plus(&momentum(&sum.inertia, &column.rate)),
             momentum: momentum(&sum.inertia, &column.subspace),
-            moment: sum.transposed_map(&column.subspace),
+            moment: sum.transposed_velocity_map(&column.subspace),
         }
     }
 

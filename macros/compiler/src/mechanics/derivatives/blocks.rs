@@ -1,6 +1,6 @@
 //! Quantities from which loops of the runtime (`runtime/src/chains.rs`) compute the derivatives of inverse
-//! dynamics. They are in the axes of the root and about its origin, so that the loops add up quantities of
-//! several links without transforming them.
+//! dynamics. They are in the axes of the root and about its origin, so that the loops add up
+//! quantities of several links without transforming them.
 
 use super::ForceDerivatives;
 use super::symbolic;
@@ -27,8 +27,8 @@ pub struct LinkBlocks<'g> {
 }
 
 /// Returns the blocks of a mechanism at the accelerations `a`; `None` if the loops do not support it: a joint
-/// has several degrees of freedom and is not that of a free root link, or velocities are shared by joints or
-/// not in the order of the links.
+/// has several degrees of freedom and is not that of a free root link, or velocities are shared by
+/// joints or not in the order of the links.
 pub fn link_blocks<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -121,15 +121,15 @@ struct RootPlacement<'g> {
 
 /// Returns the placements of all links relative to a free root link, otherwise to the ground.
 fn placements_from_root<'g>(model: &Model<'g>, joints: &[Joint<'g>], free: bool) -> Vec<RootPlacement<'g>> {
-    let root = || RootPlacement {
+    let root_placement = || RootPlacement {
         rows: [0, 1, 2].map(|k| Vec3::coordinate_axis(model.graph, k)),
         position: Vec3::zero(model.graph),
     };
-    let ground = root();
+    let ground = root_placement();
     let mut all: Vec<RootPlacement<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let placed = match joint.parent {
-            None if free => root(),
+            None if free => root_placement(),
             parent => {
                 let above = parent.map_or(&ground, |p| &all[p.0]);
                 RootPlacement {

@@ -28,7 +28,7 @@ impl<'g> FrameMotion<'g> {
     }
 
     /// Returns `U = [ẇ]× + [w]×[w]×`: a point at `r` has the acceleration `a + U r`.
-    pub fn acceleration_matrix(&self) -> Mat3<'g> {
+    pub fn angular_acceleration_tensor(&self) -> Mat3<'g> {
         let ([x, y, z], dw) = (self.w.0, self.dw);
         let (xx, yy, zz) = (x * x, y * y, z * z);
         let (yz, zx, xy) = (y * z, z * x, x * y);
@@ -69,7 +69,7 @@ pub fn link_motions<'g>(
             v: turn.to_child(above.v + above.w.cross(p)),
             w: turn.to_child(above.w),
             dw: turn.to_child(above.dw),
-            a: turn.to_child(above.a + above.acceleration_matrix() * p),
+            a: turn.to_child(above.a + above.angular_acceleration_tensor() * p),
         };
         let (rate, change) = (joint.twist_with_prescribed_motion(model, v), joint.relative_twist(model, a));
         let w = parent.w;
@@ -123,7 +123,8 @@ pub fn derivative_columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec
     let (above, single) = (&motion.parent, joint.dofs.len() == 1);
     // The rotation about an axis changes neither the product of U with the axis nor V × S if S is the only
     // degree of freedom.
-    let u = if single { motion.own.acceleration_matrix() } else { above.acceleration_matrix() };
+    let u =
+        if single { motion.own.angular_acceleration_tensor() } else { above.angular_acceleration_tensor() };
     let derivative_column = |dof: &Dof<'g>| {
         let s = &dof.subspace;
         let first = cross(&above.twist(), s);

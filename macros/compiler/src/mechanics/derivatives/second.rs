@@ -32,7 +32,7 @@ use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Chart, Inertia, Model, Quantity, SuppliedQuantity};
-use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, PropagationVisitor};
+use crate::vectorise::{LaneGroup, PathsToRoot, PropagatedQuantity, RootPropagationVisitor};
 
 /// Second derivatives of a function of configuration, velocity and acceleration. The function is linear in
 /// the acceleration, without mixed derivatives with respect to velocity and acceleration.
@@ -68,21 +68,21 @@ pub fn hessian_by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
         .map(|(joint, motion)| {
             let ground = Spatial::zero(model);
             let above = joint.parent.map_or(ground, |p| joint.twist_to_child(&virtual_twists[p.0]));
-            let directions_of_column = |column: DofMotionChanges<'g>| ColumnWithTwistChange {
+            let column_with_twist_change = |column: DofMotionChanges<'g>| ColumnWithTwistChange {
                 factor: cross(&above, &column.subspace),
                 column,
             };
-            derivative_columns(joint, motion).into_iter().map(directions_of_column).collect()
+            derivative_columns(joint, motion).into_iter().map(column_with_twist_change).collect()
         })
         .collect();
     let own: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
     let wrenches = rnea::link_wrenches(model, joints, &v, Some(&a));
     let sums = subtree_sums(model, joints, &own, &wrenches, 2.0);
-    let sums = contract_subtree_sums(model, joints, (&own, &virtual_twists), sums);
+    let sums = subtree_sums_with_virtual_twists(model, joints, (&own, &virtual_twists), sums);
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = Hessian { qq: zero_matrix(), qv: zero_matrix(), vv: zero_matrix(), qa: zero_matrix() };
     let paths = PathsToRoot::new(joints, most);
-    let mut entries = HessianAssembly {
+    let mut entries = HessianVisitor {
         columns: &columns,
         all: columns.concat(),
         links: paths.links_of_freedoms(),
@@ -137,7 +137,7 @@ pub struct InputHessian<'g> {
 }
 
 /// Returns the second derivatives of the power `λᵀ τ` of the input forces `tau`.
-pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
+pub fn hessian_of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
     let lambda = force_factor_symbols(model);
     let zero = model.graph.zero();
     let power = tau.iter().zip(&lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
@@ -236,19 +236,19 @@ struct SubtreeSums<'g> {
 
 impl<'g> SubtreeSums<'g> {
     /// Returns the moment of `Q X + X ×* P`, which has no force.
-    fn mapped_moment_with_momentum(&self, x: &Spatial<'g>) -> Vec3<'g> {
-        self.subtree_wrench_moment(x)
+    fn inertia_rate_and_momentum_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
+        self.inertia_rate_moment(x)
             + x.angular.cross(self.momentum.angular)
             + x.linear.cross(self.momentum.linear)
     }
 
     /// Returns the moment of the wrench `Q X` for a spatial vector `X`.
-    fn subtree_wrench_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
+    fn inertia_rate_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
         x.linear.cross(self.momentum.linear) + self.tensor * x.angular
     }
 }
 
-fn contract_subtree_sums<'g>(
+fn subtree_sums_with_virtual_twists<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     (own, virtual_twists): (&[Spatial<'g>], &[Spatial<'g>]),
@@ -259,13 +259,13 @@ fn contract_subtree_sums<'g>(
     for ((link, own), w) in model.links.iter().zip(own).zip(virtual_twists) {
         let p = momentum(&link.inertia, w);
         let zero = Vec3::zero(model.graph);
-        let n = sums_of_single_body(&link.inertia, own, 2.0).transposed_map(w);
+        let n = sums_of_single_body(&link.inertia, own, 2.0).transposed_velocity_map(w);
         changes.push(inertia_rate(&link.inertia, w, p.linear));
         wrenches.push([p, Spatial { linear: zero, angular: n }]);
     }
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
-            changes[parent.0] = joint.composite_inertia(&changes[parent.0], &changes[k]);
+            changes[parent.0] = joint.add_inertia_to_parent(&changes[parent.0], &changes[k]);
             let [p, n] = wrenches[k];
             let above = wrenches[parent.0];
             wrenches[parent.0] = [joint.add_wrench(&above[0], &p), joint.add_wrench(&above[1], &n)];
@@ -302,7 +302,7 @@ fn inertia_rate<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia
     }
 }
 
-struct HessianAssembly<'a, 'g> {
+struct HessianVisitor<'a, 'g> {
     /// Columns of the degrees of freedom of each link; the field `all` holds the same columns in one list.
     columns: &'a [Vec<ColumnWithTwistChange<'g>>],
     all: Vec<ColumnWithTwistChange<'g>>,
@@ -311,12 +311,12 @@ struct HessianAssembly<'a, 'g> {
     out: Hessian<'g>,
 }
 
-impl<'g> PropagationVisitor<'g> for HessianAssembly<'_, 'g> {
-    type Item = FactoredContribution<'g>;
+impl<'g> RootPropagationVisitor<'g> for HessianVisitor<'_, 'g> {
+    type Item = DofHessianContribution<'g>;
 
-    fn start(&mut self, dof: usize) -> FactoredContribution<'g> {
+    fn start(&mut self, dof: usize) -> DofHessianContribution<'g> {
         let (own, sums) = (self.all[dof], &self.sums[self.links[dof]]);
-        let changes = FactoredContribution::new(&own, sums);
+        let changes = DofHessianContribution::new(&own, sums);
         let out = &mut self.out;
         for other in &self.columns[self.links[dof]] {
             let [qq, _, vq, _, _, aq] = changes.hessian_entries_with_ancestor(other);
@@ -325,14 +325,14 @@ impl<'g> PropagationVisitor<'g> for HessianAssembly<'_, 'g> {
             out.add_entry(|h| &mut h.qq, other, &own, qq * 0.5);
             out.add_entry(|h| &mut h.qv, other, &own, vq);
             out.add_entry(|h| &mut h.qa, other, &own, aq);
-            let vv = sums.subtree_wrench_moment(&own.column.subspace).dot(other.column.subspace.angular)
+            let vv = sums.inertia_rate_moment(&own.column.subspace).dot(other.column.subspace.angular)
                 + sums.momentum.linear.cross(own.column.subspace.angular).dot(other.column.subspace.linear);
             out.add_entry(|h| &mut h.vv, &own, other, vv);
         }
         changes
     }
 
-    fn visit(&mut self, group: &LaneGroup<FactoredContribution<'g>>) {
+    fn visit(&mut self, group: &LaneGroup<DofHessianContribution<'g>>) {
         for other in &self.columns[group.link] {
             let met =
                 group.item.hessian_entries_with_ancestor(&other.map(&|e| group.repeat_for_group_members(e)));
@@ -390,7 +390,7 @@ impl<'g> Hessian<'g> {
 
 /// Contribution of one degree of freedom to the entries with its ancestors, as wrenches about an ancestor's
 /// origin in the ancestor's axes. Moments are wrenches without force.
-struct FactoredContribution<'g> {
+struct DofHessianContribution<'g> {
     /// Wrench `I Ψ̈ + B Ψ̇ + S ×* F`: change with the displacement.
     by_q: Spatial<'g>,
     /// Virtual wrench `I Ω + S ×* P`: change with the displacement.
@@ -405,21 +405,21 @@ struct FactoredContribution<'g> {
     momentum: Spatial<'g>,
 }
 
-impl<'g> FactoredContribution<'g> {
-    fn new(own: &ColumnWithTwistChange<'g>, sums: &SubtreeSums<'g>) -> FactoredContribution<'g> {
+impl<'g> DofHessianContribution<'g> {
+    fn new(own: &ColumnWithTwistChange<'g>, sums: &SubtreeSums<'g>) -> DofHessianContribution<'g> {
         let (column, plain) = (&own.column, &sums.plain);
         let s = &column.subspace;
         let momentum_of_twist = |x: &Spatial<'g>| momentum(&plain.inertia, x);
-        FactoredContribution {
+        DofHessianContribution {
             by_q: momentum_of_twist(&column.second)
                 .plus(&plain.map(&column.first))
                 .plus(&analytic::cross_force(s, &plain.wrench)),
             factored: momentum_of_twist(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
-            moment_by_q: plain.transposed_map(&own.factor)
-                + sums.mapped_moment_with_momentum(&column.first)
+            moment_by_q: plain.transposed_velocity_map(&own.factor)
+                + sums.inertia_rate_and_momentum_moment(&column.first)
                 + s.angular.cross(sums.moment),
             by_v: momentum_of_twist(&column.rate).plus(&plain.map(s)),
-            moment_by_v: sums.mapped_moment_with_momentum(s),
+            moment_by_v: sums.inertia_rate_and_momentum_moment(s),
             momentum: momentum_of_twist(s),
         }
     }
@@ -440,4 +440,4 @@ impl<'g> FactoredContribution<'g> {
     }
 }
 
-impl_propagated!(FactoredContribution { by_q, factored, moment_by_q, by_v, moment_by_v, momentum });
+impl_propagated!(DofHessianContribution { by_q, factored, moment_by_q, by_v, moment_by_v, momentum });

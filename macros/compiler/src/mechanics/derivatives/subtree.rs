@@ -31,7 +31,7 @@ impl<'g> Subtree<'g> {
     }
 
     /// Returns the transposed velocity map of `x`: a moment without force.
-    pub fn transposed_map(&self, x: &Spatial<'g>) -> Vec3<'g> {
+    pub fn transposed_velocity_map(&self, x: &Spatial<'g>) -> Vec3<'g> {
         self.momentum.cross(x.linear) + minus_trace(&self.moments.transpose()) * -x.angular
     }
 }

@@ -35,7 +35,7 @@ pub fn configuration_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matri
     let rates: Vec<Expr<'g>> =
         (0..model.nq()).map(|k| configuration_rate(model.configuration_space(), k)).collect();
     let turning = rotation_entries_with_rates(model.configuration_space());
-    let configuration_derivative = |i: usize| {
+    let configuration_differentiation = |i: usize| {
         let mut by = DirectionalDerivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
         let rate_seed =
             |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.differentiate(*rate));
@@ -46,7 +46,7 @@ pub fn configuration_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matri
         DirectionalDerivative::differentiation_with_rates(own.into_iter().chain(given).collect(), model.graph)
             .with_preset_derivatives(known)
     };
-    derivative_columns(e, (0..model.nv()).map(configuration_derivative))
+    derivative_columns(e, (0..model.nv()).map(configuration_differentiation))
 }
 
 fn velocity_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {

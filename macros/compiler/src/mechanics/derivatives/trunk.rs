@@ -34,7 +34,7 @@ struct Limb {
 impl Trunk {
     /// Returns for each velocity whether its link, or a descendant of the link, has more than one child. A
     /// group of limbs in SIMD lanes is not divided further.
-    pub fn has_branching_descendant(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
+    pub fn branching_descendant_flags(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
         let mut children = vec![0; joints.len()];
         let mut branches = vec![false; joints.len()];
         for (k, joint) in joints.iter().enumerate().rev() {

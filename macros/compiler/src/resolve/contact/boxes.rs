@@ -14,7 +14,7 @@
 //! duplicate is the size of the boxes.
 
 use super::cylinders::{Drum, unbounded_cylinder_box_contacts};
-use super::geometry::{PointContact, clamp, is_positive, nearest, rim};
+use super::geometry::{PointContact, clamp, indicator_of_positive, nearest, rim};
 use super::pair::{SurfacePair, sphere_contact};
 use super::surface::SurfaceForm;
 use crate::expr::{Expr, Extreme, Function, Vec3};
@@ -158,7 +158,7 @@ fn box_contact_candidates<'g>(a: &OrientedBox<'g>, b: &OrientedBox<'g>) -> Vec<P
     let boxes = BoxPair { a: *a, b: *b, cosines, size };
     let (face, face_is_second) = boxes.face_of_largest_separation();
     let edge = boxes.best_edge_pair();
-    let by_edges = is_positive(edge.distance - face.distance - size * TIE_TOLERANCE);
+    let by_edges = indicator_of_positive(edge.distance - face.distance - size * TIE_TOLERANCE);
     let (holder, other) = boxes.order_by_face_owner(face_is_second);
     let mut points = face_contacts(&holder, &other, &face.first, size);
     for point in &mut points {
@@ -189,11 +189,12 @@ impl<'g> BoxPair<'g> {
         let [first, second] = [false, true].map(|is_second| self.best_separating_face(is_second));
         let sum = |block: &OrientedBox<'g>| block.half.into_iter().fold(zero, |sum, half| sum + half);
         let size_difference = sum(&self.a) - sum(&self.b);
-        let same = one - is_positive(absolute(size_difference) - self.size * TIE_TOLERANCE);
+        let same = one - indicator_of_positive(absolute(size_difference) - self.size * TIE_TOLERANCE);
         let c = self.center_offset();
         let lower = -(c[0] * TIE_BREAK[0] + c[1] * TIE_BREAK[1] + c[2] * TIE_BREAK[2]);
         let preference = (select_by_indicator(same, lower, size_difference)).apply_function(Function::Signum);
-        let is_first = is_positive(first.distance - second.distance + preference * self.size * TIE_TOLERANCE);
+        let is_first =
+            indicator_of_positive(first.distance - second.distance + preference * self.size * TIE_TOLERANCE);
         let which = std::array::from_fn(|k| select_by_indicator(is_first, first.first[k], second.first[k]));
         let distance = select_by_indicator(is_first, first.distance, second.distance);
         (SeparatingDirection { distance, first: which, second: which }, one - is_first)
@@ -220,7 +221,7 @@ impl<'g> BoxPair<'g> {
         };
         for k in [1, 2] {
             let found = distance(k);
-            let better = is_positive(found - best.distance - self.size * TIE_TOLERANCE);
+            let better = indicator_of_positive(found - best.distance - self.size * TIE_TOLERANCE);
             let which = std::array::from_fn(|i| {
                 select_by_indicator(better, unit_vector_of_axis(k)[i], best.first[i])
             });
@@ -248,8 +249,8 @@ impl<'g> BoxPair<'g> {
                     + self.b.half[j1] * absolute(r[i][j2])
                     + self.b.half[j2] * absolute(r[i][j1]);
                 let distance = (along - reach) / sine;
-                let better = is_positive(distance - best.distance - self.size * TIE_TOLERANCE)
-                    * is_positive(square - zero.num(PARALLEL));
+                let better = indicator_of_positive(distance - best.distance - self.size * TIE_TOLERANCE)
+                    * indicator_of_positive(square - zero.num(PARALLEL));
                 let other = better.num(1.0) - better;
                 let selector_choosing_index = |known: [Expr<'g>; 3], k: usize| {
                     let mut which = scale_selector(known, other);
@@ -385,8 +386,8 @@ fn face_contacts<'g>(
     // The face of the other box that is opposite to this one.
     let cosines = other.axes.map(|axis| axis.dot(face.axes[0]));
     let [x, y, z] = cosines.map(absolute);
-    let third = is_positive(z - maximum(x, y) - one * TIE_TOLERANCE);
-    let second = is_positive(y - x - one * TIE_TOLERANCE) * (one - third);
+    let third = indicator_of_positive(z - maximum(x, y) - one * TIE_TOLERANCE);
+    let second = indicator_of_positive(y - x - one * TIE_TOLERANCE) * (one - third);
     let facing = [one - second - third, second, third];
     let outward = select_one_of_three(&facing, cosines).apply_function(Function::Signum);
     let facing_axis = select_axis(&facing, &other.axes);
@@ -410,7 +411,7 @@ fn face_contacts<'g>(
         let direction = along.1.map(|x| x * sense);
         let [from, to] = face.clip_line_to_face_sides(&start, &direction);
         let outside = minimum((from - to) * smallest, size);
-        let is_cut = is_positive(from + one * (1.0 - TIE_TOLERANCE));
+        let is_cut = indicator_of_positive(from + one * (1.0 - TIE_TOLERANCE));
         for (t, counts) in [(maximum(to, -one), one), (minimum(from, one), is_cut)] {
             let distance = start[0] + direction[0] * t - height;
             let place = middle + off.0 * (one * side) + along.0 * (t * sense);
@@ -449,7 +450,7 @@ pub(super) fn capsule_axis_contacts<'g>(
     let distance = |k: usize| absolute(center_offsets[k]) - block.half[k] - reach * absolute(cosines[k]);
     let (mut face_distance, mut which) = (distance(0), unit_vector_of_axis(0));
     for k in [1, 2] {
-        let better = is_positive(distance(k) - face_distance - size * TIE_TOLERANCE);
+        let better = indicator_of_positive(distance(k) - face_distance - size * TIE_TOLERANCE);
         face_distance = select_by_indicator(better, distance(k), face_distance);
         which = std::array::from_fn(|i| select_by_indicator(better, unit_vector_of_axis(k)[i], which[i]));
     }
@@ -461,12 +462,12 @@ pub(super) fn capsule_axis_contacts<'g>(
         let along = absolute(center_offsets[j1] * cosines[j2] - center_offsets[j2] * cosines[j1]);
         let halves = block.half[j1] * absolute(cosines[j2]) + block.half[j2] * absolute(cosines[j1]);
         let found = (along - halves) / sine;
-        let better =
-            is_positive(found - edge_distance - size * TIE_TOLERANCE) * is_positive(square - one * PARALLEL);
+        let better = indicator_of_positive(found - edge_distance - size * TIE_TOLERANCE)
+            * indicator_of_positive(square - one * PARALLEL);
         edge_distance = select_by_indicator(better, found, edge_distance);
         edge = std::array::from_fn(|i| select_by_indicator(better, unit_vector_of_axis(j)[i], edge[i]));
     }
-    let by_edges = is_positive(edge_distance - face_distance - size * TIE_TOLERANCE);
+    let by_edges = indicator_of_positive(edge_distance - face_distance - size * TIE_TOLERANCE);
     let face = Face::facing(block, &which, c, size);
     let (start, direction) = (face.components(c), face.components(own * reach));
     let [from, to] = face.clip_line_to_face_sides(&start, &direction);
@@ -489,7 +490,8 @@ pub(super) fn capsule_axis_contacts<'g>(
     let gap = edge_distance + length - absolute(edge_distance) - radius;
     let towards =
         separation * (edge_distance.apply_function(Function::Signum) / maximum(length, size * TIE_TOLERANCE));
-    let normal = select_vector_by_indicator(is_positive(length - size * TIE_TOLERANCE), towards, normal);
+    let normal =
+        select_vector_by_indicator(indicator_of_positive(length - size * TIE_TOLERANCE), towards, normal);
     points.push(PointContact {
         gap: select_by_indicator(by_edges, gap, maximum(gap, face_distance - edge_distance)),
         point: own * near - normal * radius,

@@ -18,14 +18,14 @@ impl<'g> SurfacePair<'_, 'g> {
     /// Returns the contact of a convex body, with the distances that determine the coordinates of the
     /// surface.
     pub(super) fn contact_of_convex_body(&self, sheet: &ParametricSurface<'g>) -> Option<PointContact<'g>> {
-        let rotate_surface = |v| self.direction_of_second_body(v).value;
-        let [u, w] = sheet.tangents.map(rotate_surface);
+        let second_surface_to_common_axes = |v| self.direction_of_second_body(v).value;
+        let [u, w] = sheet.tangents.map(second_surface_to_common_axes);
         let first = u.map(|x| x / u.norm());
         let across = u.cross(w);
         let normal = across.map(|x| x / across.norm());
         let second = normal.cross(first);
         let point = -support_point(&self.a.form, normal, 0.0, &|v| self.first_direction(v).value)?;
-        let offset = self.center.value - self.base.value + point - rotate_surface(sheet.point);
+        let offset = self.center.value - self.base.value + point - second_surface_to_common_axes(sheet.point);
         Some(PointContact {
             gap: normal.dot(offset),
             point,

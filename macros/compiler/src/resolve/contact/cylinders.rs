@@ -12,7 +12,7 @@
 //! capsule longer than the box.
 
 use super::boxes::{Face, MIN_SLOPE, OrientedBox, capsule_axis_contacts};
-use super::geometry::{PointContact, clamp, is_positive, tangents_of};
+use super::geometry::{PointContact, clamp, indicator_of_positive, tangents_of};
 use super::pair::sphere_contact;
 use super::surface::SurfaceForm;
 use crate::expr::{Expr, Extreme, Function, Vec3};
@@ -50,7 +50,7 @@ struct DistancesFromCylinder<'g> {
 
 impl<'g> DistancesFromCylinder<'g> {
     /// Returns the position relative to the nearest point of the cylinder; zero inside.
-    fn offset(&self) -> Vec3<'g> {
+    fn offset_from_cylinder(&self) -> Vec3<'g> {
         let positive_part = |distance: Expr<'g>| distance.minimum_or_maximum(Extreme::Max, distance.zero());
         self.radial * positive_part(self.side) + self.axial * positive_part(self.end)
     }
@@ -72,7 +72,7 @@ impl<'g> Drum<'g> {
 
     /// Returns the signed distance of a point, relative to the centre, and the outward normal at the nearest
     /// point of the surface.
-    fn distance(&self, p: Vec3<'g>) -> (Expr<'g>, Vec3<'g>) {
+    fn distance_and_normal(&self, p: Vec3<'g>) -> (Expr<'g>, Vec3<'g>) {
         let DistancesFromCylinder { side, end, radial, axial } = self.locate_point_on_cylinder(p);
         let (zero, least) = (side.zero(), self.radius * ON_SURFACE);
         let (over, beyond) =
@@ -80,9 +80,9 @@ impl<'g> Drum<'g> {
         let distance =
             (over.square() + beyond.square()).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
         let outside = (radial * over + axial * beyond).map(|x| x / distance);
-        let inside = radial + (axial - radial) * is_positive(end - side);
+        let inside = radial + (axial - radial) * indicator_of_positive(end - side);
         let (depth, is_outside) =
-            (side.minimum_or_maximum(Extreme::Max, end), is_positive(distance - least * 1.5));
+            (side.minimum_or_maximum(Extreme::Max, end), indicator_of_positive(distance - least * 1.5));
         (depth + (distance - depth) * is_outside, inside + (outside - inside) * is_outside)
     }
 
@@ -90,10 +90,10 @@ impl<'g> Drum<'g> {
     /// directions of the unit vector `own`.
     fn nearest_position_on_segment(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> Expr<'g> {
         // The derivative of the signed distance, which increases along the line.
-        let distance_slope_along_line = |t: Expr<'g>| self.distance(c + own * t).1.dot(own);
+        let distance_slope_along_line = |t: Expr<'g>| self.distance_and_normal(c + own * t).1.dot(own);
         let (mut low, mut high) = (-reach, reach);
         let narrow_bracket = |low: &mut Expr<'g>, high: &mut Expr<'g>, t: Expr<'g>| {
-            let is_beyond = is_positive(distance_slope_along_line(t));
+            let is_beyond = indicator_of_positive(distance_slope_along_line(t));
             *high += (t - *high) * is_beyond;
             *low = t + (*low - t) * is_beyond;
         };
@@ -136,7 +136,7 @@ impl<'g> Drum<'g> {
 
     /// Returns the contact of a sphere whose centre is at `c` relative to that of the cylinder.
     pub(super) fn sphere_contact(&self, radius: Expr<'g>, c: Vec3<'g>) -> PointContact<'g> {
-        let (distance, normal) = self.distance(c);
+        let (distance, normal) = self.distance_and_normal(c);
         contact(distance - radius, -(normal * radius), normal)
     }
 
@@ -170,12 +170,12 @@ impl<'g> Drum<'g> {
     ) -> Vec<PointContact<'g>> {
         let mut points = self.cylinder_contacts_on_box_face(block, c, rim);
         let contact_of_cylinder_point = |e: Vec3<'g>| {
-            let (distance, normal) = self.distance(e - c);
+            let (distance, normal) = self.distance_and_normal(e - c);
             contact(distance, e - c, -normal)
         };
         // The edges of the face that is opposite to an end.
         let cosines = block.axes.map(|axis| axis.dot(self.axis).apply_function(Function::Abs));
-        let facing = select_largest_of_three(cosines);
+        let facing = selector_of_largest(cosines);
         let face = Face::facing(block, &facing, c, self.half);
         let [_, first, second] = face.axes;
         let middle = face.axes[0] * face.half[0];
@@ -215,7 +215,7 @@ impl<'g> Drum<'g> {
             let reach = self.half * cosine.apply_function(Function::Abs) + self.radius * sine;
             axis.dot(c).apply_function(Function::Abs) - block.half[k] - reach
         });
-        let face = Face::facing(block, &select_largest_of_three(separations), c, self.half);
+        let face = Face::facing(block, &selector_of_largest(separations), c, self.half);
         let normal = face.axes[0];
         let directions = rim(normal);
         let (down, along) = (directions[0] * self.radius, self.axis * self.half);
@@ -249,7 +249,9 @@ impl<'g> Drum<'g> {
         };
         let mut point = nearest_point_in_block(c);
         for _ in 0..PROJECTIONS {
-            point = nearest_point_in_block(point - self.locate_point_on_cylinder(point - c).offset());
+            point = nearest_point_in_block(
+                point - self.locate_point_on_cylinder(point - c).offset_from_cylinder(),
+            );
         }
         std::array::from_fn(|k| {
             let axis = block.axes[k];
@@ -302,10 +304,10 @@ fn contact<'g>(gap: Expr<'g>, point: Vec3<'g>, normal: Vec3<'g>) -> PointContact
 }
 
 /// Returns the selector (0 or 1 for each) of the largest of three values.
-fn select_largest_of_three(values: [Expr<'_>; 3]) -> [Expr<'_>; 3] {
+fn selector_of_largest(values: [Expr<'_>; 3]) -> [Expr<'_>; 3] {
     let [x, y, z] = values;
     let one = x.num(1.0);
-    let third = is_positive(z - x.minimum_or_maximum(Extreme::Max, y));
-    let second = is_positive(y - x) * (one - third);
+    let third = indicator_of_positive(z - x.minimum_or_maximum(Extreme::Max, y));
+    let second = indicator_of_positive(y - x) * (one - third);
     [one - second - third, second, third]
 }

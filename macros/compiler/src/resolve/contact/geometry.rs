@@ -39,7 +39,7 @@ const PARALLEL: f64 = 1e-12;
 pub(super) const FLAT_RIM: f64 = 1e-24;
 
 /// Returns one if `x` is positive, zero if it is negative.
-pub(super) fn is_positive(x: Expr<'_>) -> Expr<'_> {
+pub(super) fn indicator_of_positive(x: Expr<'_>) -> Expr<'_> {
     (x.apply_function(Function::Signum) + x.num(1.0)) * 0.5
 }
 

@@ -5,7 +5,7 @@
 //! perpendicular foot on this plane belongs to the hull, it is the nearest point; this includes centres
 //! inside of the hull. Otherwise the nearest point of all edges is.
 
-use super::geometry::{PointContact, is_positive, tangents_of};
+use super::geometry::{PointContact, indicator_of_positive, tangents_of};
 use super::surface::{ConvexHull, Surface, SurfaceForm};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
@@ -105,13 +105,13 @@ pub(super) fn sphere_on_hull<'g>(
     let (mut normal, mut height) = planes.first().map(|(n, offset)| (*n, n.dot(p) - *offset))?;
     for (n, offset) in &planes[1..] {
         let other = n.dot(p) - *offset;
-        normal += (*n - normal) * is_positive(other - height);
+        normal += (*n - normal) * indicator_of_positive(other - height);
         height = height.minimum_or_maximum(Extreme::Max, other);
     }
     let foot = p - normal * height;
     let outside = planes.iter().map(|(n, offset)| n.dot(foot) - *offset);
     let outside = outside.reduce(|a, b| a.minimum_or_maximum(Extreme::Max, b))?;
-    let on_face = is_positive(g.num(ON_FACE * hull.size) - outside);
+    let on_face = indicator_of_positive(g.num(ON_FACE * hull.size) - outside);
     let (offset, square) = offset_from_nearest_edge(hull, p)?;
     let distance = square.minimum_or_maximum(Extreme::Max, g.num((ON_FACE * hull.size).powi(2))).sqrt();
     let from_edge = offset.map(|x| x / distance);
@@ -142,7 +142,7 @@ fn offset_from_nearest_edge<'g>(hull: &Hull, p: Vec3<'g>) -> Option<(Vec3<'g>, E
         nearest = Some(match nearest {
             None => (offset, square),
             Some((known, least)) => {
-                let is_nearer = is_positive(least - square);
+                let is_nearer = indicator_of_positive(least - square);
                 (known + (offset - known) * is_nearer, least.minimum_or_maximum(Extreme::Min, square))
             }
         });

@@ -136,20 +136,20 @@ pub(super) fn sphere_contact<'g>(
     second_surface_to_common_axes: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Option<PointContact<'g>> {
     let inside = matches!(b, SurfaceForm::Bowl(_) | SurfaceForm::Tube(..) | SurfaceForm::Funnel(..));
-    let side = |x: Expr<'g>| if inside { -x } else { x };
+    let reverse_if_inside = |x: Expr<'g>| if inside { -x } else { x };
     let (normal, distance, tangents) = match b {
         SurfaceForm::Sphere(r) | SurfaceForm::Bowl(r) => {
             let size = c.norm();
-            let normal = c.map(|x| side(x / size));
+            let normal = c.map(|x| reverse_if_inside(x / size));
             let (first, second) = tangents_of(normal);
-            (normal, side(size - *r), [("first", first), ("second", second)])
+            (normal, reverse_if_inside(size - *r), [("first", first), ("second", second)])
         }
         SurfaceForm::Cylinder(r, u) | SurfaceForm::Tube(r, u) => {
             let axis = second_surface_to_common_axes(*u);
             let outward = c - axis * axis.dot(c);
             let size = outward.norm();
-            let normal = outward.map(|x| side(x / size));
-            (normal, side(size - *r), [("along", axis), ("around", normal.cross(axis))])
+            let normal = outward.map(|x| reverse_if_inside(x / size));
+            (normal, reverse_if_inside(size - *r), [("along", axis), ("around", normal.cross(axis))])
         }
         SurfaceForm::Cone(half, u) | SurfaceForm::Funnel(half, u) => {
             let (sine, cosine) = (half.sin(), half.cos());
@@ -158,9 +158,9 @@ pub(super) fn sphere_contact<'g>(
             let outward = c - axis * height;
             let size = outward.norm();
             let radial = outward.map(|x| x / size);
-            let normal = (radial * cosine - axis * sine).map(side);
+            let normal = (radial * cosine - axis * sine).map(reverse_if_inside);
             let along = radial * sine + axis * cosine;
-            let distance = side(size * cosine - height * sine);
+            let distance = reverse_if_inside(size * cosine - height * sine);
             (normal, distance, [("along", along), ("around", normal.cross(along))])
         }
         _ => return None,
@@ -180,15 +180,15 @@ pub(super) fn support_point<'g>(
     min_sine_squared: f64,
     rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Option<Vec3<'g>> {
-    let across = |axis: Vec3<'g>| {
+    let unit_vector_across_axis = |axis: Vec3<'g>| {
         let a = rotate(axis);
         let cosine = a.dot(n);
         let sine = (cosine.num(1.0 + min_sine_squared) - cosine.square()).sqrt();
         (n - a * cosine).map(|x| x / sine)
     };
     Some(match form {
-        SurfaceForm::Circle(r, axis) => across(*axis) * *r,
-        SurfaceForm::Torus(r, tube, axis) => across(*axis) * *r + n * *tube,
+        SurfaceForm::Circle(r, axis) => unit_vector_across_axis(*axis) * *r,
+        SurfaceForm::Torus(r, tube, axis) => unit_vector_across_axis(*axis) * *r + n * *tube,
         SurfaceForm::Sphere(r) => n * *r,
         SurfaceForm::Ellipsoid(half) => {
             let g = n[0].graph();

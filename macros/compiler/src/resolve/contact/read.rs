@@ -91,21 +91,25 @@ pub fn read_surface<'g>(
 
 /// Returns the form of a surface with the values of its lengths and angles, and its direction.
 fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<SurfaceForm<'g>> {
-    let number = |k: usize| numbers.get(k).copied();
+    let number_with_index = |k: usize| numbers.get(k).copied();
     Some(match id {
-        SurfaceId::Circle => SurfaceForm::Circle(number(0)?, n),
-        SurfaceId::Torus => SurfaceForm::Torus(number(0)?, number(1)?, n),
-        SurfaceId::Sphere => SurfaceForm::Sphere(number(0)?),
-        SurfaceId::Ellipsoid => SurfaceForm::Ellipsoid([number(0)?, number(1)?, number(2)?]),
+        SurfaceId::Circle => SurfaceForm::Circle(number_with_index(0)?, n),
+        SurfaceId::Torus => SurfaceForm::Torus(number_with_index(0)?, number_with_index(1)?, n),
+        SurfaceId::Sphere => SurfaceForm::Sphere(number_with_index(0)?),
+        SurfaceId::Ellipsoid => {
+            SurfaceForm::Ellipsoid([number_with_index(0)?, number_with_index(1)?, number_with_index(2)?])
+        }
         SurfaceId::Plane => SurfaceForm::Plane(n),
-        SurfaceId::Bowl => SurfaceForm::Bowl(number(0)?),
-        SurfaceId::Cylinder => SurfaceForm::Cylinder(number(0)?, n),
-        SurfaceId::Drum => SurfaceForm::Drum(number(0)?, number(1)?, n),
-        SurfaceId::Tube => SurfaceForm::Tube(number(0)?, n),
-        SurfaceId::Cone => SurfaceForm::Cone(number(0)?, n),
-        SurfaceId::Funnel => SurfaceForm::Funnel(number(0)?, n),
-        SurfaceId::Cuboid => SurfaceForm::Cuboid([number(0)?, number(1)?, number(2)?]),
-        SurfaceId::Capsule => SurfaceForm::Capsule(number(0)?, number(1)?, n),
+        SurfaceId::Bowl => SurfaceForm::Bowl(number_with_index(0)?),
+        SurfaceId::Cylinder => SurfaceForm::Cylinder(number_with_index(0)?, n),
+        SurfaceId::Drum => SurfaceForm::Drum(number_with_index(0)?, number_with_index(1)?, n),
+        SurfaceId::Tube => SurfaceForm::Tube(number_with_index(0)?, n),
+        SurfaceId::Cone => SurfaceForm::Cone(number_with_index(0)?, n),
+        SurfaceId::Funnel => SurfaceForm::Funnel(number_with_index(0)?, n),
+        SurfaceId::Cuboid => {
+            SurfaceForm::Cuboid([number_with_index(0)?, number_with_index(1)?, number_with_index(2)?])
+        }
+        SurfaceId::Capsule => SurfaceForm::Capsule(number_with_index(0)?, number_with_index(1)?, n),
         // The arguments of these surfaces are not numbers and a direction.
         SurfaceId::ParametricSurface | SurfaceId::Terrain | SurfaceId::Hull => return None,
     })

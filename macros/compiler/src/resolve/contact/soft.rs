@@ -20,14 +20,14 @@ const DEFAULT_SLIP_SPEED: f64 = 1e-3;
 const ROOT_OFFSET: f64 = 1e-30;
 
 /// Stiffness and dissipation of a compliant contact, as expressions.
-pub(super) struct CompliantContact<'g> {
+pub(super) struct ContactCompliance<'g> {
     stiffness: Expr<'g>,
     hertz: bool,
     dissipation: Expr<'g>,
     speed: Expr<'g>,
 }
 
-impl<'g> CompliantContact<'g> {
+impl<'g> ContactCompliance<'g> {
     /// Returns the effects of a contact point: potential energy of the penetration, dissipation and friction.
     pub(super) fn effects_of_contact_point(
         &self,
@@ -76,7 +76,7 @@ pub(super) fn read_compliance<'g>(
     scope: &Scope<'_, 'g>,
     given: &WrittenArguments,
     cx: &mut Diagnostics,
-) -> Option<CompliantContact<'g>> {
+) -> Option<ContactCompliance<'g>> {
     let g = scope.graph;
     let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
         let value = scope
@@ -100,7 +100,7 @@ pub(super) fn read_compliance<'g>(
         Some(e) => read(e, "speed", Rule::Positive),
         None => Some(g.num(DEFAULT_SLIP_SPEED)),
     };
-    Some(CompliantContact {
+    Some(ContactCompliance {
         stiffness: stiffness?,
         hertz: linear.is_none(),
         dissipation: dissipation?,

@@ -25,7 +25,7 @@ pub fn resolve_stops<'g>(
     let g = scope.graph;
     let resolve_bound_value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
         // Errors are reported by the pass that reads the limit.
-        true => scope.resolve_plane_angle(e, &mut Diagnostics::discarded_diagnostics()),
+        true => scope.resolve_angle_in_radians(e, &mut Diagnostics::discarded_diagnostics()),
         false => scope.resolve_scalar(e, &mut Diagnostics::discarded_diagnostics()),
     };
     let stop_at_bound = |(key, side): (Key, f64)| {

@@ -68,11 +68,11 @@ impl<'g> Terrain<'g> {
             [(0, x), (1, y)].map(|(k, e)| (Quantity::Given(SuppliedQuantity::Position, k).symbol(), e));
         let all = [&[self.height][..], &self.slopes, &self.curvatures].concat();
         let found = replace_all(&all, &|s| place.iter().find(|(known, _)| *known == s).map(|(_, e)| *e));
-        let entry = |k: usize| found.get(k).copied().unwrap_or(self.height);
+        let entry_at_position = |k: usize| found.get(k).copied().unwrap_or(self.height);
         TerrainPoint {
-            height: entry(0),
-            slopes: [entry(1), entry(2)],
-            curvatures: [entry(3), entry(4), entry(5)],
+            height: entry_at_position(0),
+            slopes: [entry_at_position(1), entry_at_position(2)],
+            curvatures: [entry_at_position(3), entry_at_position(4), entry_at_position(5)],
         }
     }
 

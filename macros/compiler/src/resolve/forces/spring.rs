@@ -185,7 +185,7 @@ fn free_length<'g>(
             .add_help(format!("write `{key} = …`"));
         return None;
     }
-    if is_angle { scope.resolve_plane_angle(free, cx) } else { scope.resolve_scalar(free, cx) }
+    if is_angle { scope.resolve_angle_in_radians(free, cx) } else { scope.resolve_scalar(free, cx) }
 }
 
 /// Whether an expression contains a sign, a magnitude or an extreme of a subexpression that depends on the

@@ -75,7 +75,8 @@ pub fn infer_units(
     }
     report::report_unit_contradictions(d, &mut inference, cx);
     inference.make_plain_numbers_dimensionless();
-    let mut units = Units { outputs: Vec::new(), ..state_units(model, coordinates, &mut inference) };
+    let mut units =
+        Units { outputs: Vec::new(), ..state_and_input_units(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {
         units.parameters.push(
             pinned.unwrap_or_else(|| {
@@ -261,7 +262,11 @@ fn notation_of_dimension(inference: &mut Inference<'_>, dimension: &Dimension, v
 }
 
 /// Returns the units of the entries of `q`, `v` and `u`.
-fn state_units(model: &Model<'_>, coordinates: &NameableCoordinates, inference: &mut Inference<'_>) -> Units {
+fn state_and_input_units(
+    model: &Model<'_>,
+    coordinates: &NameableCoordinates,
+    inference: &mut Inference<'_>,
+) -> Units {
     let mut units = Units::default();
     let (q, v) = (&mut units.configuration, &mut units.velocities);
     let push_repeated_unit =

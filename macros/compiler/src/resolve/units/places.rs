@@ -39,7 +39,7 @@ pub struct DimensionedExpressions<'a> {
 }
 
 /// Coordinate on which an element does work, and its force.
-struct Work {
+struct WorkDimensions {
     /// Dimension of the coordinate or distance on which the element acts.
     coordinate: Dimension,
     /// Dimension of the element's force or torque.
@@ -51,15 +51,15 @@ struct Work {
 const LINEAR_UNITS: [&str; 6] = ["N", "N/m", "N·s/m", "kg", "m", "m/s"];
 const ANGULAR_UNITS: [&str; 6] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²", "rad", "rad/s"];
 
-impl Work {
+impl WorkDimensions {
     /// Returns the work of a force on a coordinate of this dimension; `None` for an unknown one.
-    fn new(coordinate: Dimension) -> Option<Work> {
+    fn new(coordinate: Dimension) -> Option<WorkDimensions> {
         let units = match (coordinate.is_plain(), coordinate.is_known()) {
             (true, _) => ANGULAR_UNITS,
             (_, true) => LINEAR_UNITS,
             _ => [""; 6],
         };
-        Some(Work { force: ENERGY.dimension_of_quotient(&coordinate)?, coordinate, units })
+        Some(WorkDimensions { force: ENERGY.dimension_of_quotient(&coordinate)?, coordinate, units })
     }
 }
 
@@ -115,7 +115,7 @@ pub fn collect_dimensioned_expressions<'a>(
     for contact in &d.contacts {
         places.add_expressions_of_surface(&contact.first);
         places.add_expressions_of_surface(&contact.second);
-        if let Some(work) = Work::new(LENGTH) {
+        if let Some(work) = WorkDimensions::new(LENGTH) {
             places.add_written_arguments(&contact.arguments, &work, ForceLawVariables::None);
         }
     }
@@ -248,11 +248,11 @@ impl<'a> DimensionedExpressions<'a> {
             }
         };
         let on_point = on.is_none();
-        let Some(mut work) = Work::new(on.unwrap_or(LENGTH)) else { return };
+        let Some(mut work) = WorkDimensions::new(on.unwrap_or(LENGTH)) else { return };
         let row = action.kind.row();
         // A force at a point does work on a length, a torque on an angle.
         if on_point && row.torque {
-            work = Work { force: ENERGY, units: ANGULAR_UNITS, ..work };
+            work = WorkDimensions { force: ENERGY, units: ANGULAR_UNITS, ..work };
         }
         self.add_written_arguments(&action.arguments, &work, row.locals);
         if action.is_input() {
@@ -268,7 +268,7 @@ impl<'a> DimensionedExpressions<'a> {
             self.add(&limit.on, &unknown, "");
             unknown
         });
-        if let Some(work) = Work::new(q) {
+        if let Some(work) = WorkDimensions::new(q) {
             self.add_written_arguments(&limit.arguments, &work, ForceLawVariables::None);
         }
     }
@@ -288,7 +288,7 @@ impl<'a> DimensionedExpressions<'a> {
     fn add_written_arguments(
         &mut self,
         written: &'a WrittenArguments,
-        work: &Work,
+        work: &WorkDimensions,
         locals: ForceLawVariables,
     ) {
         let [force, stiffness, damping, inertance, coordinate, speed] = work.units;
@@ -340,7 +340,7 @@ impl<'a> DimensionedExpressions<'a> {
             self.add_all_with_dimension(&constraint.other, &side, "");
             return;
         }
-        if let Some(work) = Work::new(LENGTH) {
+        if let Some(work) = WorkDimensions::new(LENGTH) {
             self.add_written_arguments(&constraint.arguments, &work, ForceLawVariables::None);
         }
         let ExprKind::Call(_, pair) = &constraint.value.kind else { return };

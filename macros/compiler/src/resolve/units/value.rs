@@ -66,7 +66,7 @@ impl InferredUnit {
     }
 
     /// Returns the source of the unit; `Motion` for a value that is not a quantity.
-    pub fn anchor_of_unit(&self) -> Anchor {
+    pub fn source_of_unit(&self) -> Anchor {
         match self {
             InferredUnit::Quantity { anchor, .. } => *anchor,
             _ => Anchor::Motion,
@@ -109,7 +109,7 @@ pub fn product_of_values(factors: &[(bool, InferredUnit)]) -> (InferredUnit, boo
         .collect();
     let Some(anchor) = quantities.iter().map(|(.., anchor)| *anchor).max() else {
         return match (is_number, is_direction) {
-            (true, false) => (InferredUnit::Number(product_of_numbers(factors)), false),
+            (true, false) => (InferredUnit::Number(numeric_product_or_nan(factors)), false),
             (true, true) => (InferredUnit::Number(f64::NAN), false),
             _ => (InferredUnit::Direction, false),
         };
@@ -126,7 +126,7 @@ pub fn product_of_values(factors: &[(bool, InferredUnit)]) -> (InferredUnit, boo
 }
 
 /// Returns the product of numbers; NaN if another factor is present.
-fn product_of_numbers(factors: &[(bool, InferredUnit)]) -> f64 {
+fn numeric_product_or_nan(factors: &[(bool, InferredUnit)]) -> f64 {
     let numeric_value_of_factor =
         |f: &InferredUnit| if let InferredUnit::Number(value) = f { *value } else { f64::NAN };
     factors.iter().fold(1.0, |p, (below, f)| {

@@ -113,7 +113,7 @@ impl<'a> Inference<'a> {
             .rev()
             .map(|(sum, term)| (sum, term, self.value_of_expression(term)))
             .collect();
-        let is_anchored = terms.iter().any(|(.., value)| value.anchor_of_unit() > Anchor::Motion);
+        let is_anchored = terms.iter().any(|(.., value)| value.source_of_unit() > Anchor::Motion);
         for (_, term, value) in &terms {
             if let (InferredUnit::Quantity { dimension, .. }, Some(expected), true) =
                 (value, expected, is_anchored)
@@ -160,7 +160,7 @@ impl<'a> Inference<'a> {
                 _ => factors.push((below, self.value_of_expression(factor))),
             }
         }
-        let value = self.multiply(&factors);
+        let value = self.value_of_factors(&factors);
         // `sin(angle) * x` is a metre along `x` where a length is expected, as `x` is.
         let has_direction = factors.iter().any(|(_, factor)| matches!(factor, InferredUnit::Direction));
         match &value {
@@ -174,7 +174,7 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the product of factors; the flag marks divisors.
-    fn multiply(&mut self, factors: &[(bool, InferredUnit)]) -> InferredUnit {
+    fn value_of_factors(&mut self, factors: &[(bool, InferredUnit)]) -> InferredUnit {
         let (value, free) = product_of_values(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
             InferredUnit::Number(g) => self.gravity.contains(&g.abs()),
@@ -199,7 +199,7 @@ impl<'a> Inference<'a> {
         match (callee.id, arguments) {
             (Some(Callable::Elementary(f)), [a]) => self.value_of_elementary(f, a),
             (Some(Callable::Function(function)), _) => {
-                self.unit_value_of_call(&function.row().unit, &callee.text, arguments)
+                self.value_of_language_function(&function.row().unit, &callee.text, arguments)
             }
             (Some(Callable::If), [_, _, _, _]) => {
                 let (compared, pieces) = arguments.split_at(2);
@@ -211,7 +211,12 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a function of the language.
-    fn unit_value_of_call(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> InferredUnit {
+    fn value_of_language_function(
+        &mut self,
+        rule: &UnitRule,
+        name: &'a str,
+        arguments: &'a [Expr],
+    ) -> InferredUnit {
         let [first, others @ ..] = arguments else {
             return match rule {
                 UnitRule::Of(dimension) => InferredUnit::motion_quantity_of_dimension(dimension.clone()),
@@ -249,7 +254,7 @@ impl<'a> Inference<'a> {
             UnitRule::Product { scalar } => {
                 let factors: Vec<_> =
                     arguments.iter().map(|a| (false, self.value_of_expression(a))).collect();
-                match self.multiply(&factors) {
+                match self.value_of_factors(&factors) {
                     InferredUnit::Direction if *scalar => InferredUnit::motion_quantity_of_dimension(PLAIN),
                     product => product,
                 }
@@ -313,7 +318,7 @@ impl<'a> Inference<'a> {
                 });
                 InferredUnit::Quantity {
                     dimension: LENGTH,
-                    anchor: radius.map_or(Anchor::Motion, |r| r.anchor_of_unit()),
+                    anchor: radius.map_or(Anchor::Motion, |r| r.source_of_unit()),
                 }
             }
             UnitRule::OfHeight(dimension) => {

@@ -74,7 +74,7 @@ pub fn missing_arrow_error(
     if !is_place_expression(first)
         || ends
         || input.peek(Token![::])
-        || (is_arrow && !is_misspelt_double_arrow(input))
+        || (is_arrow && !is_double_headed_arrow(input))
     {
         return None;
     }
@@ -111,7 +111,7 @@ pub fn missing_arrow_error(
 }
 
 /// Returns whether the next tokens are the misspelt arrow `->>`.
-fn is_misspelt_double_arrow(input: ParseStream<'_>) -> bool {
+fn is_double_headed_arrow(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }

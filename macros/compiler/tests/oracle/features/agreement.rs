@@ -32,14 +32,14 @@ fn compile_and_call(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &
 }
 
 /// Checks all functions of the random mechanism of a seed. Returns the number of comparisons.
-pub fn check_all_functions(seed: u64) -> usize {
+pub fn check_random_mechanism(seed: u64) -> usize {
     let (arguments, item) = source::random_source(seed);
-    check_all(&arguments, &item, &[], seed)
+    check_functions_of_mechanism(&arguments, &item, &[], seed)
 }
 
 /// Checks all functions of a mechanism, which must include `functions`, at a random state. Returns the number
 /// of comparisons.
-pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> usize {
+pub fn check_functions_of_mechanism(arguments: &str, item: &str, functions: &[&str], seed: u64) -> usize {
     let name = format!("seed {seed}\n#[mechanism({arguments})]\n{item}");
     let mut compared = 0;
     compile_and_call(arguments, item, &mut |model, output| {
@@ -201,7 +201,7 @@ impl Case<'_, '_> {
             Some(rates) => values.run_function(self.output, rates),
             None => values.v.clone(),
         };
-        move |h| of(&values.values_after(&charts, &joints, h))
+        move |h| of(&values.values_after_time(&charts, &joints, h))
     }
 
     /// Compares every function with its variants with lanes and with prepared values.

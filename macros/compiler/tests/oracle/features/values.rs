@@ -161,7 +161,7 @@ impl Values {
 
     /// Returns the values after a short time `h`: moved with the joint velocities, with constant
     /// accelerations.
-    pub fn values_after(&self, charts: &[Chart], joints: &[f64], h: f64) -> Values {
+    pub fn values_after_time(&self, charts: &[Chart], joints: &[f64], h: f64) -> Values {
         let step: Vec<f64> = joints.iter().map(|v| h * v).collect();
         let mut values = self.displaced_values(charts, &step);
         values.t += h;

@@ -109,7 +109,7 @@ impl Planner<'_> {
         }
         let registers = self.values.len();
         self.values.truncate(registers - JOINING);
-        self.run(&angles.before, &vec![Vec::new(); end])?;
+        self.plan_instructions(&angles.before, &vec![Vec::new(); end])?;
         self.values.resize(registers, None);
         // Index of each angle among all.
         let mut places: Vec<(Operand, usize)> = Vec::with_capacity(all.len());

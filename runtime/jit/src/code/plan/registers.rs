@@ -12,7 +12,7 @@ impl Planner<'_> {
         let op = self.program.instructions[k];
         let operands = self.operands(k);
         if is_call(&op) {
-            (0..self.values.len()).for_each(|register| self.free_register(register));
+            (0..self.values.len()).for_each(|register| self.evict_value(register));
         } else {
             for j in &operands {
                 self.load_if_needed_soon(*j, k);
@@ -35,7 +35,7 @@ impl Planner<'_> {
             Place::Register(register) if self.values[usize::from(*register)].is_none() => Some(*register),
             _ => None,
         });
-        let to = dying.unwrap_or_else(|| self.take());
+        let to = dying.unwrap_or_else(|| self.take_register());
         self.plan.steps.push(Step::Operation(op, to, places, self.widths[k]));
         for (width, entry) in ended {
             self.free.entry(width).or_default().push(entry);
@@ -121,7 +121,7 @@ impl Planner<'_> {
         let next = self.uses[k].iter().rev().nth(1);
         let Some(Residence { register: None, memory: Some(memory) }) = self.places[k] else { return };
         if next.is_some_and(|next| *next <= now + SOON) {
-            let register = self.take();
+            let register = self.take_register();
             self.plan.steps.push(Step::Load(register, memory, self.widths[k]));
             self.values[usize::from(register)] = Some(k);
             self.places[k] = Some(Residence { register: Some(register), memory: Some(memory) });
@@ -129,18 +129,18 @@ impl Planner<'_> {
     }
 
     /// Returns a register without a value. If all have values, the one whose next use is last goes to memory.
-    fn take(&mut self) -> u8 {
+    fn take_register(&mut self) -> u8 {
         let next = |value: Option<usize>| value.and_then(|k| self.uses[k].last().copied());
         let free = self.values.iter().position(Option::is_none);
         let register = free.unwrap_or_else(|| {
             (0..self.values.len()).max_by_key(|register| next(self.values[*register])).unwrap_or(0)
         });
-        self.free_register(register);
+        self.evict_value(register);
         register as u8
     }
 
     /// Takes the value out of a register.
-    fn free_register(&mut self, register: usize) {
+    fn evict_value(&mut self, register: usize) {
         let Some(k) = self.values[register].take() else { return };
         let Some(residence) = &mut self.places[k] else { return };
         residence.register = None;

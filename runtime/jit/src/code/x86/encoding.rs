@@ -28,7 +28,7 @@ pub struct Encoding {
 }
 
 /// An instruction on one number.
-const fn scalar(opcode: u8) -> Encoding {
+const fn scalar_encoding(opcode: u8) -> Encoding {
     Encoding { opcode, map: 1, prefix: 3, wide: false, long: false }
 }
 
@@ -42,13 +42,13 @@ pub const fn fused(opcode: u8) -> Encoding {
     Encoding { opcode, map: 2, prefix: 1, wide: true, long: false }
 }
 
-pub const LOAD: Encoding = scalar(0x10);
-pub const STORE: Encoding = scalar(0x11);
-pub const ADD: Encoding = scalar(0x58);
-pub const MULTIPLY: Encoding = scalar(0x59);
-pub const SUBTRACT: Encoding = scalar(0x5C);
-pub const DIVIDE: Encoding = scalar(0x5E);
-pub const SQUARE_ROOT: Encoding = scalar(0x51);
+pub const LOAD: Encoding = scalar_encoding(0x10);
+pub const STORE: Encoding = scalar_encoding(0x11);
+pub const ADD: Encoding = scalar_encoding(0x58);
+pub const MULTIPLY: Encoding = scalar_encoding(0x59);
+pub const SUBTRACT: Encoding = scalar_encoding(0x5C);
+pub const DIVIDE: Encoding = scalar_encoding(0x5E);
+pub const SQUARE_ROOT: Encoding = scalar_encoding(0x51);
 pub const MOVE: Encoding = packed_encoding(0x28);
 pub const AND: Encoding = packed_encoding(0x54);
 pub const XOR: Encoding = packed_encoding(0x57);
@@ -77,7 +77,7 @@ pub const BROADCAST: Encoding = Encoding { opcode: 0x19, map: 2, prefix: 1, wide
 pub const STORE_FOUR: Encoding = Encoding { opcode: 0x11, map: 1, prefix: 1, wide: false, long: true };
 
 /// Returns the form of an instruction on a number of lanes.
-pub fn on_lanes(code: Encoding, width: usize) -> Encoding {
+pub fn encoding_on_lanes(code: Encoding, width: usize) -> Encoding {
     match width {
         1 => code,
         // The opcodes of fused products, which alone have the bit W, differ by one.
@@ -105,8 +105,8 @@ impl Assembler {
     pub fn load(&mut self, to: u8, from: Rm, width: usize) {
         match from {
             Rm::Register(register) if register == to => {}
-            Rm::Register(_) => self.instruction(on_lanes(MOVE, width), to, 0, from),
-            Rm::Memory(..) => self.instruction(on_lanes(LOAD, width), to, 0, from),
+            Rm::Register(_) => self.instruction(encoding_on_lanes(MOVE, width), to, 0, from),
+            Rm::Memory(..) => self.instruction(encoding_on_lanes(LOAD, width), to, 0, from),
         }
     }
 
@@ -128,11 +128,11 @@ impl Assembler {
             }
         }
         self.bytes.push(opcode);
-        self.operand(register, second);
+        self.write_operand_address(register, second);
     }
 
     /// Writes the bytes that address operands.
-    fn operand(&mut self, register: u8, second: Rm) {
+    fn write_operand_address(&mut self, register: u8, second: Rm) {
         let fields = (register & 7) << 3;
         match second {
             Rm::Register(other) => self.bytes.push(0xC0 | fields | other & 7),
@@ -166,21 +166,21 @@ impl Assembler {
 
     /// Writes an instruction on a general register and memory, 64 bits wide.
     pub fn write_general_register_load(&mut self, to: u8, base: u8, offset: i32) {
-        self.wide(0x8B, to, base);
-        self.operand(to, Rm::Memory(base, offset));
+        self.write_wide_opcode(0x8B, to, base);
+        self.write_operand_address(to, Rm::Memory(base, offset));
     }
 
-    pub fn write_effective_address(&mut self, to: u8, base: u8, offset: i32) {
-        self.wide(0x8D, to, base);
-        self.operand(to, Rm::Memory(base, offset));
+    pub fn write_effective_address_load(&mut self, to: u8, base: u8, offset: i32) {
+        self.write_wide_opcode(0x8D, to, base);
+        self.write_operand_address(to, Rm::Memory(base, offset));
     }
 
     pub fn copy(&mut self, to: u8, from: u8) {
-        self.wide(0x8B, to, from);
-        self.operand(to, Rm::Register(from));
+        self.write_wide_opcode(0x8B, to, from);
+        self.write_operand_address(to, Rm::Register(from));
     }
 
-    fn wide(&mut self, opcode: u8, register: u8, base: u8) {
+    fn write_wide_opcode(&mut self, opcode: u8, register: u8, base: u8) {
         self.bytes.extend([0x48 | (register >> 3) << 2 | base >> 3, opcode]);
     }
 

@@ -69,12 +69,12 @@ impl Writer<'_> {
                 let from = self.memory(angles_of_group(k));
                 self.code.load(ANGLE, from, group.width());
             }
-            self.note_large_angles(k == 0, packed_width(group));
-            self.sines_of_angle_register(packed_width(group))?;
-            self.store_rotated(k, group.width());
+            self.write_large_angle_comparison(k == 0, packed_width(group));
+            self.write_reduced_sines(packed_width(group))?;
+            self.write_quadrant_change(k, group.width());
         }
         let widest = plan.angles.first().map_or(1, packed_width);
-        self.code.instruction(on_lanes(TEST, widest), LARGE, 0, Rm::Register(LARGE));
+        self.code.instruction(encoding_on_lanes(TEST, widest), LARGE, 0, Rm::Register(LARGE));
         self.code.bytes.extend([0x0F, 0x85]); // jne
         let pointers = self.pointers.iter().map(|pointer| pointer.slot).collect();
         self.slow = Some(Jump { distance: self.code.bytes.len(), pointers });
@@ -110,20 +110,25 @@ impl Writer<'_> {
     }
 
     /// Writes the comparison of the angles' magnitudes with the largest one for which the reduction is exact.
-    fn note_large_angles(&mut self, is_first: bool, width: usize) {
+    fn write_large_angle_comparison(&mut self, is_first: bool, width: usize) {
         let to = if is_first { LARGE } else { OTHER };
-        self.code.instruction(on_lanes(AND, width), OTHER, ANGLE, self.constant(self.masks + WIDEST));
+        self.code.instruction(
+            encoding_on_lanes(AND, width),
+            OTHER,
+            ANGLE,
+            self.constant(self.masks + WIDEST),
+        );
         let largest = self.constant_of_sines(0);
-        self.code.instruction(on_lanes(COMPARE, width), to, OTHER, largest);
+        self.code.instruction(encoding_on_lanes(COMPARE, width), to, OTHER, largest);
         self.code.bytes.push(GREATER);
         if !is_first {
-            self.code.instruction(on_lanes(OR, WIDEST), LARGE, LARGE, Rm::Register(OTHER));
+            self.code.instruction(encoding_on_lanes(OR, WIDEST), LARGE, LARGE, Rm::Register(OTHER));
         }
     }
 
     /// Writes sine and cosine of the reduced angle: the function `reduced_sine_and_cosine` of the runtime,
     /// with fused products and sums.
-    fn sines_of_angle_register(&mut self, width: usize) -> Result<(), String> {
+    fn write_reduced_sines(&mut self, width: usize) -> Result<(), String> {
         let r = Rm::Register;
         let constant = |k: usize| self.constant_of_sines(k);
         let ([per_angle, round], [minus_half, one]) = ([1, 2].map(constant), [18, 19].map(constant));
@@ -161,39 +166,41 @@ impl Writer<'_> {
             (PRODUCT_MINUS, COS, [r(REDUCED), r(COS), r(LOW)]),
             (PRODUCT_AND_SUM, COS, [r(REDUCED), r(COS), one]),
         ];
-        steps.into_iter().try_for_each(|(op, to, operands)| self.operation(op, to, operands, width))
+        steps
+            .into_iter()
+            .try_for_each(|(op, to, operands)| self.write_operation_code(op, to, operands, width))
     }
 
     /// Writes the change of sine and cosine of the reduced angle into those of the angle, and their stores.
     /// The last bit of the quadrant exchanges them, the bit before is their sign.
-    fn store_rotated(&mut self, group: usize, width: usize) {
+    fn write_quadrant_change(&mut self, group: usize, width: usize) {
         let packed = width.max(2);
         let (register, exchange, sign) = (Rm::Register, OTHER, EIGHTH);
         for (to, bits) in [(exchange, 63), (sign, 62)] {
-            self.code.instruction(on_lanes(SHIFT, packed), 6, to, register(SHIFTED));
+            self.code.instruction(encoding_on_lanes(SHIFT, packed), 6, to, register(SHIFTED));
             self.code.bytes.push(bits);
         }
         for (to, even, odd) in [(LOW, SIN, COS), (SQUARE, COS, SIN)] {
-            self.code.instruction(on_lanes(BLEND, packed), to, even, register(odd));
+            self.code.instruction(encoding_on_lanes(BLEND, packed), to, even, register(odd));
             self.code.bytes.push(exchange << 4);
         }
-        self.code.instruction(on_lanes(AND, packed), sign, sign, self.constant(self.masks));
-        self.code.instruction(on_lanes(XOR, packed), exchange, exchange, register(sign));
+        self.code.instruction(encoding_on_lanes(AND, packed), sign, sign, self.constant(self.masks));
+        self.code.instruction(encoding_on_lanes(XOR, packed), exchange, exchange, register(sign));
         for (result, sign, at) in [(LOW, sign, width), (SQUARE, exchange, 2 * width)] {
-            self.code.instruction(on_lanes(XOR, packed), result, result, register(sign));
+            self.code.instruction(encoding_on_lanes(XOR, packed), result, result, register(sign));
             self.store(result, Memory::Angle(3 * WIDEST * group + at), width);
         }
     }
 
     /// Writes the code for large angles, behind that of the function: a call of the runtime for all angles.
-    pub(super) fn large_angles(&mut self) -> Result<(), String> {
+    pub(super) fn write_large_angle_code(&mut self) -> Result<(), String> {
         let Some(Jump { distance, pointers }) = self.slow.take() else { return Ok(()) };
         let back = distance + 4;
         self.write_distance(distance, self.code.bytes.len())?;
         let saved = self.registers.scratch();
         saved.iter().for_each(|register| self.code.general(0x50, *register));
         if let Rm::Memory(base, at) = self.memory(Memory::Angle(0)) {
-            self.code.write_effective_address(RDI, base, at);
+            self.code.write_effective_address_load(RDI, base, at);
         }
         self.code.write_move_immediate(RSI, self.plan.angle_count() as u64);
         self.call("sines")?;

@@ -13,7 +13,7 @@ use linkwork_compiler::mechanism::{Chart, InQ, InV, SuppliedQuantity};
 
 /// Function of the configuration space, such as integration or difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum ConfigurationSpaceOperation {
     Integrate,
     Difference,
     TangentRate,
@@ -22,8 +22,8 @@ enum Kind {
 
 /// Function of the configuration space, with the indices of the functions that convert between generalized
 /// speeds and joint velocities, if the mechanism declares speeds.
-pub(crate) struct Space {
-    kind: Kind,
+pub(crate) struct ConfigurationSpaceFunction {
+    kind: ConfigurationSpaceOperation,
     speeds: Option<[usize; 2]>,
 }
 
@@ -124,7 +124,7 @@ pub(crate) fn write_transported_velocity_rate(charts: &[Chart], dv: &[f64], v: &
     }
 }
 
-impl Space {
+impl ConfigurationSpaceFunction {
     /// Adds the functions of the configuration space to those of a mechanism.
     pub fn add(maker: &mut CallableFunctionBuilder<'_, '_>) {
         let (nq, nv) = (maker.model.nq(), maker.model.nv());
@@ -136,7 +136,8 @@ impl Space {
         let configuration_argument = |name| Argument::Given(name, SuppliedQuantity::State, nq);
         let mut add = |kind, name, documentation: &str, arguments: Vec<Argument>, rows| {
             let results = vec![Matrix { name: "result", rows, columns: 1 }];
-            let plan = ResultAssembly::Space(Space { kind, speeds });
+            let plan =
+                ResultAssembly::ConfigurationSpaceFunction(ConfigurationSpaceFunction { kind, speeds });
             let calls = speeds.map_or(0, |all| all.map(|k| maker.entries[k].work).into_iter().sum());
             let entry = Entry::new(name, documentation.to_string(), arguments, results, plan);
             let work = 4 * nv + nq + calls;
@@ -144,7 +145,7 @@ impl Space {
         };
         let dv = velocity_argument("dv");
         add(
-            Kind::Integrate,
+            ConfigurationSpaceOperation::Integrate,
             "integrate",
             "Configuration that is reached from `q` in one unit of time with the constant velocity `dv`; \
              quaternions are normalised.",
@@ -152,7 +153,7 @@ impl Space {
             nq,
         );
         add(
-            Kind::Difference,
+            ConfigurationSpaceOperation::Difference,
             "difference",
             "Velocity that leads from one configuration to another in one unit of time.",
             vec![configuration_argument("from"), configuration_argument("to")],
@@ -160,14 +161,14 @@ impl Space {
         );
         match speeds {
             None => add(
-                Kind::TangentRate,
+                ConfigurationSpaceOperation::TangentRate,
                 "tangent_rate",
                 "Rate of `dv` for which `integrate(q, dv)` moves with velocity `v`.",
                 vec![dv, Argument::V],
                 nv,
             ),
             Some(_) => add(
-                Kind::DisplacementRate,
+                ConfigurationSpaceOperation::DisplacementRate,
                 "displacement_rate",
                 "Rate of `dv` for which `integrate(q, dv)` moves with the speeds `v`.",
                 vec![Argument::Q, dv, Argument::V],
@@ -182,7 +183,7 @@ impl Space {
     }
 
     /// Evaluates the function of the configuration space.
-    pub fn run(
+    pub fn evaluate(
         &self,
         shared: &Shared,
         values: Values<'_>,
@@ -194,9 +195,11 @@ impl Space {
         let inputs = values.arguments;
         let Some([rates, speeds]) = self.speeds else {
             return match self.kind {
-                Kind::Integrate => integrate(charts, inputs[0], inputs[1], out),
-                Kind::Difference => difference(charts, inputs[0], inputs[1], out),
-                Kind::TangentRate | Kind::DisplacementRate => tangent_rate(charts, inputs[0], inputs[1], out),
+                ConfigurationSpaceOperation::Integrate => integrate(charts, inputs[0], inputs[1], out),
+                ConfigurationSpaceOperation::Difference => difference(charts, inputs[0], inputs[1], out),
+                ConfigurationSpaceOperation::TangentRate | ConfigurationSpaceOperation::DisplacementRate => {
+                    tangent_rate(charts, inputs[0], inputs[1], out)
+                }
             };
         };
         let (nq, nv) = (shared.sizes.nq, shared.sizes.nv);
@@ -209,15 +212,15 @@ impl Space {
             shared.call(function, values, &[], &given, out, rest);
         };
         match self.kind {
-            Kind::Integrate => {
+            ConfigurationSpaceOperation::Integrate => {
                 call(rates, inputs[0], inputs[1], way);
                 integrate(charts, inputs[0], way, out);
             }
-            Kind::Difference => {
+            ConfigurationSpaceOperation::Difference => {
                 difference(charts, inputs[0], inputs[1], way);
                 call(speeds, inputs[0], way, out);
             }
-            Kind::TangentRate | Kind::DisplacementRate => {
+            ConfigurationSpaceOperation::TangentRate | ConfigurationSpaceOperation::DisplacementRate => {
                 call(rates, inputs[0], inputs[1], way);
                 integrate(charts, inputs[0], way, there);
                 call(rates, there, inputs[2], rate);
