@@ -67,7 +67,8 @@ impl<'a> MjcfReader<'a> {
             return;
         }
         let groups = self.link_groups();
-        let (pairs, excluded) = (self.read_contact_pairs(root, cx), self.read_excluded_bodies(root, cx));
+        let (pairs, excluded) =
+            (self.read_contact_pairs(root, &groups, cx), self.read_excluded_bodies(root, cx));
         let mut candidates = self.candidates_of_pairs(pairs, &groups);
         candidates.extend(self.candidates_of_masks(&candidates, &excluded, &groups));
         if self.options.contacts == ContactOption::Ground {
@@ -198,7 +199,12 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Reads the `<pair>` elements.
-    fn read_contact_pairs(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Vec<ContactPair> {
+    fn read_contact_pairs(
+        &mut self,
+        root: Node<'a>,
+        groups: &LinkGroups,
+        cx: &mut Cx<'_>,
+    ) -> Vec<ContactPair> {
         let mut pairs: Vec<ContactPair> = Vec::new();
         let mut unknown_surfaces = Vec::new();
         for node in contact_elements(root, "pair") {
@@ -231,7 +237,7 @@ impl<'a> MjcfReader<'a> {
                 unknown_surfaces.push(format!("{} with {}", first.text, second.text));
                 continue;
             };
-            let shapes = self.ordered_shapes([a, b]);
+            let shapes = self.ordered_shapes([a, b], groups);
             let place = element_source_position(node, cx);
             if pairs.iter().any(|known| known.shapes == shapes) {
                 let message = format!(
@@ -251,12 +257,12 @@ impl<'a> MjcfReader<'a> {
         pairs
     }
 
-    /// Returns the indices of two shapes in the order of a contact: shapes of bodies before those of the world,
+    /// Returns the indices of two shapes in the order of a contact: shapes of moving bodies before fixed ones,
     /// and these before planes.
-    fn ordered_shapes(&self, [a, b]: [usize; 2]) -> [usize; 2] {
+    fn ordered_shapes(&self, [a, b]: [usize; 2], groups: &LinkGroups) -> [usize; 2] {
         let rank = |k: usize| {
             let shape = &self.contact_shapes[k];
-            (shape.form.is_plane(), shape.link == 0, k)
+            (shape.form.is_plane(), groups.is_fixed[shape.link], k)
         };
         if rank(a) <= rank(b) { [a, b] } else { [b, a] }
     }
@@ -329,7 +335,7 @@ impl<'a> MjcfReader<'a> {
             (0..shapes.len()).partition(|k| shapes[*k].form.is_plane());
         let on_planes = solids.iter().flat_map(|solid| planes.iter().map(|plane| [*solid, *plane]));
         let others = solids.iter().enumerate().flat_map(|(k, first)| {
-            solids[k + 1..].iter().map(|second| self.ordered_shapes([*first, *second]))
+            solids[k + 1..].iter().map(|second| self.ordered_shapes([*first, *second], groups))
         });
         on_planes.chain(others).filter_map(candidate).collect()
     }

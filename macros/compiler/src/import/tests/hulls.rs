@@ -5,7 +5,12 @@ use crate::diag::Diagnostics;
 use crate::syntax::Description;
 
 /// Returns the description of a mechanism of this file with the contacts that the file declares.
-fn read_description(test: &str, options: &str, item: &str, text: &str) -> Result<Description, String> {
+pub(super) fn read_description(
+    test: &str,
+    options: &str,
+    item: &str,
+    text: &str,
+) -> Result<Description, String> {
     let folder = Folder::new(test, &[("r.xml", text), ("stone.obj", STONE)]);
     let mut cx = Diagnostics::new();
     let (options, item) = (options.parse().expect("tokens"), item.parse().expect("tokens"));

@@ -10,6 +10,7 @@ use proc_macro2::Span;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+mod contacts;
 mod couplings;
 mod files;
 mod fuzz;
