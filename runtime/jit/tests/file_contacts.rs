@@ -1,5 +1,5 @@
-//! Checks motions of MJCF scenes with the contacts that the files declare: bodies with each other, with shapes
-//! of the world, declared and excluded pairs.
+//! Checks motions of MJCF scenes with the contacts that the files declare: bodies with each other, with
+//! shapes of the world, declared and excluded pairs.
 
 use linkwork_jit::{Error, Loader, Method, Robot, Sample};
 
@@ -36,8 +36,10 @@ fn end_of_motion(
 fn stacked_boxes_stay_where_they_are() -> Result<(), Error> {
     let robot = load_scene(
         "stack",
-        "<mujoco><worldbody><geom type='plane'/><body name='a' pos='0 0 .1'><freejoint/><geom type='box' size='.1 .1 .1'/></body>\
-         <body name='b' pos='.03 .02 .28'><freejoint/><geom type='box' size='.08 .08 .08'/></body></worldbody></mujoco>",
+        "<mujoco><worldbody><geom type='plane'/><body name='a' pos='0 0 .1'><freejoint/><geom type='box' \
+         size='.1 .1 .1'/></body>\
+         <body name='b' pos='.03 .02 .28'><freejoint/><geom type='box' size='.08 .08 \
+         .08'/></body></worldbody></mujoco>",
     )?;
     assert_eq!(robot.contacts(), 8 + 8 + 13);
     let end =
@@ -48,13 +50,14 @@ fn stacked_boxes_stay_where_they_are() -> Result<(), Error> {
 }
 
 /// Two balls of masses 1 and 3 collide without restitution and friction, so that they continue with their
-/// common velocity. The second ball passes through the third, which `<exclude>` names, and through the fourth,
-/// whose masks differ.
+/// common velocity. The second ball passes through the third, which `<exclude>` names, and through the
+/// fourth, whose masks differ.
 #[test]
 fn balls_collide_unless_the_file_excludes_it() -> Result<(), Error> {
     let ball = |name: &str, x: f64, mass: f64, bits: &str| {
         format!(
-            "<body name='{name}' pos='{x} 0 0'><freejoint/><geom size='.1' condim='1' mass='{mass}' {bits}/></body>"
+            "<body name='{name}' pos='{x} 0 0'><freejoint/><geom size='.1' condim='1' mass='{mass}' \
+             {bits}/></body>"
         )
     };
     let bodies = [
@@ -66,14 +69,16 @@ fn balls_collide_unless_the_file_excludes_it() -> Result<(), Error> {
     let robot = load_scene(
         "balls",
         &format!(
-            "<mujoco><option gravity='0 0 0'/><worldbody>{}</worldbody><contact><exclude body1='c' body2='b'/>\
+            "<mujoco><option gravity='0 0 0'/><worldbody>{}</worldbody><contact><exclude body1='c' \
+             body2='b'/>\
              <exclude body1='a' body2='c'/></contact></mujoco>",
             bodies.concat()
         ),
     )?;
     assert_eq!(robot.contacts(), 1);
     let at = |x: f64, velocity: f64| ([x, 0.0, 0.0], 0.0, [velocity, 0.0, 0.0]);
-    let end = end_of_motion(&robot, &[at(0.0, 4.0), at(0.5, 0.0), at(1.0, 0.0), at(1.5, 0.0)], 2.0)?;
+    let start = [at(0.0, 4.0), at(0.5, 0.0), at(1.0, 0.0), at(1.5, 0.0)];
+    let end = end_of_motion(&robot, &start, 2.0)?;
     let velocities = [0, 6, 12, 18].map(|k| end.v[k]);
     assert!(velocities.iter().zip([1.0, 1.0, 0.0, 0.0]).all(|(v, e)| (v - e).abs() < 1e-9), "{velocities:?}");
     // The first ball moves 0.3 m at 4 m/s before the impact.
@@ -81,19 +86,22 @@ fn balls_collide_unless_the_file_excludes_it() -> Result<(), Error> {
     Ok(())
 }
 
-/// A box with the friction of a declared pair slides down a ramp of the world; another one with the friction of
-/// its shapes sticks; a ball whose contact is excluded falls through. MuJoCo 4.0.0 finds 0.3291 for the first
-/// coordinate of the box that slides, and its soft contacts sink in by up to 1.5 mm.
+/// A box with the friction of a declared pair slides down a ramp of the world; another one with the friction
+/// of its shapes sticks; a ball whose contact is excluded falls through. MuJoCo 4.0.0 finds 0.3291 for the
+/// first coordinate of the box that slides, and its soft contacts sink in by up to 1.5 mm.
 #[test]
 fn declared_pairs_slide_with_their_own_friction() -> Result<(), Error> {
     let robot = load_scene(
         "pairs",
         "<mujoco><default><default class='ice'><pair friction='0.05 0.05'/></default></default><worldbody>\
          <geom name='ramp' type='box' size='2 .5 .05' euler='0 20 0'/>\
-         <body name='a' pos='0 -.2 .2' euler='0 20 0'><freejoint/><geom name='a' type='box' size='.1 .1 .1'/></body>\
-         <body name='b' pos='0 .2 .2' euler='0 20 0'><freejoint/><geom name='b' type='box' size='.1 .1 .1'/></body>\
+         <body name='a' pos='0 -.2 .2' euler='0 20 0'><freejoint/><geom name='a' type='box' size='.1 .1 \
+         .1'/></body>\
+         <body name='b' pos='0 .2 .2' euler='0 20 0'><freejoint/><geom name='b' type='box' size='.1 .1 \
+         .1'/></body>\
          <body name='ghost' pos='0 0 1'><freejoint/><geom size='.1'/></body></worldbody><contact>\
-         <pair name='ice' class='ice' geom1='ramp' geom2='a'/><exclude body1='world' body2='ghost'/></contact></mujoco>",
+         <pair name='ice' class='ice' geom1='ramp' geom2='a'/><exclude body1='world' \
+         body2='ghost'/></contact></mujoco>",
     )?;
     let tilt = 20.0_f64.to_radians();
     let (sine, cosine) = tilt.sin_cos();
@@ -122,7 +130,8 @@ fn ball_stops_at_a_wall_of_the_world() -> Result<(), Error> {
         "wall",
         "<mujoco><worldbody><body name='yard'><geom name='floor' type='plane'/>\
          <geom name='wall' type='box' size='.05 1 .5' pos='1 0 .5'/></body>\
-         <body name='ball' pos='.5 0 .1'><freejoint/><geom size='.1' friction='.5'/></body></worldbody></mujoco>",
+         <body name='ball' pos='.5 0 .1'><freejoint/><geom size='.1' \
+         friction='.5'/></body></worldbody></mujoco>",
     )?;
     assert_eq!(robot.contacts(), 2);
     let end = end_of_motion(&robot, &[([0.5, 0.0, 0.1], 0.0, [2.0, 0.0, 0.0])], 1.5)?;
@@ -141,9 +150,12 @@ fn gripper_carries_a_box_by_friction() -> Result<(), Error> {
             &format!(
                 "<mujoco><default><geom type='box' friction='{friction}' condim='3'/></default><worldbody>\
                  <body name='palm' pos='0 0 .3'><geom name='palm' size='.08 .03 .02'/>\
-                 <body name='left' pos='-.05 0 -.1'><joint name='l' type='slide' axis='1 0 0'/><geom size='.01 .02 .04' mass='.1'/></body>\
-                 <body name='right' pos='.05 0 -.1'><joint name='r' type='slide' axis='-1 0 0'/><geom size='.01 .02 .04' mass='.1'/></body></body>\
-                 <body name='box' pos='0 0 .2'><freejoint/><geom size='.03 .03 .03' mass='.2'/></body></worldbody>\
+                 <body name='left' pos='-.05 0 -.1'><joint name='l' type='slide' axis='1 0 0'/><geom \
+                 size='.01 .02 .04' mass='.1'/></body>\
+                 <body name='right' pos='.05 0 -.1'><joint name='r' type='slide' axis='-1 0 0'/><geom \
+                 size='.01 .02 .04' mass='.1'/></body></body>\
+                 <body name='box' pos='0 0 .2'><freejoint/><geom size='.03 .03 .03' \
+                 mass='.2'/></body></worldbody>\
                  <actuator><motor joint='l'/><motor joint='r'/></actuator></mujoco>"
             ),
         )?;
@@ -156,12 +168,15 @@ fn gripper_carries_a_box_by_friction() -> Result<(), Error> {
     Ok(())
 }
 
-/// Loaded mechanisms move with as many contact points as a mechanism may have.
+/// Loaded mechanisms move with nearly the maximum number of contact points of a mechanism.
 #[test]
 fn scenes_with_many_contact_points_move() -> Result<(), Error> {
     let boxes: String = (0..15)
         .map(|k| {
-            format!("<body pos='{k} 0 .1'><joint type='slide' axis='0 0 1'/><geom type='box' size='.1 .1 .1' mass='1'/></body>")
+            format!(
+                "<body pos='{k} 0 .1'><joint type='slide' axis='0 0 1'/><geom type='box' size='.1 .1 \
+             .1' mass='1'/></body>"
+            )
         })
         .collect();
     let text = format!(

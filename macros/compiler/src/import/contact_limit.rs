@@ -9,7 +9,7 @@ use crate::syntax::{
 /// Maximum number of names in a line of the documentation.
 const MAX_NAMES: usize = 12;
 
-/// Removes the contacts of the file whose points exceed those that the other contacts leave, and lists them in
+/// Removes contacts of the file until the contact points are at most the maximum number, and lists them in
 /// the documentation. Contacts with planes are always included. Then each contact is included if its points
 /// fit, in the order of the kinds of contacts and of the distances of the shapes; contacts of bodies that
 /// joints connect are included only if the points of all of them fit.

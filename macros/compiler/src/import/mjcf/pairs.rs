@@ -40,7 +40,7 @@ struct ContactPair {
 }
 
 /// Contact of two shapes that the file may have.
-struct Candidate {
+struct ContactCandidate {
     shapes: [usize; 2],
     name: Option<String>,
     friction: [f64; 3],
@@ -73,7 +73,8 @@ impl<'a> MjcfReader<'a> {
         candidates.extend(self.candidates_of_masks(&candidates, &excluded, &groups));
         if self.options.contacts == ContactOption::Ground {
             let shapes = &self.contact_shapes;
-            let touches_world = |one: &Candidate| one.shapes.iter().any(|k| groups.is_fixed[shapes[*k].link]);
+            let touches_world =
+                |one: &ContactCandidate| one.shapes.iter().any(|k| groups.is_fixed[shapes[*k].link]);
             let count = candidates.len();
             candidates.retain(touches_world);
             if candidates.len() < count {
@@ -93,7 +94,7 @@ impl<'a> MjcfReader<'a> {
     }
 
     /// Adds the supported contacts among the candidates, and lists the others in the documentation.
-    fn declare_contacts(&mut self, mut candidates: Vec<Candidate>) {
+    fn declare_contacts(&mut self, mut candidates: Vec<ContactCandidate>) {
         let labels = self.shape_labels();
         let has_planes = self.contact_shapes.iter().filter(|shape| shape.form.is_plane()).count() > 1;
         let mut names: BTreeSet<String> = self.joint_names.union(&self.link_names).cloned().collect();
@@ -144,8 +145,8 @@ impl<'a> MjcfReader<'a> {
             tree: (0..links.len()).collect(),
             is_fixed: vec![true; links.len()],
         };
-        // Every link follows its parent in the list. Links without mass between two joints of a body belong to
-        // its parent.
+        // Every link follows its parent in the list. Massless links between two joints of a body belong to
+        // the parent of the body.
         let mut carrier = vec![0; links.len()];
         for joint in &self.robot.joints {
             let (Some(parent), Some(child)) =
@@ -257,8 +258,8 @@ impl<'a> MjcfReader<'a> {
         pairs
     }
 
-    /// Returns the indices of two shapes in the order of a contact: shapes of moving bodies before fixed ones,
-    /// and these before planes.
+    /// Returns the indices of two shapes in the order of a contact: shapes of moving bodies before fixed
+    /// shapes, and these before planes.
     fn ordered_shapes(&self, [a, b]: [usize; 2], groups: &LinkGroups) -> [usize; 2] {
         let rank = |k: usize| {
             let shape = &self.contact_shapes[k];
@@ -285,7 +286,7 @@ impl<'a> MjcfReader<'a> {
 
     /// Returns the candidates that `<pair>` elements declare, without those whose shapes do not move relative
     /// to each other.
-    fn candidates_of_pairs(&self, pairs: Vec<ContactPair>, groups: &LinkGroups) -> Vec<Candidate> {
+    fn candidates_of_pairs(&self, pairs: Vec<ContactPair>, groups: &LinkGroups) -> Vec<ContactCandidate> {
         let moving = pairs.into_iter().filter(|pair| {
             let [a, b] = pair.shapes.map(|k| self.contact_shapes[k].link);
             groups.group[a] != groups.group[b] && !(groups.is_fixed[a] && groups.is_fixed[b])
@@ -296,7 +297,7 @@ impl<'a> MjcfReader<'a> {
                 ContactForm::Solid { .. } => FileContactKind::Pair,
             };
             let of_file = FileContact { kind, distance: self.distance_of_shapes(shapes) };
-            Candidate { shapes, name, friction, place, of_file }
+            ContactCandidate { shapes, name, friction, place, of_file }
         });
         candidates.collect()
     }
@@ -304,10 +305,10 @@ impl<'a> MjcfReader<'a> {
     /// Returns the candidates that the masks permit and that are not declared: first those with planes.
     fn candidates_of_masks(
         &self,
-        declared: &[Candidate],
+        declared: &[ContactCandidate],
         excluded: &BTreeSet<[usize; 2]>,
         groups: &LinkGroups,
-    ) -> Vec<Candidate> {
+    ) -> Vec<ContactCandidate> {
         let shapes = &self.contact_shapes;
         let declared: BTreeSet<[usize; 2]> = declared.iter().map(|one| one.shapes).collect();
         let candidate = |pair: [usize; 2]| {
@@ -323,7 +324,7 @@ impl<'a> MjcfReader<'a> {
                 _ if groups.tree[first.link] != groups.tree[second.link] => FileContactKind::Bodies,
                 _ => FileContactKind::Connected,
             };
-            collide.then(|| Candidate {
+            collide.then(|| ContactCandidate {
                 shapes: pair,
                 name: None,
                 friction: first.law.combined_friction_coefficients(&second.law),
@@ -366,8 +367,8 @@ struct ShapeLabel {
 }
 
 impl LinkGroups {
-    /// Whether two links may collide: they move relative to each other, and neither is the parent of the other,
-    /// unless the parent is fixed in the world or `filter_parent` is false.
+    /// Whether two links may collide: they move relative to each other, and neither is the parent of the
+    /// other, unless the parent is fixed in the world or `filter_parent` is false.
     fn permit_contact(&self, a: usize, b: usize, filter_parent: bool) -> bool {
         let [first, second] = [self.group[a], self.group[b]];
         let is_parent = self.parent[first] == second || self.parent[second] == first;
@@ -395,7 +396,8 @@ fn read_pair_friction(element: &super::defaults::Element<'_>, cx: &mut Cx<'_>) -
         cx.report_error(&found.place, "friction that differs along the tangents is not supported", |d| {
             d.add_help(format!(
                 "the sliding coefficients of the pair are {first} and {second}, those of rolling \
-                 {around_first} and {around_second}; MuJoCo completes a shorter list by 1 1 0.005 0.0001 0.0001"
+                 {around_first} and {around_second}; MuJoCo completes a shorter list by the entries of 1 1 \
+                 0.005 0.0001 0.0001"
             ))
         });
     }
@@ -404,7 +406,7 @@ fn read_pair_friction(element: &super::defaults::Element<'_>, cx: &mut Cx<'_>) -
 
 /// Removes the most distant candidates of each kind beyond the maximum number of contact points, because each
 /// contact has a point. Returns a line of the documentation for each kind with removed candidates.
-fn omit_distant_candidates(candidates: &mut Vec<Candidate>) -> Vec<String> {
+fn omit_distant_candidates(candidates: &mut Vec<ContactCandidate>) -> Vec<String> {
     let mut lines = Vec::new();
     for (kind, what) in [
         (FileContactKind::World, "contacts of bodies with distant shapes of the world"),

@@ -27,7 +27,8 @@ fn contacts_of_file(text: &str) -> Vec<String> {
 /// World, fixed body `s` with a moving child `m`, and a free body `f` with two shapes, all of which overlap.
 fn overlapping_bodies(option: &str, contact: &str) -> String {
     format!(
-        "<mujoco>{option}<default><pair condim='4'/><default class='q'><pair friction='.5 .5'/></default></default><worldbody>\
+        "<mujoco>{option}<default><pair condim='4'/><default class='q'><pair friction='.5 \
+         .5'/></default></default><worldbody>\
          <geom name='w' type='box' size='1 1 1'/>\
          <body name='s' pos='0 0 1'><geom name='s' size='.2' pos='0 0 .1'/>\
          <body name='m' pos='0 0 .1'><geom name='m' size='.2' friction='.7 .02 .003'/><joint/>\
@@ -77,7 +78,8 @@ fn declared_pairs_have_their_own_friction() {
         "<mujoco><worldbody><geom name='floor' type='plane' friction='2'/>\
          <body name='a'><freejoint/><geom name='a' size='1' friction='3'/></body>\
          <body name='b'><freejoint/><geom size='1' condim='6' friction='.1 .2 .3'/></body>\
-         <body name='c'><freejoint/><geom type='capsule' size='1 1' priority='1' friction='.1'/></body></worldbody>\
+         <body name='c'><freejoint/><geom type='capsule' size='1 1' priority='1' \
+         friction='.1'/></body></worldbody>\
          <contact><pair geom1='floor' geom2='a' friction='.3 .3'/></contact></mujoco>",
     );
     assert_eq!(
@@ -135,7 +137,8 @@ fn unsupported_contacts_are_listed() {
         ContactOption::File,
         "<mujoco><worldbody><geom name='hills' type='hfield' hfield='h'/><body name='a'><freejoint/>\
          <geom type='ellipsoid' size='1 2 1' margin='.1'/></body><body name='b'><freejoint/>\
-         <geom name='b' type='box' size='1 1 1'/></body><body name='c'><freejoint/><geom size='1'/></body></worldbody>\
+         <geom name='b' type='box' size='1 1 1'/></body><body name='c'><freejoint/><geom \
+         size='1'/></body></worldbody>\
          <contact><pair geom1='hills' geom2='b'/></contact></mujoco>",
     )
     .expect("a mechanism");
@@ -155,7 +158,8 @@ fn nearest_bodies_share_the_contact_points() {
     let boxes: String = (1..=5)
         .map(|k| {
             format!(
-                "<body name='d{k}' pos='{k} 0 0'><freejoint/><geom type='box' size='.1 .1 .1' mass='1'/></body>"
+                "<body name='d{k}' pos='{k} 0 0'><freejoint/><geom type='box' size='.1 .1 .1' \
+                 mass='1'/></body>"
             )
         })
         .collect();
@@ -192,8 +196,8 @@ fn contacts_of_one_robot_are_complete_or_absent() {
         let found = hulls::read_description(&test, "mjcf = \"r.xml\", contacts = file", "struct S;", &text);
         let found = found.expect("a mechanism");
         assert_eq!(found.contacts.len(), contacts);
-        let line = "contacts of bodies that joints connect, which do not fit into the 128 contact points of a \
-                    mechanism: 28";
+        let line = "contacts of bodies that joints connect, which do not fit into the 128 contact points of \
+                    a mechanism: 28";
         assert_eq!(found.left_out.iter().any(|found| found == line), contacts == 0, "{:?}", found.left_out);
     }
 }
