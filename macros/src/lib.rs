@@ -94,7 +94,7 @@ use std::path::PathBuf;
 /// | `base = fixed` or `free` | whether the file's root link is fixed to the ground (default) or a floating base. MJCF files specify this themselves; `free` is valid only for files with one outermost body without a joint |
 /// | `passive = honour` or `ignore` | whether damping, friction and springs of the file's joints and tendons are imported (default) or ignored |
 /// | `mimic = follow` or `independent` | whether joints with `mimic`, and joints and bodies in MJCF's `<equality>`, are coupled (default) or independent |
-/// | `contacts = file` or `ignore` | whether contacts between the bodies of an MJCF file and the planes of its world are imported; the default is ignore |
+/// | `contacts = file`, `ground` or `ignore` | `file`: the contacts of an MJCF file are imported. `ground`: only those of bodies with the world. `ignore` (default): none |
 /// | `loops = refuse` or `close` | whether a link of a URDF file that is the child of several joints is an error (default), or all but one of these joints close loops |
 /// | `limits = honour`, `ignore` or `stops` | `honour` (default): the limits of the file's joints are those of the trait `linkwork::Limits`. `ignore`: they are not imported. `stops`: in addition, joints stop at the limits of their coordinates |
 /// | `inertia = check`, `trust` or `none` | `check` (default): physically impossible inertias are errors. `trust`: inertias are not checked. `none`: masses and inertias are not imported, for kinematics alone |

@@ -30,7 +30,7 @@ pub fn read_source(
     let (mut files, before) = (Vec::new(), cx.len());
     mechanism.description.drawing = mechanism.requests.drawing;
     if let Some(options) = &mut mechanism.file {
-        options.collisions = options.contacts
+        options.collisions = options.contacts != syntax::ContactOption::Ignore
             || mechanism.description.contacts.iter().any(syntax::Contact::uses_file_collisions);
         options.visuals = mechanism.requests.drawing;
         let path = folder.join(&options.path.text);

@@ -26,7 +26,7 @@ pub(crate) trait ContactVisitor {
 /// Maximum number of coordinates, velocities, inputs and constraints of a robot.
 const LARGEST: usize = 256;
 /// Maximum number of unilateral contacts of a robot.
-const MOST_CONTACTS: usize = 64;
+const MOST_CONTACTS: usize = 128;
 /// Number of coordinates, velocities, inputs and constraints beyond which matrices have [`LARGEST`] rows.
 const MEDIUM: usize = 64;
 
@@ -103,13 +103,16 @@ impl Robot {
             ..=MEDIUM if count <= 16 => {
                 Ok(visitor.visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, 16, 48, _>::new(self)?))
             }
+            ..=MEDIUM if count <= 64 => {
+                Ok(visitor.visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, 64, 192, _>::new(self)?))
+            }
             ..=MEDIUM => {
                 Ok(visitor
-                    .visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, MOST_CONTACTS, 192, _>::new(self)?))
+                    .visit(&PaddedContacts::<MEDIUM, MEDIUM, MEDIUM, MOST_CONTACTS, 384, _>::new(self)?))
             }
             count if count <= LARGEST => on_stack(LARGE_STACK, || {
                 Ok(visitor
-                    .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 192, _>::new(self)?))
+                    .visit(&PaddedContacts::<LARGEST, LARGEST, LARGEST, MOST_CONTACTS, 384, _>::new(self)?))
             }),
             count => {
                 Err(self.capacity_error("coordinates, velocities, inputs or constraints", count, LARGEST))

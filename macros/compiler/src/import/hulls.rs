@@ -1,12 +1,17 @@
 //! Convex hulls of the meshes that contacts use: of collision geometry, and of files named in `hull("…")`.
 //! Only these meshes are read.
 
+use super::contact_limit::{
+    contact_and_moment_count, contact_point_count, list_first_names, select_contacts,
+};
 use super::mesh;
 use super::pose::{Vector, add, matrix_times_vector};
 use crate::diag::Diagnostics;
 use crate::hull::{Hull, HullError, MAX_VERTICES};
 use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
-use crate::syntax::{Collision, Contact, Description, Expr, ExprKind, Key, MeshVertices, Name, Shape};
+use crate::syntax::{
+    Collision, Contact, Description, Expr, ExprKind, FileContactKind, MeshVertices, Name, Shape,
+};
 use std::path::{Path, PathBuf};
 
 /// Minimum number of vertices of a hull for a contact that the file declares. With fewer vertices the mesh is
@@ -31,21 +36,25 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
     }
     let is_mesh = |part: &Collision| part.shape == Shape::Mesh && part.mesh.is_some();
     let share = vertices_per_mesh(&description.contacts, &description.collisions);
-    // Vertices allowed for each mesh: zero if no contact uses it.
-    let mut maxima = vec![0; description.collisions.len()];
-    for contact in &description.contacts {
-        let most = if contact.of_file { share } else { MAX_VERTICES };
-        for side in [&contact.first, &contact.second] {
-            for k in select_collisions(side, &description.collisions).unwrap_or_default() {
-                maxima[k] = most.max(maxima[k]);
+    // Vertices allowed for each mesh, zero if no contact uses it, and whether a mechanism without its hull is
+    // an error. Declared contacts take precedence over contacts of the file with planes, and these over other
+    // contacts of the file.
+    let mut maxima = vec![(0, false); description.collisions.len()];
+    let source = |contact: &Contact| contact.of_file.map(|of_file| of_file.kind == FileContactKind::Plane);
+    for (kind, most) in [(Some(false), MAX_VERTICES), (Some(true), share), (None, MAX_VERTICES)] {
+        for contact in description.contacts.iter().filter(|contact| source(contact) == kind) {
+            for side in [&contact.first, &contact.second] {
+                for k in select_collisions(side, &description.collisions).unwrap_or_default() {
+                    maxima[k] = (most, kind.is_none());
+                }
             }
         }
     }
-    for (part, most) in description.collisions.iter_mut().zip(maxima) {
+    for (part, (most, is_required)) in description.collisions.iter_mut().zip(maxima) {
         let Some(source) = part.mesh.as_ref().filter(|_| is_mesh(part) && most >= MIN_VERTICES) else {
             continue;
         };
-        if let Some((hull, count)) = hull_of_mesh(source, most, &mut files, cx) {
+        if let Some((hull, count)) = hull_of_mesh(source, (most, is_required), &mut files, cx) {
             notes.extend(omitted_vertices_note(
                 &format!("the mesh of `{}`", part.on.body.text),
                 &hull,
@@ -54,7 +63,8 @@ pub fn read_hulls(description: &mut Description, folder: &Path, cx: &mut Diagnos
             part.hull = hull.vertices;
         }
     }
-    omit_meshes_without_hull(description);
+    omit_meshes_without_hull(description, share);
+    select_contacts(description);
     description.left_out.extend(notes);
     files
 }
@@ -70,7 +80,7 @@ fn replace_hull_file(
     let [Expr { kind: ExprKind::Text(path), place }] = arguments.as_slice() else { return };
     let name = Name { text: path.clone(), place: place.clone() };
     let source = MeshVertices::scaled(name, mesh::candidate_paths(folder, path), [1.0; 3]);
-    if let Some((hull, count)) = hull_of_mesh(&source, MAX_VERTICES, files, cx) {
+    if let Some((hull, count)) = hull_of_mesh(&source, (MAX_VERTICES, true), files, cx) {
         notes.extend(omitted_vertices_note(&format!("the mesh `{path}`"), &hull, count));
         let points = hull.vertices.iter().map(|p| Expr::vector_at(*p, place)).collect();
         let points = Expr { kind: ExprKind::Array(points), place: place.clone() };
@@ -86,10 +96,11 @@ fn omitted_vertices_note(mesh: &str, hull: &Hull, count: usize) -> Option<String
 }
 
 /// Returns the hull of a mesh with at most `maximum` vertices, and the number of vertices of the mesh; `None`
-/// after an error, or if so few vertices do not represent the mesh.
+/// after an error, or if so few vertices do not represent the mesh. The latter is an error if the hull is
+/// required.
 fn hull_of_mesh(
     source: &MeshVertices,
-    maximum: usize,
+    (maximum, is_required): (usize, bool),
     files: &mut Vec<PathBuf>,
     cx: &mut Diagnostics,
 ) -> Option<(Hull, usize)> {
@@ -98,6 +109,7 @@ fn hull_of_mesh(
     if let Some(first) = source.paths.first() {
         let path = source.paths.iter().find(|path| path.is_file()).unwrap_or(first);
         match mesh::read_triangles(path, name) {
+            Ok(triangles) if triangles.len() > MAX_TRIANGLES && !is_required => return None,
             Ok(triangles) if triangles.len() > MAX_TRIANGLES => {
                 let message = format!("mesh `{name}` has more than {MAX_TRIANGLES} triangles");
                 cx.report_error(place, message).add_help("use a simplified mesh for contacts");
@@ -118,8 +130,7 @@ fn hull_of_mesh(
     points.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     points.dedup();
     match Hull::new(&points, maximum) {
-        // Several meshes share the points of contact: this one is omitted.
-        Ok(hull) if hull.error > MAX_ERROR * hull.size && maximum < MAX_VERTICES => None,
+        Ok(hull) if hull.error > MAX_ERROR * hull.size && !is_required => None,
         Ok(hull) if hull.error > MAX_ERROR * hull.size => {
             let kept = hull.vertices.len();
             let message = format!(
@@ -131,6 +142,7 @@ fn hull_of_mesh(
             None
         }
         Ok(hull) => Some((hull, points.len())),
+        Err(_) if !is_required => None,
         Err(error) => {
             cx.report_error(
                 place,
@@ -150,43 +162,43 @@ fn describe_hull_error(error: HullError) -> String {
     }
 }
 
-/// Returns the number of friction moments of a contact, and one for the contact itself.
-fn contact_and_moment_count(contact: &Contact) -> usize {
-    let count_of_argument = |key| usize::from(contact.arguments.get(key).is_some());
-    1 + count_of_argument(Key::TorsionalFriction) + count_of_argument(Key::RollingFriction)
-}
-
 /// Returns the number of vertices for each mesh in the contacts with planes that the file declares: the
 /// maximum number of contact points without those of other shapes, divided by the number of meshes.
 fn vertices_per_mesh(contacts: &[Contact], collisions: &[Collision]) -> usize {
     let (mut others, mut meshes) = (0, 0);
-    for contact in contacts.iter().filter(|contact| contact.of_file) {
-        for k in select_collisions(&contact.first, collisions).unwrap_or_default() {
-            let points = match collisions[k].shape {
-                Shape::Cuboid(_) | Shape::Cylinder(..) => 8,
-                Shape::Capsule(..) => 2,
-                Shape::Sphere(_) | Shape::Ellipsoid(_) => 1,
-                Shape::Mesh => 0,
-            };
-            others += points * contact_and_moment_count(contact);
-            meshes += if points == 0 { contact_and_moment_count(contact) } else { 0 };
+    let is_on_plane =
+        |contact: &&Contact| contact.of_file.is_some_and(|of_file| of_file.kind == FileContactKind::Plane);
+    for contact in contacts.iter().filter(is_on_plane) {
+        // Meshes have no vertices yet.
+        match contact_point_count(contact, collisions) {
+            Some(points) if points > 0 => others += points,
+            _ => meshes += contact_and_moment_count(contact),
         }
     }
     (MAX_CONTACT_POINTS.saturating_sub(others) / meshes.max(1)).min(MAX_VERTICES)
 }
 
-/// Removes the contacts of the file whose mesh has no hull because there are too many meshes.
-fn omit_meshes_without_hull(description: &mut Description) {
+/// Removes the contacts of the file whose mesh has no hull: there are too many meshes, so that each has at
+/// most `share` vertices, or no convex hull represents the mesh.
+fn omit_meshes_without_hull(description: &mut Description, share: usize) {
     let collisions = &description.collisions;
-    let before = description.contacts.len();
-    description.contacts.retain(|contact| {
-        let parts = select_collisions(&contact.first, collisions).unwrap_or_default();
-        !contact.of_file || parts.iter().all(|k| !collisions[*k].is_mesh_without_hull())
-    });
-    let count = before - description.contacts.len();
-    if count > 0 {
+    let has_hulls = |contact: &Contact| {
+        let sides = [&contact.first, &contact.second].into_iter();
+        let parts = sides.flat_map(|side| select_collisions(side, collisions).unwrap_or_default());
+        contact.of_file.is_none() || parts.into_iter().all(|k| !collisions[k].is_mesh_without_hull())
+    };
+    let (with_hulls, without): (Vec<Contact>, Vec<Contact>) =
+        std::mem::take(&mut description.contacts).into_iter().partition(has_hulls);
+    description.contacts = with_hulls;
+    if without.is_empty() {
+        return;
+    }
+    description.left_out.push(if share < MAX_VERTICES {
         let most = MAX_CONTACT_POINTS;
         let what = format!("contacts of meshes whose hulls would have more than {most} points together");
-        description.left_out.push(format!("{what}: {count}"));
-    }
+        format!("{what}: {}", without.len())
+    } else {
+        let what = format!("contacts of meshes that no convex hull with {MAX_VERTICES} vertices represents");
+        list_first_names(&what, &without.into_iter().map(|contact| contact.name.text).collect::<Vec<_>>())
+    });
 }

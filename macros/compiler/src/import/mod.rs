@@ -10,6 +10,7 @@ pub use crate::syntax::FileOptions;
 use std::cell::OnceCell;
 use std::path::Path;
 
+mod contact_limit;
 mod context;
 mod element;
 mod file;

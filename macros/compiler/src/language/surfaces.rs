@@ -103,3 +103,42 @@ impl SurfaceId {
             .or_else(|| surfaces_with_name().next())
     }
 }
+
+/// Maximum number of contact points of a face of a hull with a face of another polytope.
+pub const MAX_FACE_POINTS: usize = 12;
+
+/// Surface of a contact: its form, `None` for a point, and its numbers of vertices and of corners of the
+/// largest face, which are zero if it is not a polytope.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceSize {
+    /// Form of the surface; `None` for a point.
+    pub id: Option<SurfaceId>,
+    /// Number of vertices of a hull.
+    pub vertices: usize,
+    /// Number of corners of the largest face of a box or a hull.
+    pub corners: usize,
+}
+
+impl SurfaceSize {
+    /// Returns the number of contact points of two surfaces; `None` if their contact is not supported.
+    pub fn contact_point_count(&self, other: &SurfaceSize) -> Option<usize> {
+        self.point_count_on(other).or_else(|| other.point_count_on(self))
+    }
+
+    /// Returns the number of contact points if the table lists this surface on the other one.
+    fn point_count_on(&self, other: &SurfaceSize) -> Option<usize> {
+        let below = other.id.filter(|below| below.row().contacts.contains(&self.id))?;
+        let Some(above) = self.id else { return Some(1) };
+        Some(match (above, below) {
+            (Cuboid | Drum, SurfaceId::Plane | SurfaceId::Terrain) => 8,
+            (Capsule, SurfaceId::Plane | SurfaceId::Terrain) => 2,
+            (Hull, SurfaceId::Plane | SurfaceId::Terrain) => self.vertices,
+            (Cuboid | Hull, Hull) => (self.corners + other.corners).min(MAX_FACE_POINTS) + 1,
+            (Capsule, Capsule | Cuboid | Drum) => 5,
+            (Capsule, Cylinder | Hull) | (Cylinder, Hull | Cuboid) => 3,
+            (Cuboid, Cuboid) => 13,
+            (Drum, Cuboid) => 16,
+            _ => 1,
+        })
+    }
+}

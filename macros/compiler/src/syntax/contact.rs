@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments;
 use super::keys::{ElementArgumentKeys, check_argument_relations};
-use super::{Collision, Contact, Description, Expr, ExprKind, Name};
+use super::{Collision, Contact, Description, Expr, ExprKind, GROUND, Name};
 use crate::diag::Diagnostics;
 use crate::language::{Callable, Method, OtherKind};
 
@@ -30,7 +30,7 @@ pub fn read_contact(
     let example = row.example;
     match (surfaces.next(), surfaces.next(), surfaces.next()) {
         (Some(first), Some(second), None) => {
-            description.contacts.push(Contact { name, first, second, arguments: given, of_file: false });
+            description.contacts.push(Contact { name, first, second, arguments: given, of_file: None });
         }
         (Some(only), None, _) => {
             cx.report_error(only.place, "expected two surfaces, found one")
@@ -68,7 +68,8 @@ pub fn collision_link(surface: &Expr) -> Option<Option<&Expr>> {
 /// `None` for other surfaces.
 pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>> {
     let link = collision_link(surface)?.and_then(Expr::as_name);
-    let is_shape_of_link = |part: &Collision| link.is_none_or(|name| part.on.body.text == name);
+    let is_shape_of_link =
+        |part: &Collision| link.map_or(part.on.body.text != GROUND, |name| part.on.body.text == name);
     let parts = (0..all.len()).filter(|k| is_shape_of_link(&all[*k]));
     let index = match &surface.kind {
         ExprKind::Method(_, _, arguments) => arguments.first().and_then(Expr::literal_number),

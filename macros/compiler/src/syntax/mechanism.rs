@@ -83,6 +83,17 @@ pub enum LimitOption {
     Stops,
 }
 
+/// Option for the contacts of an MJCF file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactOption {
+    /// Contacts of the file are not read.
+    Ignore,
+    /// Only contacts of bodies with the world are read.
+    Ground,
+    /// All contacts of the file are read.
+    File,
+}
+
 /// Option for the treatment of loops of a URDF file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoopOption {
@@ -190,8 +201,8 @@ pub struct FileOptions {
     pub snap: Option<f64>,
     /// Values of the robot file that become parameters.
     pub parameters: Vec<FileParameters>,
-    /// Whether contacts of the file are included.
-    pub contacts: bool,
+    /// Option for the contacts of the file.
+    pub contacts: ContactOption,
     /// Option for loops of a URDF file: a link may be the child of several joints, of which all but one close
     /// loops.
     pub loops: LoopOption,
@@ -216,7 +227,7 @@ impl FileOptions {
             lock: Vec::new(),
             snap: None,
             parameters: Vec::new(),
-            contacts: false,
+            contacts: ContactOption::Ignore,
             loops: LoopOption::Refuse,
             collisions: false,
             visuals: false,

@@ -30,18 +30,21 @@ mod state;
 mod table;
 pub mod words;
 
-pub use crate::language::{ElementKind, ForceKind, JointKind, Key, OtherKind};
+pub use crate::language::{
+    ElementKind, ForceKind, JointKind, Key, Method, OtherKind, SurfaceId, SurfaceSize,
+};
 pub use attribute::parse_mechanism;
 pub use description::{
     Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
     Description, Drive, DriveLaw, DriveQuantity, DriveTarget, Endpoint, Equilibrium, Expr, ExprKind,
-    Formulation, Frame, FreeCoordinate, InertiaOption, Joint, Limit, Member, Mesh, MeshVertices,
-    MimicRelation, Name, Particle, Point, Rank, ScalarType, Shape, Table, Target, Term, Visual, Wrench,
-    WrittenArguments, restitution_coefficient,
+    FileContact, FileContactKind, Formulation, Frame, FreeCoordinate, InertiaOption, Joint, Limit, Member,
+    Mesh, MeshVertices, MimicRelation, Name, Particle, Point, Rank, ScalarType, Shape, Table, Target, Term,
+    Visual, Wrench, WrittenArguments, restitution_coefficient,
 };
 pub use duplicate::duplicate_struct_without_fields;
 pub use mechanism::{
-    FileFormat, FileInputSource, FileOptions, GROUND, LimitOption, LoopOption, Mechanism, ROOT_JOINT, Shell,
+    ContactOption, FileFormat, FileInputSource, FileOptions, GROUND, LimitOption, LoopOption, Mechanism,
+    ROOT_JOINT, Shell,
 };
 pub use request::{EquationsOption, RequestOption, RequestedFunctions, SkippedPasses};
 pub use separate::insert_missing_commas;

@@ -3,7 +3,7 @@
 
 use super::arguments::Arguments;
 use super::file_parameters::{self, FileParameters};
-use super::mechanism::{FileFormat, FileInputSource, FileOptions, LimitOption, LoopOption};
+use super::mechanism::{ContactOption, FileFormat, FileInputSource, FileOptions, LimitOption, LoopOption};
 use super::parameter::unify_scalar_types;
 use super::request::{EquationsOption, REQUESTS, RequestedFunctions};
 use super::{
@@ -126,17 +126,25 @@ pub fn read_options(
     })
 }
 
-/// Reads `contacts = file | ignore`: whether contacts of the file are included, for a format that has them.
-fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Diagnostics) -> bool {
+/// Reads `contacts = file | ground | ignore`: which contacts of the file are included, for a format that has
+/// them.
+fn read_contacts(
+    arguments: &mut Arguments,
+    format: Option<FileFormat>,
+    cx: &mut Diagnostics,
+) -> ContactOption {
     let place = arguments.span_of_key("contacts");
-    let from_file =
-        arguments.take_choice("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
-    let unsupported = format.filter(|format| from_file && *format != FileFormat::Mjcf);
-    if let (Some(place), Some(unsupported)) = (place, unsupported) {
-        cx.report_error(place, format!("{} does not declare contacts", unsupported.file_format_phrase()))
-            .add_help(super::contact::CONTACT_HELP);
-    }
-    from_file && unsupported.is_none()
+    let contacts = match arguments.take_choice("contacts", &["file", "ground", "ignore"], cx) {
+        Some((word, _)) if word == "file" => ContactOption::File,
+        Some((word, _)) if word == "ground" => ContactOption::Ground,
+        _ => ContactOption::Ignore,
+    };
+    let unsupported =
+        format.filter(|format| contacts != ContactOption::Ignore && *format != FileFormat::Mjcf);
+    let (Some(place), Some(unsupported)) = (place, unsupported) else { return contacts };
+    cx.report_error(place, format!("{} does not declare contacts", unsupported.file_format_phrase()))
+        .add_help(super::contact::CONTACT_HELP);
+    ContactOption::Ignore
 }
 
 /// Reads `loops = refuse | close | ignore`, an option of URDF files. Other formats have joints or constraints

@@ -71,6 +71,7 @@ impl<'a> MjcfReader<'a> {
             cx.report_error(&element_source_position(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
             return None;
         }
+        self.collect_paired_shapes(root);
         let mut open: Vec<PendingBody<'a>> = Vec::new();
         for node in worlds.into_iter().rev() {
             let class = self.defaults.class_index(node, "childclass", 0, cx);
@@ -83,7 +84,7 @@ impl<'a> MjcfReader<'a> {
                 });
             }
             self.collect_sites(&inside, GROUND, cx);
-            self.add_world_planes(&inside.shapes, cx);
+            self.add_collision_shapes(0, &inside.shapes, cx);
             self.record_shapes(GROUND, &inside.shapes, cx);
             open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| PendingBody {
                 node,

@@ -225,22 +225,7 @@ impl<'a> MjcfReader<'a> {
             if attribute == "body2" && !element.node.has_attribute(attribute) {
                 return Some((zero, FilePose::ZERO));
             }
-            let mut body = read_name_attribute(element.node, attribute, cx)?;
-            if body.text == super::body::WORLD {
-                return Some((Name { text: GROUND.to_string(), ..body }, FilePose::ZERO));
-            }
-            if body.text == GROUND {
-                // The body `ground` of the file was renamed.
-                let renamed = self.poses.keys().find(|known| known.starts_with("ground_link"));
-                body.text = renamed.cloned().unwrap_or(body.text);
-            }
-            let Some(pose) = self.poses.get(&body.text) else {
-                let known = self.poses.keys().map(String::as_str);
-                let message = format!("unknown body {}", quote_word(&body.text));
-                cx.report_error(&body.place, message, |d| d.suggest_name(&body.text, known));
-                return None;
-            };
-            Some((body, *pose))
+            self.find_body(read_name_attribute(element.node, attribute, cx)?, cx)
         };
         let [(first, outer), (second, inner)] = [end("body1")?, end("body2")?];
         // Pose of the first body relative to the second, in the configuration of the file.

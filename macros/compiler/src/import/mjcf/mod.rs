@@ -9,7 +9,7 @@ use super::whole::import_composed_text;
 use crate::diag::Diagnostics;
 use crate::import::imported::ImportedMechanism;
 use crate::import::robot::{self, JointOrder};
-use crate::syntax::{DriveLaw, DriveTarget, Expr, FileFormat, FileOptions, GROUND, JointKind};
+use crate::syntax::{ContactOption, DriveLaw, DriveTarget, Expr, FileFormat, FileOptions, GROUND, JointKind};
 use defaults::Defaults;
 use mesh::Meshes;
 use reader::MjcfReader;
@@ -33,6 +33,7 @@ mod law;
 mod medium;
 mod mesh;
 mod muscle;
+mod pairs;
 mod reader;
 mod record;
 mod rest;
@@ -88,12 +89,13 @@ fn read_mjcf_root(
     reader.scale_masses();
     reader.add_fluid_drag(cx);
     robot::check_names(&reader.robot, options.format, cx);
-    reader.add_plane_contacts(cx);
+    reader.add_contacts(root, cx);
     let tendons = reader.read_tendons(root, cx);
     reader.read_equalities(root, &tendons, cx);
     reader.read_actuators(root, &tendons, cx);
     for (section, what) in ASIDE {
-        let nodes = child_elements(root).filter(|node| node.tag_name().name() == section);
+        let is_read = section == "contact" && options.contacts != ContactOption::Ignore;
+        let nodes = child_elements(root).filter(|node| node.tag_name().name() == section && !is_read);
         reader.count_skipped_contents(what, nodes.map(|node| child_elements(node).count()).sum());
     }
     let gravity = &reader.settings.gravity;

@@ -1,15 +1,17 @@
 //! State of the reader of an MJCF file.
 
+use super::body::WORLD;
 use super::defaults::{Defaults, Element};
 use super::geometry::BodyMass;
 use super::mesh::Meshes;
 use super::settings::MjcfSettings;
-use super::touch::{CollisionShape, Plane};
+use super::touch::ContactShape;
 use crate::diag::Place;
+use crate::import::context::{Cx, quote_word};
 use crate::import::imported::Located;
 use crate::import::pose::{FilePose, roll_pitch_yaw, vector_times_scalar};
 use crate::import::robot::{FileOrigin, Robot};
-use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
+use crate::syntax::{Body, Expr, ExprKind, FileOptions, GROUND, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// State of the reader of an MJCF file.
@@ -52,10 +54,10 @@ pub(super) struct MjcfReader<'a> {
     /// Number of bodies read so far, which is MuJoCo's index of the last one.
     pub(super) bodies: usize,
     pub(super) sites: Vec<(Name, String, FilePose)>,
-    /// Planes of the world with which shapes can collide.
-    pub(super) planes: Vec<Plane>,
-    /// Collision shapes of bodies that can touch planes of the world.
-    pub(super) touching: Vec<CollisionShape>,
+    /// Shapes that can touch each other, in the order of the file, those of the world first.
+    pub(super) contact_shapes: Vec<ContactShape>,
+    /// Names of the shapes for which the file declares contacts.
+    pub(super) paired_shapes: BTreeSet<String>,
 }
 
 impl<'a> MjcfReader<'a> {
@@ -94,14 +96,34 @@ impl<'a> MjcfReader<'a> {
             masses: vec![None],
             bodies: 0,
             sites: Vec::new(),
-            planes: Vec::new(),
-            touching: Vec::new(),
+            contact_shapes: Vec::new(),
+            paired_shapes: BTreeSet::new(),
         }
     }
 
     /// Adds `more` to the count of skipped contents of this kind.
     pub(super) fn count_skipped_contents(&mut self, what: &'static str, more: usize) {
         *self.counts.entry(what).or_default() += more;
+    }
+
+    /// Returns the link of a body of the file, and its pose relative to the world in the configuration of the
+    /// file. Reports an unknown body.
+    pub(super) fn find_body(&self, mut body: Name, cx: &mut Cx<'_>) -> Option<(Name, FilePose)> {
+        if body.text == WORLD {
+            return Some((Name { text: GROUND.to_string(), ..body }, FilePose::ZERO));
+        }
+        if body.text == GROUND {
+            // The body `ground` of the file was renamed.
+            let renamed = self.poses.keys().find(|known| known.starts_with("ground_link"));
+            body.text = renamed.cloned().unwrap_or(body.text);
+        }
+        let Some(pose) = self.poses.get(&body.text) else {
+            let known = self.poses.keys().map(String::as_str);
+            let message = format!("unknown body {}", quote_word(&body.text));
+            cx.report_error(&body.place, message, |d| d.suggest_name(&body.text, known));
+            return None;
+        };
+        Some((body, *pose))
     }
 
     /// Scales all masses by a common factor to the value of `settotalmass`.

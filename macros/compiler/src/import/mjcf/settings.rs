@@ -59,6 +59,8 @@ pub(super) struct MjcfSettings {
     limits: bool,
     /// Whether contacts are enabled.
     contacts: bool,
+    /// Whether a body does not collide with its parent.
+    pub(super) filter_parent: bool,
     /// Whether actuators are enabled.
     pub(super) actuation: bool,
     /// Whether actuator inputs are clamped to their ranges.
@@ -95,6 +97,7 @@ impl MjcfSettings {
             equality: true,
             limits: true,
             contacts: true,
+            filter_parent: true,
             actuation: true,
             clamped: true,
             disabled_groups: Vec::new(),
@@ -234,6 +237,7 @@ impl MjcfSettings {
         set("equality", &mut self.equality);
         set("limit", &mut self.limits);
         set("contact", &mut self.contacts);
+        set("filterparent", &mut self.filter_parent);
         set("actuation", &mut self.actuation);
         set("clampctrl", &mut self.clamped);
         set("gravity", &mut self.gravitates);

@@ -1,11 +1,16 @@
-//! Conversion of MJCF contact parameters of shapes to contacts with planes.
+//! MJCF contact parameters of shapes, and contacts between two shapes.
 
 use super::defaults::Element;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::pose::{FilePose, matrix_times_vector};
-use crate::syntax::{Contact, Expr, ExprKind, GROUND, Key, Name, WrittenArguments};
+use crate::import::pose::{FilePose, Vector, matrix_times_vector};
+use crate::syntax::{
+    Contact, Expr, ExprKind, FileContact, Key, Name, Shape, SurfaceId, SurfaceSize, WrittenArguments,
+};
 use std::cmp::Ordering;
+
+/// MuJoCo's dimension of a contact without the attribute `condim`.
+const DIMENSION: f64 = 3.0;
 
 /// MJCF contact parameters of a shape.
 pub(super) struct MjcfContactParameters {
@@ -19,18 +24,26 @@ pub(super) struct MjcfContactParameters {
     friction: [f64; 3],
 }
 
-/// Plane of the MJCF world, with which shapes collide.
-pub(super) struct Plane {
-    pub(super) name: String,
-    pub(super) pose: FilePose,
-    pub(super) law: MjcfContactParameters,
+/// Form of an MJCF shape in contacts.
+pub(super) enum ContactForm {
+    /// Plane, with its pose relative to its link.
+    Plane(FilePose),
+    /// Collision shape of its link.
+    Solid {
+        /// Index of the shape among the collision shapes of its link.
+        number: usize,
+        /// Shape with its lengths.
+        shape: Shape,
+        /// Centre of the shape relative to its link.
+        center: Vector,
+    },
 }
 
-/// Collision shape of an MJCF body.
-pub(super) struct CollisionShape {
+/// Shape of an MJCF file that other shapes can touch.
+pub(super) struct ContactShape {
+    /// Index of the link that carries the shape.
     pub(super) link: usize,
-    /// Index of the shape among the shapes of its body.
-    pub(super) number: usize,
+    pub(super) form: ContactForm,
     pub(super) name: Option<String>,
     pub(super) law: MjcfContactParameters,
     pub(super) place: Place,
@@ -50,20 +63,18 @@ impl MjcfContactParameters {
                 );
             }
         }
-        let mut of = |attribute: &str, usual: f64| {
-            shape.read_finite_attribute(attribute, cx).map_or(usual, |found| found.value)
-        };
-        let (bits, priority) =
-            ([of("contype", 1.0) as u32, of("conaffinity", 1.0) as u32], of("priority", 0.0));
-        let dimensions = of("condim", 3.0);
+        let bits = Self::read_masks(shape, cx);
+        let priority = shape.read_finite_attribute("priority", cx).map_or(0.0, |found| found.value);
+        let dimensions = read_contact_dimension(shape, cx);
         let usual = [1.0, 0.005, 0.0001];
         let friction = shape.numbers_with_defaults("friction", usual, cx).map_or(usual, |found| found.value);
         MjcfContactParameters { bits, priority, dimensions, friction }
     }
 
-    /// Returns true if the bit masks of the shape permit no contacts.
-    pub(super) fn has_no_contacts(&self) -> bool {
-        self.bits == [0; 2]
+    /// Reads the bit masks `contype` and `conaffinity` of a shape.
+    pub(super) fn read_masks(shape: &Element<'_>, cx: &mut Cx<'_>) -> [u32; 2] {
+        ["contype", "conaffinity"]
+            .map(|attribute| shape.read_finite_attribute(attribute, cx).map_or(1, |bits| bits.value as u32))
     }
 
     /// Returns true if the masks of two shapes permit contact.
@@ -74,7 +85,7 @@ impl MjcfContactParameters {
     /// Returns the coefficients of sliding, torsional and rolling friction between two shapes (MuJoCo,
     /// *Computation*, "Contact"). They are those of the shape with higher priority. With equal priority they
     /// are the larger coefficients, and the dimension is the larger dimension.
-    fn combined_friction_coefficients(&self, other: &MjcfContactParameters) -> [f64; 3] {
+    pub(super) fn combined_friction_coefficients(&self, other: &MjcfContactParameters) -> [f64; 3] {
         let (dimensions, friction) = match self.priority.total_cmp(&other.priority) {
             Ordering::Greater => (self.dimensions, self.friction),
             Ordering::Less => (other.dimensions, other.friction),
@@ -83,35 +94,84 @@ impl MjcfContactParameters {
                 (self.dimensions.max(other.dimensions), larger)
             }
         };
-        let least = [3.0, 4.0, 6.0];
-        std::array::from_fn(|k| if dimensions < least[k] { 0.0 } else { friction[k] })
+        friction_of_dimension(dimensions, friction)
     }
 }
 
-impl CollisionShape {
-    /// Returns the contact between the shape and a plane of the world.
-    pub(super) fn contact_with_plane(&self, name: String, link: &str, plane: &Plane) -> Contact {
+/// Reads `condim`, the dimension of a contact.
+pub(super) fn read_contact_dimension(element: &Element<'_>, cx: &mut Cx<'_>) -> f64 {
+    let Some(found) = element.read_finite_attribute("condim", cx) else { return DIMENSION };
+    if ![1.0, 3.0, 4.0, 6.0].contains(&found.value) {
+        cx.report_error(&found.place, format!("`condim` is {}", found.value), |d| {
+            d.add_help("expected 1, 3, 4 or 6: the dimension of the contact")
+        });
+    }
+    found.value
+}
+
+/// Returns the coefficients of sliding, torsional and rolling friction that a contact of this dimension has.
+pub(super) fn friction_of_dimension(dimension: f64, friction: [f64; 3]) -> [f64; 3] {
+    let least = [3.0, 4.0, 6.0];
+    std::array::from_fn(|k| if dimension < least[k] { 0.0 } else { friction[k] })
+}
+
+impl ContactForm {
+    /// Returns the surface of the form, without the size of a mesh.
+    fn surface(&self) -> SurfaceSize {
+        let id = match self {
+            ContactForm::Plane(_) => SurfaceId::Plane,
+            ContactForm::Solid { shape, .. } => shape.surface(),
+        };
+        SurfaceSize { id: Some(id), vertices: 0, corners: 0 }
+    }
+
+    /// Whether Linkwork supports the contact of two forms.
+    pub(super) fn supports_contact_with(&self, other: &ContactForm) -> bool {
+        self.surface().contact_point_count(&other.surface()).is_some()
+    }
+
+    /// Whether the form is a plane.
+    pub(super) fn is_plane(&self) -> bool {
+        matches!(self, ContactForm::Plane(_))
+    }
+}
+
+impl ContactShape {
+    /// Returns the expression of the surface of the shape, on the link with this name.
+    fn surface_expression(&self, link: &str) -> Expr {
         let at = &self.place;
-        let name_with_source_span = |text: &str| Name { text: text.to_string(), place: at.clone() };
-        let name_expression = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-        let method_expression =
-            |of: Expr, word: &str, argument: Expr| Expr::method_call(of, word, vec![argument]);
-        let normal = Expr::vector_at(matrix_times_vector(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
-        let point = method_expression(name_expression(GROUND), "at", Expr::vector_at(plane.pose.at, at));
-        let nonzero_coefficient = |number: f64| (number != 0.0).then(|| Expr::number_at(number, at));
+        let link = Expr { kind: ExprKind::Name(link.to_string()), place: at.clone() };
+        match &self.form {
+            ContactForm::Plane(pose) => {
+                let normal = Expr::vector_at(matrix_times_vector(&pose.axes, [0.0, 0.0, 1.0]), at);
+                let point = Expr::method_call(link, "at", vec![Expr::vector_at(pose.at, at)]);
+                Expr::method_call(point, "plane", vec![normal])
+            }
+            ContactForm::Solid { number, .. } => {
+                Expr::method_call(link, "collision", vec![Expr::number_at(*number as f64, at)])
+            }
+        }
+    }
+
+    /// Returns the contact of the shape with another shape, each on the link with this name.
+    pub(super) fn contact_with(
+        &self,
+        other: &ContactShape,
+        (name, place): (String, &Place),
+        [link, other_link]: [&str; 2],
+        friction: [f64; 3],
+        of_file: FileContact,
+    ) -> Contact {
+        let nonzero_coefficient = |number: f64| (number != 0.0).then(|| Expr::number_at(number, place));
         let keys = [Key::Friction, Key::TorsionalFriction, Key::RollingFriction];
-        let values = self.law.combined_friction_coefficients(&plane.law).map(nonzero_coefficient);
+        let values = friction.map(nonzero_coefficient);
         let given = keys.into_iter().zip(values).filter_map(|(key, value)| Some((key, value?)));
         Contact {
-            name: name_with_source_span(&name),
-            first: method_expression(
-                name_expression(link),
-                "collision",
-                Expr::number_at(self.number as f64, at),
-            ),
-            second: method_expression(point, "plane", normal),
+            name: Name { text: name, place: place.clone() },
+            first: self.surface_expression(link),
+            second: other.surface_expression(other_link),
             arguments: WrittenArguments(given.collect()),
-            of_file: true,
+            of_file: Some(of_file),
         }
     }
 }

@@ -327,7 +327,7 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
 
 #[test]
 fn mjcf_planes_become_contacts() {
-    let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
+    let options = FileOptions { contacts: ContactOption::File, collisions: true, ..mjcf_options() };
     let imported_contacts_with_world = |world: &str| {
         let text = format!(
             "<mujoco><worldbody>{world}<body name='b'><freejoint/><geom name='a' size='1'/><geom size='1' condim='1' contype='2'/>\
@@ -382,8 +382,12 @@ fn mjcf_planes_become_contacts() {
         let refused = imported_contacts_with_world(&format!("<geom type='plane' {force}/>"));
         assert!(refused.contains("of a colliding shape is not supported"), "{refused}");
     }
-    let none = imported_contacts_with_world("<geom type='box' size='1 1 1'/>");
-    assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");
+    let on_box = imported_contacts_with_world("<geom type='box' size='1 1 1' contype='0' conaffinity='5'/>");
+    assert_eq!(
+        on_box,
+        "a_world_geom0_contact: b.collision(0) ground.collision(0) 1\n\
+         b_geom2_world_geom0_contact: b.collision(2) ground.collision(0) 0.2\n"
+    );
 }
 
 #[test]
@@ -604,10 +608,10 @@ fn tendon_paths_without_length_are_rejected() {
     }
 }
 
-/// Requested contacts with planes that the file does not contain are reported.
+/// Requested contacts that the file does not contain are reported.
 #[test]
-fn requested_planes_without_contacts_are_reported() {
-    let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
+fn requested_contacts_that_the_file_lacks_are_reported() {
+    let options = FileOptions { contacts: ContactOption::File, collisions: true, ..mjcf_options() };
     let import_with_contact_bits = |bits: &str| {
         let text = format!(
             "<mujoco><worldbody><geom type='plane' size='1 1 1' {bits}/>\
@@ -617,8 +621,5 @@ fn requested_planes_without_contacts_are_reported() {
     };
     assert!(import_with_contact_bits("").starts_with("the root is the ground\n"));
     let found = import_with_contact_bits("contype='2' conaffinity='2'");
-    assert!(
-        found.starts_with("no body of the file has a shape that can touch a plane of its world\n"),
-        "{found}"
-    );
+    assert!(found.starts_with("no shapes of the file can touch each other\n"), "{found}");
 }

@@ -3,13 +3,14 @@
 use super::{FileOptions, ImportedMechanism, import_file};
 use crate::diag::Diagnostics;
 use crate::syntax::{
-    Base, BinaryOp, Body, Drive, DriveLaw, DriveTarget, Endpoint, Expr, ExprKind, FileFormat,
+    Base, BinaryOp, Body, ContactOption, Drive, DriveLaw, DriveTarget, Endpoint, Expr, ExprKind, FileFormat,
     FileInputSource, InertiaOption, Joint, LoopOption, Name,
 };
 use proc_macro2::Span;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+mod contacts;
 mod couplings;
 mod files;
 mod fuzz;

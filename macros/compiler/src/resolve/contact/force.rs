@@ -101,7 +101,7 @@ pub(super) fn report_friction_without_rotation(
         ),
     ];
     for (key, about, _) in
-        checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && !contact.of_file)
+        checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && contact.of_file.is_none())
     {
         let Some(e) = contact.arguments.get(key) else { continue };
         cx.report_error(e.place.clone(), format!("no friction moment acts {about}"))

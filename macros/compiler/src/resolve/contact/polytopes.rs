@@ -16,15 +16,13 @@ use super::pair::SurfacePair;
 use super::polytope_shapes::{box_polytope, hull_polytope, segment_polytope};
 use super::surface::SurfaceForm;
 use crate::expr::{Expr, Extreme, Vec3};
+use crate::language::MAX_FACE_POINTS;
 use crate::mechanism::{PAIR_FEATURES, POINT_FEATURES, Polytope, PolytopePair, Quantity};
 
 /// Error for surfaces whose shapes depend on parameters.
 const NOT_CONSTANT: &str = "points, lengths and axes of surfaces on a hull must be numbers";
 /// Error for polytopes whose faces are not a closed surface.
 const NOT_CLOSED: &str = "rounding errors decide which points of this surface are in one plane";
-
-/// Maximum number of contact points of a face.
-const MAX_FACE_POINTS: usize = 12;
 
 /// Generic direction that decides between equal faces. Boxes placed on purpose rarely have equal components
 /// along it.

@@ -119,12 +119,13 @@ fn separable_points<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Vec<CandidatePoint<'g>>> {
     let place = contact.first.place.extend_to_end_of(&contact.second.place);
-    let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision_link(e), Some(None)));
+    let is_of_file = contact.of_file.is_some()
+        || [&contact.first, &contact.second].iter().any(|e| matches!(collision_link(e), Some(None)));
     let mut points: Vec<CandidatePoint<'g>> = Vec::new();
     for first in firsts {
         for second in seconds {
-            // A contact of all links of a file omits surfaces of the same link.
-            if whole && first.frame.link == second.frame.link {
+            // Contacts of a file omit surfaces of the same link.
+            if is_of_file && first.frame.link == second.frame.link {
                 continue;
             }
             let places = (&contact.second, &place);
@@ -133,10 +134,10 @@ fn separable_points<'g>(
     }
     let count = points.len();
     points.retain(|point| !velocity_gradient(point.rates[0].1).is_empty());
-    if contact.of_file && points.is_empty() {
+    if contact.of_file.is_some() && points.is_empty() {
         return Some(points);
     }
-    if points.is_empty() || (points.len() < count && !whole && !contact.of_file) {
+    if points.is_empty() || (points.len() < count && !is_of_file) {
         cx.report_error(place, "these surfaces cannot move relative to each other")
             .add_help("a contact is between surfaces of bodies that move relative to each other");
         return None;

@@ -75,8 +75,32 @@ pub struct Contact {
     /// Coefficients of friction and restitution, stiffness and dissipation; surfaces without a stiffness are
     /// rigid.
     pub arguments: WrittenArguments,
-    /// Whether the contact is from a file. Pairs that never separate are then omitted.
-    pub of_file: bool,
+    /// Source of the contact, if it is from a file. Pairs that never separate are then omitted.
+    pub of_file: Option<FileContact>,
+}
+
+/// Contact of a file: its priority among those that share the contact points of a mechanism.
+#[derive(Clone, Copy, Debug)]
+pub struct FileContact {
+    /// Kind of the contact.
+    pub kind: FileContactKind,
+    /// Distance of the spheres around both shapes in the configuration of the file, m.
+    pub distance: f64,
+}
+
+/// Kind of a contact of a file, in the order in which contacts are included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FileContactKind {
+    /// Contact with a plane of the world.
+    Plane,
+    /// Contact that the file declares for two shapes.
+    Pair,
+    /// Contact with another shape of the world.
+    World,
+    /// Contact of bodies that no joints connect.
+    Bodies,
+    /// Contact of bodies that joints connect.
+    Connected,
 }
 
 impl Contact {

@@ -2,6 +2,7 @@
 
 use super::{Endpoint, Name};
 use crate::diag::Place;
+use crate::language::SurfaceId;
 use std::path::PathBuf;
 
 /// A shape of the collision geometry of a file's link.
@@ -64,6 +65,32 @@ pub enum Shape {
     Ellipsoid([f64; 3]),
     /// Mesh of triangles in a separate file.
     Mesh,
+}
+
+impl Shape {
+    /// Returns the surface of the shape; a mesh collides as its convex hull.
+    pub fn surface(&self) -> SurfaceId {
+        match self {
+            Shape::Sphere(_) => SurfaceId::Sphere,
+            Shape::Cuboid(_) => SurfaceId::Cuboid,
+            Shape::Cylinder(..) => SurfaceId::Drum,
+            Shape::Capsule(..) => SurfaceId::Capsule,
+            Shape::Ellipsoid(_) => SurfaceId::Ellipsoid,
+            Shape::Mesh => SurfaceId::Hull,
+        }
+    }
+
+    /// Returns the radius of the sphere around the shape, m; zero for a mesh, whose size is in its file.
+    pub fn bounding_radius(&self) -> f64 {
+        match *self {
+            Shape::Sphere(radius) => radius,
+            Shape::Cuboid([a, b, c]) => (a * a + b * b + c * c).sqrt() / 2.0,
+            Shape::Cylinder(radius, length) => radius.hypot(length / 2.0),
+            Shape::Capsule(radius, length) => radius + length / 2.0,
+            Shape::Ellipsoid(radii) => radii.into_iter().fold(0.0, f64::max),
+            Shape::Mesh => 0.0,
+        }
+    }
 }
 
 /// A shape of the visual geometry of a file's link.

@@ -10,7 +10,9 @@ mod force;
 mod geometry;
 mod structure;
 
-pub use constraint::{Constraint, ConstraintKind, Contact, Limit, restitution_coefficient};
+pub use constraint::{
+    Constraint, ConstraintKind, Contact, FileContact, FileContactKind, Limit, restitution_coefficient,
+};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
 pub use force::{Action, Drive, DriveLaw, DriveQuantity, DriveTarget, Target, Wrench, WrittenArguments};

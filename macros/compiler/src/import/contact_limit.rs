@@ -1,0 +1,138 @@
+//! Contacts of a file that fit into the number of contact points of a mechanism.
+
+use crate::hull::{Hull, MAX_VERTICES};
+use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
+use crate::syntax::{
+    Collision, Contact, Description, Expr, ExprKind, FileContactKind, Key, Method, SurfaceId, SurfaceSize,
+};
+
+/// Maximum number of names in a line of the documentation.
+const MAX_NAMES: usize = 12;
+
+/// Removes contacts of the file until the contact points are at most the maximum number, and lists them in
+/// the documentation. Contacts with planes are always included. Then each contact is included if its points
+/// fit, in the order of the kinds of contacts and of the distances of the shapes; contacts of bodies that
+/// joints connect are included only if the points of all of them fit.
+pub(super) fn select_contacts(description: &mut Description) {
+    let (contacts, collisions) = (&description.contacts, &description.collisions);
+    let counts: Vec<usize> =
+        contacts.iter().map(|contact| contact_point_count(contact, collisions).unwrap_or(0)).collect();
+    let bounds_of_stops =
+        description.limits.iter().filter(|limit| limit.arguments.get(Key::Restitution).is_some());
+    let stops: usize = bounds_of_stops
+        .map(|limit| {
+            [Key::From, Key::To].into_iter().filter(|key| limit.arguments.get(*key).is_some()).count()
+        })
+        .sum();
+    let mut used = stops;
+    let mut optional: Vec<usize> = Vec::new();
+    for (k, contact) in contacts.iter().enumerate() {
+        match contact.of_file {
+            Some(of_file) if of_file.kind != FileContactKind::Plane => optional.push(k),
+            _ => used += counts[k],
+        }
+    }
+    let kind = |k: usize| contacts[k].of_file.map(|of_file| of_file.kind);
+    let distance = |k: usize| contacts[k].of_file.map_or(0.0, |of_file| of_file.distance);
+    optional.sort_by(|a, b| kind(*a).cmp(&kind(*b)).then(distance(*a).total_cmp(&distance(*b))));
+    let is_connected = |k: usize| kind(k) == Some(FileContactKind::Connected);
+    let connected_points: usize = optional.iter().filter(|k| is_connected(**k)).map(|k| counts[*k]).sum();
+    let mut omitted = vec![false; contacts.len()];
+    let (mut excess, mut connected_excess) = (Vec::new(), 0);
+    let mut connected_fit = None;
+    for k in optional {
+        let free = MAX_CONTACT_POINTS.saturating_sub(used);
+        let fits = match is_connected(k) {
+            true => *connected_fit.get_or_insert(connected_points <= free),
+            false => counts[k] <= free,
+        };
+        if fits {
+            used += counts[k];
+        } else {
+            omitted[k] = true;
+            match is_connected(k) {
+                true => connected_excess += 1,
+                false => excess.push(contacts[k].name.text.clone()),
+            }
+        }
+    }
+    let mut omitted = omitted.into_iter();
+    description.contacts.retain(|_| omitted.next() != Some(true));
+    let most = format!("the {MAX_CONTACT_POINTS} contact points of a mechanism");
+    if !excess.is_empty() {
+        let what = format!("contacts that do not fit into {most}");
+        description.left_out.push(list_first_names(&what, &excess));
+    }
+    if connected_excess > 0 {
+        let what = format!("contacts of bodies that joints connect, which do not fit into {most}");
+        description.left_out.push(format!("{what}: {connected_excess}"));
+    }
+}
+
+/// Returns a line of the documentation with the first names of a list.
+pub(super) fn list_first_names(what: &str, names: &[String]) -> String {
+    let first = names.iter().take(MAX_NAMES).cloned().collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(MAX_NAMES) {
+        0 => format!("{what}: {first}"),
+        more => format!("{what}: {first} and {more} more"),
+    }
+}
+
+/// Returns the number of friction moments of a contact, and one for the contact itself.
+pub(super) fn contact_and_moment_count(contact: &Contact) -> usize {
+    let count_of_argument = |key| usize::from(contact.arguments.get(key).is_some());
+    1 + count_of_argument(Key::TorsionalFriction) + count_of_argument(Key::RollingFriction)
+}
+
+/// Returns the number of contact points of a contact, with its moments of friction; `None` if a pair of its
+/// surfaces is not supported. A compliant contact has none.
+pub(super) fn contact_point_count(contact: &Contact, collisions: &[Collision]) -> Option<usize> {
+    if contact.is_compliant() {
+        return Some(0);
+    }
+    let seconds = surface_sizes(&contact.second, collisions);
+    let mut points = 0;
+    for first in surface_sizes(&contact.first, collisions) {
+        for second in &seconds {
+            points += first.contact_point_count(second)?;
+        }
+    }
+    Some(points * contact_and_moment_count(contact))
+}
+
+/// Returns the sizes of the surfaces of one side of a contact.
+fn surface_sizes(surface: &Expr, collisions: &[Collision]) -> Vec<SurfaceSize> {
+    if let Some(selected) = select_collisions(surface, collisions) {
+        return selected
+            .into_iter()
+            .map(|k| sized_surface(Some(collisions[k].shape.surface()), &collisions[k].hull))
+            .collect();
+    }
+    let ExprKind::Method(_, member, arguments) = &surface.kind else { return vec![sized_surface(None, &[])] };
+    let Some(Method::Surface(id)) = member.id else { return vec![sized_surface(None, &[])] };
+    let points = match arguments.first().map(|points| &points.kind) {
+        Some(ExprKind::Array(points)) if id == SurfaceId::Hull => points.as_slice(),
+        _ => &[],
+    };
+    let vertices: Option<Vec<[f64; 3]>> = points.iter().map(constant_vector).collect();
+    let size = sized_surface(Some(id), &vertices.unwrap_or_default());
+    vec![SurfaceSize { vertices: points.len(), ..size }]
+}
+
+/// Returns the components of a vector that is written as three numbers.
+fn constant_vector(e: &Expr) -> Option<[f64; 3]> {
+    let ExprKind::Array(components) = &e.kind else { return None };
+    let components: Option<Vec<f64>> = components.iter().map(Expr::literal_number).collect();
+    components?.try_into().ok()
+}
+
+/// Returns the size of a surface; `vertices` are those of a hull.
+fn sized_surface(id: Option<SurfaceId>, vertices: &[[f64; 3]]) -> SurfaceSize {
+    let corners = match id {
+        Some(SurfaceId::Cuboid) => 4,
+        Some(SurfaceId::Hull) => Hull::new(vertices, MAX_VERTICES)
+            .map_or(0, |hull| hull.faces.iter().map(|face| face.corner_indices().len()).fold(0, usize::max)),
+        _ => 0,
+    };
+    SurfaceSize { id, vertices: vertices.len(), corners }
+}
