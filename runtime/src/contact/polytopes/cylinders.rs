@@ -38,8 +38,9 @@ const FIXED: usize = 4;
 /// Number of features of a pair.
 pub(super) const FEATURES: usize = HEAD + CURVED_POINTS * CURVED + FIXED_POINTS * FIXED;
 
-/// Number of points that represent a rim.
+/// Number of points that represent a rim, and sine and cosine of the angle between two of them.
 const RIM_POINTS: usize = 16;
+const RIM_STEP: [f64; 2] = [0.382_683_432_365_089_8, 0.923_879_532_511_286_7];
 /// Maximum number of points of a clipped face.
 const MAX_POINTS: usize = 64;
 /// Sine of the angle between a face and a parallel end below which no point of the rim is the lowest.
@@ -231,7 +232,7 @@ fn corners<T: Real>(shape: &Placed<'_, T>, face: usize) -> Points<T> {
     let center = shape.vertex(face as u8);
     let mut along = shape.rotation * perpendicular(&shape.rotation.tr_mul(&normal));
     let mut across = normal.cross(&along);
-    let (sine, cosine) = (constant::<T>(2.0 * core::f64::consts::PI / RIM_POINTS as f64)).sin_cos();
+    let (sine, cosine) = (constant::<T>(RIM_STEP[0]), constant::<T>(RIM_STEP[1]));
     for _ in 0..RIM_POINTS {
         points.push(center + along * radius);
         (along, across) = (along * cosine + across * sine, across * cosine - along * sine);
