@@ -139,10 +139,10 @@ fn can_leaves_a_can_at_the_angle_of_the_closed_form() {
             let sample = sample.unwrap();
             let lost = energy - energy_of(&sample.q, &sample.v);
             assert!(lost.abs() < 2e-4, "{friction} {}: {lost}", sample.t);
-            assert!((sample.q[1] - 0.02).abs() < 1e-9, "{}", sample.q);
+            assert!((sample.q[1] - 0.02).abs() < 1e-4, "{}", sample.q);
             left = m.contact_gaps(&sample.q).min() > 0.01;
             if left {
-                assert!((sample.v[0] / speed - 1.0).abs() < 3e-3, "{friction}: {} {speed}", sample.v[0]);
+                assert!((sample.v[0] / speed - 1.0).abs() < 1e-2, "{friction}: {} {speed}", sample.v[0]);
                 break;
             }
         }
