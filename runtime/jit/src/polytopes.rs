@@ -47,6 +47,7 @@ impl Polytopes {
                 faces: &faces[k],
                 edges: &edges[k],
                 size: shape.size(),
+                radius: shape.radius,
             });
             let pair = runtime::PolytopePair { first, second, points: *points };
             let (own, others) = rest.split_at_mut(pair.feature_count());

@@ -103,7 +103,9 @@ impl Robot {
             return Err(refused("it has no masses (`inertia = none`), so it has no equations of motion"));
         }
         if !shared.polytopes.is_empty() {
-            return Err(refused("it has contacts of hulls with hulls, boxes, capsules or cylinders"));
+            return Err(refused(
+                "it has contacts of hulls and cylinders with each other, or of hulls with boxes or capsules",
+            ));
         }
         let module = self.web_module(drawing).map_err(Error::Internal)?;
         let mut fields = self.web_structure();

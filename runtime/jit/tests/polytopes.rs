@@ -1,4 +1,4 @@
-//! Checks that contacts of hulls of loaded mechanisms equal those of generated Rust code.
+//! Checks that contacts of hulls and cylinders of loaded mechanisms equal those of generated Rust code.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -31,6 +31,42 @@ both! {
         )]
         rock: Contact,
     }
+}
+
+both! {
+    CANS,
+    #[mechanism(gravity = -9.81 * z)]
+    struct Cans {
+        #[body(mass = 1, inertia = cylinder(1, 0.1, 0.2, z))]
+        can: Body,
+        #[joint(ground -> can)]
+        pose: Free,
+        #[contact(can.cylinder(0.1, 0.2, z), ground.cylinder(0.15, 0.3, x), friction = 0.5)]
+        drum: Contact,
+        #[contact(
+            can.cylinder(0.1, 0.2, z),
+            ground.hull([[0.5, 0, 0], [-0.5, 0.4, 0], [-0.5, -0.4, 0], [0, 0, -0.2]]),
+            friction = 0.5
+        )]
+        slab: Contact,
+    }
+}
+
+#[test]
+fn contacts_of_cylinders_agree_with_generated_rust() -> Result<(), Error> {
+    let robot = Loader::text(CANS).load()?;
+    let q = SVector::from([0.05, -0.02, 0.28, 0.1, -0.3, 0.2, 0.927_361_849_549_570_4]);
+    let mut gaps = vec![0.0; Cans::CONTACTS.len()];
+    robot.evaluate_into(&robot.function("contact_gaps")?, &[q.as_slice()], &mut gaps)?;
+    let wanted = Cans {}.contact_gaps(&q);
+    assert!(gaps.iter().zip(wanted.iter()).all(|(a, b)| (a - b).abs() < 1e-14), "{gaps:?} {wanted}");
+    let v = [0.1, 0.0, 0.0, 0.0, 0.5, 0.0];
+    let own = simulate(&Cans {}).from(q, v).method(TimeStepping::step(1e-3)).duration(0.1);
+    let own = own.finish().expect("it moves");
+    let run = robot.simulate().from(q.as_slice(), &v).duration(0.1).method(Method::TimeStepping(1e-3));
+    let found = run.finish()?;
+    assert!(found.q.iter().zip(own.q.iter()).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {own:?}");
+    Ok(())
 }
 
 #[test]

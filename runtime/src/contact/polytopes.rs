@@ -13,10 +13,15 @@
 //!    (Sutherland and Hodgman, *Reentrant polygon clipping*, Communications of the ACM 17, 1974).
 //! 3. If separated polytopes have no point of the face at this distance, their closest points are sought
 //!    among vertices and edges.
+//!
+//! Pairs with a cylinder that has end faces have other features, described in [`cylinders`].
 
 mod axes;
 mod clip;
 mod closest;
+mod curves;
+mod cylinders;
+mod search;
 
 use crate::Real;
 use crate::private::constant;
@@ -63,7 +68,8 @@ pub struct PolytopeEdge {
     pub faces: [u8; 2],
 }
 
-/// Convex polytope whose vertices are constant in the axes of its body, or a line segment.
+/// Convex polytope whose vertices are constant in the axes of its body, a line segment, or a cylinder with
+/// two end faces around a line segment.
 #[derive(Clone, Copy, Debug)]
 pub struct Polytope<'a> {
     /// Positions of the vertices, m.
@@ -74,22 +80,26 @@ pub struct Polytope<'a> {
     pub edges: &'a [PolytopeEdge],
     /// Half the sum of the lengths along the axes of the body, m.
     pub size: f64,
+    /// Radius of the cylinder with two end faces around a line segment, m; zero for other shapes.
+    pub radius: f64,
 }
 
-/// Two polytopes in contact, of which at least one has faces.
+/// Two polytopes in contact, of which at least one has faces or is a cylinder.
 #[derive(Clone, Copy, Debug)]
 pub struct PolytopePair<'a> {
     /// Polytope of the first surface.
     pub first: Polytope<'a>,
     /// Polytope of the second surface.
     pub second: Polytope<'a>,
-    /// Maximum number of contact points of a face.
+    /// Maximum number of contact points of a face; without effect for cylinders.
     pub points: usize,
 }
 
 /// Polytope in the axes of the first polytope of its pair.
 struct Placed<'a, T> {
     shape: &'a Polytope<'a>,
+    rotation: Matrix3<T>,
+    position: Vector3<T>,
     vertices: [Vector3<T>; MAX_VERTICES],
     normals: [Vector3<T>; MAX_FACES],
     offsets: [T; MAX_FACES],
@@ -114,7 +124,11 @@ fn vector<T: Real>(v: [f64; 3]) -> Vector3<T> {
 impl PolytopePair<'_> {
     /// Returns the number of features of the pair.
     pub fn feature_count(&self) -> usize {
-        HEAD + POINT * self.points
+        if self.has_cylinder() { cylinders::FEATURES } else { HEAD + POINT * self.points }
+    }
+
+    fn has_cylinder(&self) -> bool {
+        self.first.radius > 0.0 || self.second.radius > 0.0
     }
 }
 
@@ -123,6 +137,8 @@ impl<'a, T: Real> Placed<'a, T> {
         let zero = Vector3::zeros();
         let mut placed = Placed {
             shape,
+            rotation: *rotation,
+            position: *position,
             vertices: [zero; MAX_VERTICES],
             normals: [zero; MAX_FACES],
             offsets: [T::zero(); MAX_FACES],
@@ -138,7 +154,21 @@ impl<'a, T: Real> Placed<'a, T> {
         for (direction, edge) in placed.directions.iter_mut().zip(shape.edges) {
             *direction = rotation * edge_of(shape, edge).1;
         }
+        if shape.radius > 0.0 {
+            // The end faces of a cylinder.
+            let axis = placed.direction(0);
+            for (k, normal) in [-axis, axis].into_iter().enumerate() {
+                let offset = normal.dot(&placed.vertex(k as u8));
+                let face = placed.normals.get_mut(k).zip(placed.offsets.get_mut(k));
+                face.into_iter().for_each(|(n, d)| (*n, *d) = (normal, offset));
+            }
+        }
         placed
+    }
+
+    /// Returns the number of faces, two for a cylinder.
+    fn face_count(&self) -> usize {
+        if self.shape.radius > 0.0 { 2 } else { self.shape.faces.len() }
     }
 
     fn vertices(&self) -> &[Vector3<T>] {
@@ -156,6 +186,51 @@ impl<'a, T: Real> Placed<'a, T> {
     fn offset(&self, face: usize) -> T {
         self.offsets.get(face).copied().unwrap_or_else(T::zero)
     }
+
+    fn direction(&self, edge: usize) -> Vector3<T> {
+        self.directions.get(edge).copied().unwrap_or_else(Vector3::zeros)
+    }
+
+    /// Returns the mean position of the vertices.
+    fn center(&self) -> Vector3<T> {
+        let sum = self.vertices().iter().fold(Vector3::zeros(), |sum, vertex| sum + vertex);
+        sum / constant::<T>(self.vertices().len() as f64)
+    }
+
+    /// Returns a position in the axes of the body.
+    fn to_body(&self, place: &Vector3<T>) -> Vector3<T> {
+        self.rotation.tr_mul(&(place - self.position))
+    }
+
+    /// Returns the position of a point relative to the axis of a cylinder, perpendicular to the axis.
+    fn arm(&self, place: &Vector3<T>) -> Vector3<T> {
+        let (axis, from_end) = (self.direction(0), place - self.vertex(0));
+        from_end - axis * axis.dot(&from_end)
+    }
+
+    /// Returns the farthest point along a direction.
+    fn support(&self, along: &Vector3<T>) -> Vector3<T> {
+        let heights = self.vertices().iter().map(|vertex| (along.dot(vertex), vertex));
+        let highest = heights.reduce(|a, b| if b.0 > a.0 { b } else { a });
+        let highest = highest.map_or_else(Vector3::zeros, |(_, vertex)| *vertex);
+        let axis = self.direction(0);
+        let remove_axial = |v: &Vector3<T>| v - axis * axis.dot(v);
+        // The second time removes rounding errors of the first, which matter if the direction is the axis.
+        let across = remove_axial(&remove_axial(along));
+        let norm = across.norm();
+        match self.shape.radius > 0.0 && norm > T::zero() {
+            true => highest + across * (constant::<T>(self.shape.radius) / norm),
+            false => highest,
+        }
+    }
+
+    /// Returns the least height above a plane through the origin.
+    fn lowest(&self, normal: &Vector3<T>) -> T {
+        if self.shape.radius > 0.0 {
+            return normal.dot(&self.support(&-normal));
+        }
+        self.vertices().iter().map(|vertex| normal.dot(vertex)).reduce(T::min).unwrap_or_else(T::zero)
+    }
 }
 
 /// Returns the midpoint of an edge, the unit vector along it and half of its length, in the axes of the body.
@@ -171,7 +246,8 @@ fn vertex_of<T: Real>(shape: &Polytope<'_>, index: u8) -> Vector3<T> {
     shape.vertices.get(usize::from(index)).map_or_else(Vector3::zeros, |p| vector(*p))
 }
 
-/// Returns the features of all pairs, one after another: 22 values and 13 for each point of a face.
+/// Returns the features of all pairs, one after another: 22 values and 13 for each point of a face; for pairs
+/// with a cylinder 6 values, 23 for each of three points on curves and 4 for each of five points on a face.
 ///
 /// For each pair, `poses` contains 13 values: the rotation matrix that converts axes of the second polytope
 /// to axes of the first, column by column, the position of the second polytope in the axes of the first, and
@@ -200,6 +276,9 @@ fn write_features<T: Real>(pair: &PolytopePair<'_>, pose: &[T], is_bounded: bool
     let position = Vector3::from_fn(|i, _| entry(9 + i));
     let first = Placed::new(&pair.first, &Matrix3::identity(), &Vector3::zeros());
     let second = Placed::new(&pair.second, &rotation, &position);
+    if pair.has_cylinder() {
+        return cylinders::write_features(&first, &second, entry(12), into);
+    }
     let tolerance = constant::<T>((pair.first.size + pair.second.size) * TIE_TOLERANCE);
     let bounds = match is_bounded {
         true => SeparationBounds::of_centers(&first, &second),

@@ -121,6 +121,8 @@ pub enum Slipping {}
 /// | `hull(points)` or `hull("foot.stl")`, a convex hull: its vertices | `plane(normal)`, `terrain(height)` |
 /// | `hull(points)`, `cuboid(a, b, c)`: at most twelve points of faces, and one of edges | `hull(points)` |
 /// | `capsule(…)`, `cylinder(radius, axis)`: two points of a face, and one of edges | `hull(points)` |
+/// | `cylinder(radius, length, axis)`: eight points | `cylinder(radius, length, axis)`, `hull(points)` |
+/// | `cylinder(radius, axis)`: eight points | `cylinder(radius, length, axis)` |
 /// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away, which move as the points of the body that are there | `plane(normal)` |
 /// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
 /// | a point, `sphere(radius)`, the ends of a `capsule(…)`, the corners of a `cuboid(…)` | `terrain(height)` |
@@ -134,7 +136,10 @@ pub enum Slipping {}
 /// A hull in contact with hulls, boxes, capsules and unbounded cylinders has points that are numbers, and so
 /// are the lengths of the box or the capsule. The smallest gap of their contact points is the distance of the
 /// surfaces, or the negative of the depth of their penetration. Contact points that are not used have larger
-/// gaps than any distance of the surfaces. These contacts are rigid.
+/// gaps than any distance of the surfaces. These contacts are rigid. The same applies to cylinders with two
+/// ends in contact with each other, with unbounded cylinders and with hulls: radii, lengths and axes are
+/// numbers. Contact points move along rims and sides: rolling cylinders have the acceleration of smooth
+/// bodies.
 ///
 /// The height of a terrain is an expression of `u` and `w`, the position along the body's x and y axes, and
 /// of parameters: `ground.terrain(0.1 * sin(3 * u))`, or `ground.terrain(heights(u, w))` with a

@@ -85,10 +85,11 @@ fn polytope_text(polytope: &Polytope) -> String {
         .iter()
         .map(|edge| format!("{PATH}Edge {{ ends: {:?}, faces: {:?} }}", edge.ends, edge.faces));
     format!(
-        "{PATH} {{ vertices: &{:?}, faces: &[{}], edges: &[{}], size: {:?} }}",
+        "{PATH} {{ vertices: &{:?}, faces: &[{}], edges: &[{}], size: {:?}, radius: {:?} }}",
         polytope.vertices,
         faces.collect::<Vec<_>>().join(", "),
         edges.collect::<Vec<_>>().join(", "),
-        polytope.size()
+        polytope.size(),
+        polytope.radius
     )
 }

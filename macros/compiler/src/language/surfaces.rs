@@ -68,7 +68,8 @@ table! {
         /// Surface `cylinder` without length: the outside of an infinitely long cylinder.
         Cylinder = surface_row("cylinder", &[RADIUS, AXIS], &[None, Some(Sphere), Some(Capsule)], &[Sphere]);
         /// Surface `cylinder` with length: a cylinder with two end faces.
-        Drum = surface_row("cylinder", &[RADIUS, LENGTH, AXIS], &[Some(Sphere), Some(Capsule)], &[]);
+        Drum = surface_row("cylinder", &[RADIUS, LENGTH, AXIS],
+            &[Some(Sphere), Some(Capsule), Some(Cylinder), Some(Drum)], &[]);
         /// Surface `tube`: the inside of a cylinder.
         Tube = surface_row("tube", &[RADIUS, AXIS], ROUND, &[Sphere]);
         /// The outside of a cone, with the axis from the apex into the cone.
@@ -89,7 +90,7 @@ table! {
         Capsule = surface_row("capsule", &[RADIUS, LENGTH, AXIS], &[None, Some(Sphere), Some(Capsule)], &[]);
         /// Surface `hull`: the convex hull of points.
         Hull = surface_row("hull", &[Argument::new("points", ArgumentKind::Points)],
-            &[Some(Sphere), Some(Capsule), Some(Cuboid), Some(Cylinder), Some(Hull)], &[]);
+            &[Some(Sphere), Some(Capsule), Some(Cuboid), Some(Cylinder), Some(Drum), Some(Hull)], &[]);
     }
 }
 

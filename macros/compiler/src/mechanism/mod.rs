@@ -42,7 +42,8 @@ pub use model::{Diagram, Model, Origin, OutputExpression, ReleasedMechanism, Use
 pub use motion::{Chart, Coordinate, Motion};
 pub use passive::PassiveForces;
 pub use polytope::{
-    PAIR_FEATURES, PAIR_POSE, POINT_FEATURES, Polytope, PolytopeEdge, PolytopeFace, PolytopePair,
+    CYLINDER_PAIR_FEATURES, CYLINDER_POINT_FEATURES, CYLINDER_POINTS, PAIR_FEATURES, PAIR_POSE,
+    POINT_FEATURES, Polytope, PolytopeEdge, PolytopeFace, PolytopePair,
 };
 pub use pose::Pose;
 pub use quantity::{Quantity, SuppliedQuantity};

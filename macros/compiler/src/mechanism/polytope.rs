@@ -8,6 +8,12 @@ pub const PAIR_POSE: usize = 13;
 pub const PAIR_FEATURES: usize = 22;
 /// Number of features of a point on a face.
 pub const POINT_FEATURES: usize = 13;
+/// Number of features of a pair with a cylinder that are not those of a contact point.
+pub const CYLINDER_PAIR_FEATURES: usize = 6;
+/// Numbers of contact points of a pair with a cylinder on curves, and fixed in the body opposite to a face.
+pub const CYLINDER_POINTS: [usize; 2] = [3, 5];
+/// Numbers of features of these points.
+pub const CYLINDER_POINT_FEATURES: [usize; 2] = [23, 4];
 
 /// Face of a polytope.
 #[derive(Clone, Debug)]
@@ -35,7 +41,8 @@ impl PolytopeEdge {
     pub const NO_FACES: [u8; 2] = [u8::MAX; 2];
 }
 
-/// Convex polytope whose vertices are constant in the axes of its body, or a line segment.
+/// Convex polytope whose vertices are constant in the axes of its body, a line segment, or a cylinder with
+/// two end faces around a line segment.
 #[derive(Clone, Debug)]
 pub struct Polytope {
     /// Positions of the vertices, m.
@@ -44,6 +51,8 @@ pub struct Polytope {
     pub faces: Vec<PolytopeFace>,
     /// Edges.
     pub edges: Vec<PolytopeEdge>,
+    /// Radius of the cylinder with two end faces around a line segment, m; zero for other shapes.
+    pub radius: f64,
 }
 
 impl Polytope {
@@ -55,7 +64,8 @@ impl Polytope {
 
     /// Returns half the sum of the lengths along the axes of the body, m.
     pub fn size(&self) -> f64 {
-        (0..3).map(|axis| self.extent_along_axis(axis)).map(|[low, high]| (high - low) / 2.0).sum()
+        let lengths = (0..3).map(|axis| self.extent_along_axis(axis)).map(|[low, high]| (high - low) / 2.0);
+        lengths.sum::<f64>() + 2.0 * self.radius
     }
 
     /// Returns the centre of the extents along the axes of the body, m.
@@ -66,7 +76,7 @@ impl Polytope {
     /// Returns the largest distance of a vertex from the origin, m.
     pub fn reach(&self) -> f64 {
         let norm = |vertex: &[f64; 3]| vertex.iter().map(|x| x * x).sum::<f64>().sqrt();
-        self.vertices.iter().map(norm).fold(0.0, f64::max)
+        self.vertices.iter().map(norm).fold(0.0, f64::max).hypot(self.radius)
     }
 
     /// Returns the largest number of vertices of a face; two for a line segment.
@@ -82,7 +92,7 @@ pub struct PolytopePair<'g> {
     pub first: Polytope,
     /// Polytope of the second surface.
     pub second: Polytope,
-    /// Maximum number of contact points of a face.
+    /// Maximum number of contact points of a face; without effect for cylinders.
     pub points: usize,
     /// Rotation matrix that converts axes of the second surface to axes of the first, column by column; the
     /// position of the second surface in the axes of the first; and a length that is positive if a face of
@@ -93,6 +103,15 @@ pub struct PolytopePair<'g> {
 impl PolytopePair<'_> {
     /// Returns the number of features of the pair.
     pub fn feature_count(&self) -> usize {
-        PAIR_FEATURES + POINT_FEATURES * self.points
+        if !self.has_cylinder() {
+            return PAIR_FEATURES + POINT_FEATURES * self.points;
+        }
+        let of_points = CYLINDER_POINTS.into_iter().zip(CYLINDER_POINT_FEATURES);
+        CYLINDER_PAIR_FEATURES + of_points.map(|(points, features)| points * features).sum::<usize>()
+    }
+
+    /// Whether a shape is a cylinder with two end faces.
+    pub fn has_cylinder(&self) -> bool {
+        self.first.radius > 0.0 || self.second.radius > 0.0
     }
 }

@@ -46,11 +46,7 @@ pub(super) struct SeparationBounds<T> {
 impl<T: Real> SeparationBounds<T> {
     /// Returns the bounds that the mean positions of the vertices give.
     pub(super) fn of_centers(first: &Placed<'_, T>, second: &Placed<'_, T>) -> Self {
-        let center = |shape: &Placed<'_, T>| {
-            let sum = shape.vertices().iter().fold(Vector3::zeros(), |sum, vertex| sum + vertex);
-            sum / constant::<T>(shape.vertices().len() as f64)
-        };
-        SeparationBounds { between: Some(center(second) - center(first)) }
+        SeparationBounds { between: Some(second.center() - first.center()) }
     }
 
     /// Whether the separation along an outward normal of the first polytope may exceed a known separation.
@@ -119,13 +115,12 @@ fn best_separating_face<T: Real>(
     bounds: &SeparationBounds<T>,
 ) -> Option<(T, usize)> {
     let mut best: Option<(T, usize)> = None;
-    for k in 0..own.shape.faces.len() {
+    for k in 0..own.face_count() {
         let (normal, offset) = (own.normal(k), own.offset(k));
         if best.is_some_and(|(known, _)| !bounds.may_exceed(&normal, is_second, known)) {
             continue;
         }
-        let heights = other.vertices().iter().map(|vertex| normal.dot(vertex));
-        let distance = heights.reduce(T::min).unwrap_or_else(T::zero) - offset;
+        let distance = other.lowest(&normal) - offset;
         if best.is_none_or(|(known, _)| distance > known + tolerance) {
             best = Some((distance, k));
         }

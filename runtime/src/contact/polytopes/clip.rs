@@ -133,7 +133,11 @@ pub(super) fn clipped_points<T: Real>(
 
 /// Returns the face of a polytope that is opposite to a normal: of the faces with the largest number of
 /// lowest vertices the one whose normal is the most opposed. `None` for a line segment.
-fn opposite_face<T: Real>(shape: &Placed<'_, T>, normal: &Vector3<T>, tolerance: T) -> Option<usize> {
+pub(super) fn opposite_face<T: Real>(
+    shape: &Placed<'_, T>,
+    normal: &Vector3<T>,
+    tolerance: T,
+) -> Option<usize> {
     let lowest = shape.vertices().iter().map(|vertex| normal.dot(vertex)).reduce(T::min)?;
     let is_lowest = |k: &&u8| normal.dot(&shape.vertex(**k)) <= lowest + tolerance;
     let mut best: Option<(usize, T, usize)> = None;

@@ -35,7 +35,7 @@ fn octahedron_faces() -> ([PolytopeFace<'static>; 8], Vec<PolytopeEdge>) {
 #[test]
 fn bounds_do_not_change_features() {
     let (faces, edges) = octahedron_faces();
-    let shape = Polytope { vertices: &VERTICES, faces: &faces, edges: &edges, size: 0.6 };
+    let shape = Polytope { vertices: &VERTICES, faces: &faces, edges: &edges, size: 0.6, radius: 0.0 };
     let pair = PolytopePair { first: shape, second: shape, points: 6 };
     let mut state = 9_u64;
     let mut next = || {

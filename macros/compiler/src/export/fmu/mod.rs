@@ -66,7 +66,8 @@ pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'
         return Some(("the sources of FMUs have no constraints with friction".to_string(), SIMULATE));
     }
     if !model.polytopes.is_empty() {
-        let what = "the sources of FMUs have no contacts of hulls with hulls, boxes, capsules or cylinders";
+        let what = "the sources of FMUs have no contacts of hulls and cylinders with each other, and of \
+                    hulls with boxes and capsules";
         return Some((what.to_string(), SIMULATE));
     }
     let contact =

@@ -9,6 +9,7 @@ mod coefficients;
 mod collision;
 mod cones;
 mod contact_point;
+mod curves;
 mod cylinders;
 mod drawing;
 mod force;

@@ -18,7 +18,7 @@ pub(super) fn hull_polytope(hull: &Hull) -> Option<Polytope> {
     let edges = edges_of_faces(&hull.vertices, &faces)?;
     // Euler's formula.
     let is_closed = hull.vertices.len() + faces.len() == edges.len() + 2;
-    is_closed.then(|| Polytope { vertices: hull.vertices.clone(), faces, edges })
+    is_closed.then(|| Polytope { vertices: hull.vertices.clone(), faces, edges, radius: 0.0 })
 }
 
 /// Returns the polytope of a box with edges of these lengths; `None` if a length is not positive.
@@ -33,7 +33,7 @@ pub(super) fn box_polytope(lengths: [f64; 3]) -> Option<Polytope> {
 pub(super) fn segment_polytope(along: [f64; 3], length: f64) -> Polytope {
     let vertices = [-0.5, 0.5].map(|side| along.map(|x| x * side * length)).to_vec();
     let edge = PolytopeEdge { ends: [0, 1], faces: PolytopeEdge::NO_FACES };
-    Polytope { vertices, faces: Vec::new(), edges: vec![edge] }
+    Polytope { vertices, faces: Vec::new(), edges: vec![edge], radius: 0.0 }
 }
 
 /// Returns the vertices of a face, counter-clockwise about its normal.

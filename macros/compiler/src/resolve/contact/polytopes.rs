@@ -1,4 +1,5 @@
-//! Contact points of convex polytopes: hulls on hulls, boxes, capsules and unbounded cylinders.
+//! Contact points of convex polytopes: hulls on hulls, boxes, capsules and unbounded cylinders. Pairs with a
+//! cylinder that has end faces are represented in the same form, and their contacts are in [`super::curves`].
 //!
 //! The runtime selects the features that determine the contact: a face of one polytope with the points of the
 //! other within its sides, or two edges, or the closest points. They are inputs of the expressions for gaps,
@@ -21,6 +22,8 @@ use crate::mechanism::{PAIR_FEATURES, POINT_FEATURES, Polytope, PolytopePair, Qu
 
 /// Error for surfaces whose shapes depend on parameters.
 const NOT_CONSTANT: &str = "points, lengths and axes of surfaces on a hull must be numbers";
+/// Error for cylinders whose shapes depend on parameters.
+const CYLINDER_NOT_CONSTANT: &str = "radius, length and axis of a cylinder on this surface must be numbers";
 /// Error for polytopes whose faces are not a closed surface.
 const NOT_CLOSED: &str = "rounding errors decide which points of this surface are in one plane";
 
@@ -36,22 +39,22 @@ const LEAST_SQUARE: f64 = 1e-30;
 
 /// Axes and origin of a body in common axes, relative to the centre of the first surface.
 #[derive(Clone, Copy)]
-struct PolytopeFrame<'g> {
+pub(super) struct PolytopeFrame<'g> {
     axes: [Vec3<'g>; 3],
-    origin: Vec3<'g>,
+    pub(super) origin: Vec3<'g>,
 }
 
 impl<'g> PolytopeFrame<'g> {
-    fn direction(&self, v: Vec3<'g>) -> Vec3<'g> {
+    pub(super) fn direction(&self, v: Vec3<'g>) -> Vec3<'g> {
         self.axes[0] * v[0] + self.axes[1] * v[1] + self.axes[2] * v[2]
     }
 
-    fn position(&self, v: Vec3<'g>) -> Vec3<'g> {
+    pub(super) fn position(&self, v: Vec3<'g>) -> Vec3<'g> {
         self.origin + self.direction(v)
     }
 
     /// Returns `first` if `which` is one, `second` if it is zero.
-    fn select(which: Expr<'g>, first: &Self, second: &Self) -> Self {
+    pub(super) fn select(which: Expr<'g>, first: &Self, second: &Self) -> Self {
         let select_vector_by_indicator = |a: Vec3<'g>, b: Vec3<'g>| b + (a - b) * which;
         PolytopeFrame {
             axes: std::array::from_fn(|k| select_vector_by_indicator(first.axes[k], second.axes[k])),
@@ -61,12 +64,12 @@ impl<'g> PolytopeFrame<'g> {
 }
 
 /// Selected features of a pair as expressions.
-struct PairFeatures<'g> {
-    values: Vec<Expr<'g>>,
+pub(super) struct PairFeatures<'g> {
+    pub(super) values: Vec<Expr<'g>>,
 }
 
 impl<'g> PairFeatures<'g> {
-    fn vector(&self, first: usize) -> Vec3<'g> {
+    pub(super) fn vector(&self, first: usize) -> Vec3<'g> {
         Vec3(std::array::from_fn(|k| self.values[first + k]))
     }
 }
@@ -78,19 +81,29 @@ struct RoundedPolytope<'g> {
 }
 
 /// Placement of a pair, with its selected features.
-struct PlacedPair<'g> {
-    features: PairFeatures<'g>,
-    first: PolytopeFrame<'g>,
-    second: PolytopeFrame<'g>,
+pub(super) struct PlacedPair<'g> {
+    pub(super) features: PairFeatures<'g>,
+    pub(super) first: PolytopeFrame<'g>,
+    pub(super) second: PolytopeFrame<'g>,
     /// Radii of both surfaces, zero for hulls and boxes.
     radii: [Expr<'g>; 2],
     /// Gap of unused contact points, above any distance of the surfaces.
-    unused: Expr<'g>,
+    pub(super) unused: Expr<'g>,
 }
 
 impl<'g> SurfacePair<'_, 'g> {
-    /// Returns a pair with a hull as polytopes, and its contact points. `first_feature` is the index of the
-    /// first feature of the pair.
+    /// Whether the runtime selects features that determine the contact points.
+    pub(super) fn has_selected_features(&self) -> bool {
+        match (&self.a.form, &self.b.form) {
+            (SurfaceForm::Sphere(_), _) => false,
+            (_, SurfaceForm::Hull(_)) => true,
+            (SurfaceForm::Cylinder(..) | SurfaceForm::Drum(..), SurfaceForm::Drum(..)) => true,
+            _ => false,
+        }
+    }
+
+    /// Returns a pair with a hull or a cylinder as polytopes, and its contact points. `first_feature` is the
+    /// index of the first feature of the pair.
     ///
     /// # Errors
     ///
@@ -106,9 +119,12 @@ impl<'g> SurfacePair<'_, 'g> {
         let own_axes: [Vec3<'g>; 3] = axes_of(&|v| self.first_direction(v).value);
         let other_axes: [Vec3<'g>; 3] = axes_of(&|v| self.direction_of_second_body(v).value);
         let second = self.rounded_polytope(&self.b.form, 0.0)?;
-        let first = self.rounded_polytope(&self.a.form, second.polytope.reach())?;
+        let mut first = self.rounded_polytope(&self.a.form, second.polytope.reach())?;
+        if let (SurfaceForm::Cylinder(radius, _), true) = (&self.a.form, second.polytope.radius > 0.0) {
+            first.polytope.radius = positive_number(*radius)?;
+        }
         let c = self.center.value - self.base.value;
-        // Only the part of an unbounded cylinder next to the hull touches it.
+        // Only the part of an unbounded cylinder next to the other body touches it.
         let shift = match &self.a.form {
             SurfaceForm::Cylinder(_, axis) => {
                 let axis = self.first_direction(*axis).value;
@@ -134,7 +150,7 @@ impl<'g> SurfacePair<'_, 'g> {
             radii: [first.radius, second.radius],
             unused: (c + shift).norm() + reach,
         };
-        let contacts = placed.contacts(points);
+        let contacts = if pair.has_cylinder() { placed.curved_contacts() } else { placed.contacts(points) };
         Ok((pair, contacts))
     }
 
@@ -142,7 +158,7 @@ impl<'g> SurfacePair<'_, 'g> {
     ///
     /// # Errors
     ///
-    /// [`NOT_CONSTANT`] or [`NOT_CLOSED`].
+    /// [`NOT_CONSTANT`], [`CYLINDER_NOT_CONSTANT`] or [`NOT_CLOSED`].
     fn rounded_polytope(
         &self,
         form: &SurfaceForm<'g>,
@@ -167,10 +183,25 @@ impl<'g> SurfacePair<'_, 'g> {
             SurfaceForm::Cylinder(radius, axis) => {
                 (segment_polytope(axis.constant_components().ok_or(NOT_CONSTANT)?, 4.0 * reach), *radius)
             }
+            SurfaceForm::Drum(radius, length, axis) => {
+                let axis = axis.constant_components().ok_or(CYLINDER_NOT_CONSTANT)?;
+                let mut polytope = segment_polytope(axis, positive_number(*length)?);
+                polytope.radius = positive_number(*radius)?;
+                (polytope, zero)
+            }
             _ => return Err(NOT_CONSTANT),
         };
         Ok(RoundedPolytope { polytope, radius })
     }
+}
+
+/// Returns a dimension of a cylinder.
+///
+/// # Errors
+///
+/// It is not a positive number: [`CYLINDER_NOT_CONSTANT`].
+fn positive_number(x: Expr<'_>) -> Result<f64, &'static str> {
+    x.constant_value().filter(|x| *x > 0.0).ok_or(CYLINDER_NOT_CONSTANT)
 }
 
 /// Returns the pose of a pair, as in [`PolytopePair::pose`].

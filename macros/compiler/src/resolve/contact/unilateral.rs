@@ -23,13 +23,14 @@ const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ell
                                hulls and cylinders with two ends on a plane; points and spheres also on a \
                                sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a \
                                funnel; capsules on each other; cuboids on each other; spheres and \
-                               capsules on cuboids; spheres, capsules and cuboids on cylinders; spheres, \
-                               capsules, cuboids, cylinders without ends and hulls on hulls, if the points \
-                               of hulls and the lengths of capsules and cuboids are numbers; points, \
+                               capsules on cuboids; spheres, capsules and cuboids on cylinders; \
+                               cylinders on each other, if one has ends and their dimensions are numbers; \
+                               spheres, capsules, cuboids, cylinders and hulls on hulls, if the points of \
+                               hulls and the dimensions of the other surfaces are numbers; points, \
                                spheres, capsules, cuboids and hulls on a terrain";
 
-/// Help text for surfaces that cannot be in contact with a hull.
-const POLYTOPE_HELP: &str = "write numbers in place of parameters, or approximate the hull by spheres";
+/// Help text for surfaces that cannot be in contact because their dimensions are not numbers.
+const POLYTOPE_HELP: &str = "write numbers in place of parameters, or approximate a surface by spheres";
 /// Help text for unsupported contacts of cylinders.
 const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, can approximate a cylinder";
 
@@ -76,8 +77,8 @@ pub fn resolve_contact<'g>(
     let mut polytopes = Vec::new();
     let points = separable_points(scope, model, contact, (&firsts, &seconds), &mut polytopes, cx)?;
     if soft.is_some() && !polytopes.is_empty() {
-        cx.report_error(contact.second.place.clone(), "contacts of hulls with these surfaces are rigid")
-            .add_help("remove `stiffness` or `hertz`, or approximate a hull by surfaces such as spheres");
+        cx.report_error(contact.second.place.clone(), "contacts of these surfaces are rigid")
+            .add_help("remove `stiffness` or `hertz`, or approximate a surface by others, such as spheres");
         return None;
     }
     let surfaces = [firsts, seconds].concat();
@@ -241,7 +242,7 @@ fn contact_candidate_points<'g>(
     let is_listed = pair.a.form.supports_contact_with(&pair.b.form);
     let candidate_contacts = match &pair.b.form {
         _ if !is_listed => Vec::new(),
-        SurfaceForm::Hull(_) if !matches!(pair.a.form, SurfaceForm::Sphere(_)) => {
+        SurfaceForm::Hull(_) | SurfaceForm::Drum(..) if pair.has_selected_features() => {
             let known = polytopes.iter().map(PolytopePair::feature_count).sum::<usize>();
             match pair.polytope_contacts(model.polytope_feature_count() + known) {
                 Ok((polytope_pair, contacts)) => {

@@ -1,0 +1,176 @@
+//! Contact points of cylinders with end faces on each other and on hulls, from features that the runtime
+//! selects.
+//!
+//! A point of a face is a point of the other body, such as the lowest point of a rim. Other contact points
+//! are those where two curves are closest: rims, axes of sides, edges or vertices. The runtime returns these
+//! points for the present pose, with the tangent and the curvature vector of each curve. Two steps of
+//! Newton's method, which do not move the points in this pose, make them functions of the pose whose first
+//! and second derivatives are exact: contact points move along rims and sides as on smooth round surfaces.
+
+use super::geometry::{PointContact, tangents_of};
+use super::polytopes::{PlacedPair, PolytopeFrame};
+use crate::expr::{Expr, Extreme, Vec3};
+use crate::mechanism::{CYLINDER_PAIR_FEATURES, CYLINDER_POINT_FEATURES, CYLINDER_POINTS};
+
+/// Squared length below which a distance does not determine a direction, m², and squared sine of the angle
+/// below which tangents do not.
+const LEAST_SQUARE: f64 = 1e-30;
+
+/// Point of a curve with tangent and curvature vector, in common axes.
+#[derive(Clone, Copy)]
+struct Curve<'g> {
+    point: Vec3<'g>,
+    tangent: Vec3<'g>,
+    curvature: Vec3<'g>,
+}
+
+impl<'g> Curve<'g> {
+    /// Returns a curve from its features: point, tangent and curvature vector.
+    fn from_features(frame: &PolytopeFrame<'g>, values: &[Expr<'g>]) -> Curve<'g> {
+        let vector = |first: usize| Vec3(std::array::from_fn(|k| values[first + k]));
+        Curve {
+            point: frame.position(vector(0)),
+            tangent: frame.direction(vector(3)),
+            curvature: frame.direction(vector(6)),
+        }
+    }
+
+    fn vertex(point: Vec3<'g>) -> Curve<'g> {
+        let zero = Vec3::zero(point[0].graph());
+        Curve { point, tangent: zero, curvature: zero }
+    }
+
+    /// Returns the point and the tangent at a distance along the curve, to second order.
+    fn point_and_tangent(&self, s: Expr<'g>) -> [Vec3<'g>; 2] {
+        let half = s.square() * 0.5;
+        let point = self.point + self.tangent * s + self.curvature * half;
+        let change = self.curvature * s - self.tangent * (self.curvature.dot(self.curvature) * half);
+        [point, self.tangent + change]
+    }
+}
+
+/// Features of a contact point on two curves.
+struct CurvedFeatures<'g> {
+    /// One if the point is on a face.
+    on_face: Expr<'g>,
+    /// Sign with which the cross product of both tangents points towards the first body; zero for none.
+    side: Expr<'g>,
+    /// One if the normal is along the shortest connection of both curves.
+    is_closest: Expr<'g>,
+    radii: [Expr<'g>; 2],
+    curves: [Curve<'g>; 2],
+}
+
+/// Face of a pair, in common axes.
+struct FaceOfPair<'g> {
+    /// One if the face belongs to the second body.
+    is_second: Expr<'g>,
+    /// Position of a point of its plane.
+    origin: Vec3<'g>,
+    outward: Vec3<'g>,
+    /// Normal towards the first body.
+    normal: Vec3<'g>,
+    /// Least gap of points on the face.
+    least: Expr<'g>,
+}
+
+impl<'g> PlacedPair<'g> {
+    /// Returns the contacts of a pair with a cylinder.
+    pub(super) fn curved_contacts(&self) -> Vec<PointContact<'g>> {
+        let (values, zero) = (&self.features.values, self.unused.zero());
+        let [curved, fixed] = CYLINDER_POINT_FEATURES;
+        let [curved_count, fixed_count] = CYLINDER_POINTS;
+        let is_second = values[0];
+        let own = PolytopeFrame::select(is_second, &self.second, &self.first);
+        let other = PolytopeFrame::select(is_second, &self.first, &self.second);
+        let outward = own.direction(self.features.vector(2));
+        let face = FaceOfPair {
+            is_second,
+            origin: own.origin + outward * values[5],
+            outward,
+            normal: outward * (is_second * 2.0 - zero.num(1.0)),
+            least: values[1],
+        };
+        let on_curves = (0..curved_count).map(|k| {
+            let values = &values[CYLINDER_PAIR_FEATURES + curved * k..];
+            let curves = [(&self.first, 5), (&self.second, 14)];
+            self.curved_contact(
+                &CurvedFeatures {
+                    on_face: values[0],
+                    side: values[1],
+                    is_closest: values[2],
+                    radii: [values[3], values[4]],
+                    curves: curves.map(|(frame, first)| Curve::from_features(frame, &values[first..])),
+                },
+                &face,
+            )
+        });
+        let on_face = (0..fixed_count).map(|k| {
+            let values = &values[CYLINDER_PAIR_FEATURES + curved * curved_count + fixed * k..];
+            let point = other.position(Vec3([values[1], values[2], values[3]]));
+            let features = CurvedFeatures {
+                on_face: values[0],
+                side: zero,
+                is_closest: zero,
+                radii: [zero; 2],
+                curves: [Curve::vertex(point); 2],
+            };
+            self.curved_contact(&features, &face)
+        });
+        on_curves.chain(on_face).collect()
+    }
+
+    /// Returns the contact at a point of a face, or at the closest points of two curves.
+    fn curved_contact(&self, features: &CurvedFeatures<'g>, face: &FaceOfPair<'g>) -> PointContact<'g> {
+        let CurvedFeatures { on_face, side, is_closest, radii: [own_radius, other_radius], .. } = *features;
+        let one = self.unused.num(1.0);
+        let [[first, own], [second, other]] = features.closest_points(face);
+        let between = first - second;
+        let limited_norm = |v: Vec3<'g>| v.dot(v).minimum_or_maximum(Extreme::Max, one * LEAST_SQUARE).sqrt();
+        let across = own.cross(other);
+        let (is_crossing, is_on_curves) = (side.square(), side.square() + is_closest);
+        let normal = face.normal * (one - is_on_curves)
+            + across * (side / limited_norm(across))
+            + between * (is_closest / limited_norm(between));
+        let place = second + (first - second) * face.is_second;
+        let height = face.outward.dot(place - face.origin);
+        let gap_of_curves = normal.dot(between) - own_radius - other_radius;
+        let gap_on_face = height.minimum_or_maximum(Extreme::Max, face.least);
+        let middle = (first + second) * (one * 0.5) + normal * ((other_radius - own_radius) * 0.5);
+        let (first_tangent, second_tangent) = tangents_of(normal);
+        PointContact {
+            gap: self.unused
+                + (gap_of_curves - self.unused) * (is_crossing + is_closest)
+                + (gap_on_face - self.unused) * on_face,
+            point: place - face.outward * (height * 0.5)
+                + (middle - (place - face.outward * (height * 0.5))) * is_on_curves,
+            axes: [("normal", normal), ("first", first_tangent), ("second", second_tangent)],
+            conditions: Vec::new(),
+        }
+    }
+}
+
+impl<'g> CurvedFeatures<'g> {
+    /// Returns the closest points of both curves with their tangents. Points on a face have a tangent that is
+    /// perpendicular to its normal instead.
+    fn closest_points(&self, face: &FaceOfPair<'g>) -> [[Vec3<'g>; 2]; 2] {
+        let [a, b] = &self.curves;
+        let one = self.on_face.num(1.0);
+        // The gradient of half the squared distance, or of the height above the face.
+        let direction = |between: Vec3<'g>| between + (face.normal - between) * self.on_face;
+        let present = direction(a.point - b.point);
+        let x = one - a.tangent.dot(a.tangent) * self.on_face + a.curvature.dot(present);
+        let y = one - b.tangent.dot(b.tangent) * self.on_face - b.curvature.dot(present);
+        let z = a.tangent.dot(b.tangent) * (self.on_face - one);
+        let determinant = x * y - z.square();
+        let (mut s, mut t) = (one.zero(), one.zero());
+        for _ in 0..2 {
+            let ([first, own], [second, other]) = (a.point_and_tangent(s), b.point_and_tangent(t));
+            let along = direction(first - second);
+            let (own, other) = (own.dot(along), -other.dot(along));
+            s += (z * other - y * own) / determinant;
+            t += (z * own - x * other) / determinant;
+        }
+        [a.point_and_tangent(s), b.point_and_tangent(t)]
+    }
+}
