@@ -44,8 +44,11 @@ impl<T: Real, const NV: usize, const CK: usize, const CR: usize> ContactsWithImp
 
     /// Returns `M⁻¹ Gᵀ`: the changes of the velocity by unit impulses at the rows of the selected contacts.
     pub(super) fn velocity_responses(&self) -> SMatrix<T, NV, CR> {
+        if let ImpulseEffects::Matrix(responses) = &self.effects {
+            return *responses;
+        }
         let mut responses = SMatrix::<T, NV, CR>::zeros();
-        for row in 0..CR {
+        for row in 0..self.selection.row_count() {
             let mut unit = SVector::zeros();
             unit[row] = T::one();
             responses.set_column(row, &self.velocity_change(&unit));

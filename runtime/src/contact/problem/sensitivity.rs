@@ -5,12 +5,13 @@
 //! `δΛₜ = μ d δΛₙ − μ Λₙ (1 − d dᵀ) δuₜ / |uₜ|`.
 
 use super::super::total::TotalArray;
+use super::super::{Law, Restitution};
 use super::banded::set_unit_rows;
 use super::elimination::{independence_threshold, subtract_multiple, zero_matrix};
 use super::trial::ContactMode;
 use super::{ContactProblem, ContactRowMatrix, RowList, entry_or_zero};
 use crate::Real;
-use crate::private::{constant, epsilon};
+use crate::private::{constant, epsilon, positive_part};
 use nalgebra::{SMatrix, SVector};
 
 /// Number of refinements of equations among dependent rows.
@@ -36,12 +37,17 @@ pub(in super::super) struct SlipRotationImpulses<T, const NR: usize> {
     pub(in super::super) by_impulses: SMatrix<T, NR, NR>,
     /// Derivatives with respect to the slip velocities.
     pub(in super::super) by_slip: SMatrix<T, NR, NR>,
+    /// Derivative of each impulse with respect to the coefficient of friction of its contact.
+    pub(in super::super) by_friction: SVector<T, NR>,
 }
 
 /// Linear equations `system δΛ = wanted δE` of the impulses, with the contact velocities `E` without them.
 pub(in super::super) struct LinearisedImpulses<T, const NR: usize> {
     system: ContactRowMatrix<T, NR>,
     wanted: ContactRowMatrix<T, NR>,
+    /// Derivative of each friction impulse of a sliding contact with respect to the coefficient of friction,
+    /// at constant normal impulses and slip directions.
+    by_friction: RowList<T, NR>,
     /// Triangular factors of the system, with a small addition to the diagonal if rows depend on each other,
     /// and the row of each pivot.
     factors: ContactRowMatrix<T, NR>,
@@ -59,6 +65,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
         Self {
             system,
             wanted: zero_matrix(),
+            by_friction: RowList::repeat_entry(T::zero()),
             factors: zero_matrix(),
             pivots,
             is_dependent: false,
@@ -123,10 +130,12 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
     }
 
     /// Returns the changes of the impulses with changes `rates` of the contact velocities without them, both
-    /// at the rows of the mechanism.
+    /// at the rows of the mechanism. `friction` holds the changes of the coefficients of friction at the rows
+    /// of friction, if they change.
     pub(in super::super) fn impulse_changes<const C: usize>(
         &self,
         rates: &SMatrix<T, NR, C>,
+        friction: Option<&SMatrix<T, NR, C>>,
     ) -> SMatrix<T, NR, C> {
         let mut right = TotalArray::<[T; C], NR>::repeat_entry([T::zero(); C]);
         for (right, wanted) in right.iter_mut().zip(self.wanted.iter()).take(self.size) {
@@ -137,6 +146,14 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
                         *to += *factor * from.get(*place).copied().unwrap_or(T::zero())
                     });
                 }
+            }
+        }
+        if let Some(friction) = friction {
+            let rows = right.iter_mut().zip(self.places.iter()).zip(self.by_friction.iter());
+            for ((right, place), factor) in rows.take(self.size) {
+                let columns = right.iter_mut().zip(&friction.data.0);
+                columns
+                    .for_each(|(to, from)| *to += *factor * from.get(*place).copied().unwrap_or(T::zero()));
             }
         }
         let mut changes = right;
@@ -203,8 +220,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             match modes[k].1 {
                 ContactMode::Open => is_whole = false,
                 ContactMode::Slip { direction, .. } if speed > still => {
-                    let largest = self.friction[k] * self.friction_bounding_impulse(k, impulses[n]);
-                    self.write_sliding_equations(k, (direction, largest / speed), &mut equations);
+                    let normal = self.friction_bounding_impulse(k, impulses[n]);
+                    let ratio = self.friction[k] * normal / speed;
+                    self.write_sliding_equations(k, (direction, ratio), &mut equations);
+                    for (i, d) in tangents.zip(direction) {
+                        equations.by_friction[i] = normal * d;
+                    }
                     is_whole = false;
                 }
                 _ => tangents.for_each(|i| held[i] = true),
@@ -257,13 +278,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         rows
     }
 
-    /// Returns the diagonal matrix that is one at chosen rows.
-    pub(in super::super) fn indicator_matrix_of_rows(&self, held: &ContactRowMask<NR>) -> SMatrix<T, NR, NR> {
+    /// Returns ones at chosen rows, and zeros elsewhere.
+    pub(in super::super) fn indicator_of_rows(&self, held: &ContactRowMask<NR>) -> SVector<T, NR> {
         let mut chosen = SVector::<T, NR>::zeros();
         for i in (0..self.size).filter(|i| held[*i]) {
             super::set_entry(&mut chosen, self.places[i], T::one());
         }
-        SMatrix::from_diagonal(&chosen)
+        chosen
     }
 
     /// Returns impulses, without those of compression, at the rows of the mechanism.
@@ -307,6 +328,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             impulses: SVector::zeros(),
             by_impulses: SMatrix::zeros(),
             by_slip: SMatrix::zeros(),
+            by_friction: SVector::zeros(),
         };
         let half = constant::<T>(0.5);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
@@ -327,6 +349,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let mechanism_row_and_column = |i: usize, j: usize| (self.places[i], self.places[j]);
             for i in tangents.clone() {
                 let along = slip[i] / speed;
+                super::set_entry(&mut found.by_friction, self.places[i], half * impulses[n] * along);
                 set_matrix_entry(&mut found.by_impulses, mechanism_row_and_column(i, i), half);
                 set_matrix_entry(
                     &mut found.by_impulses,
@@ -361,6 +384,27 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         for k in (0..self.count).filter(|k| self.has_gap_function(*k) && self.least[*k] > T::zero()) {
             let row = self.places[self.rows[k].first];
             super::set_entry(&mut factors, row, self.least[k] / entry_or_zero(before, row));
+        }
+        factors
+    }
+
+    /// Returns, for each contact with Newton's restitution, the derivative of the normal velocity that
+    /// restitution demands with respect to the coefficient of restitution.
+    pub(in super::super) fn demand_derivatives_by_restitution(
+        &self,
+        laws: &[Law<T>; NK],
+        before: &SVector<T, NR>,
+    ) -> SVector<T, NR> {
+        let mut factors = SVector::zeros();
+        for k in (0..self.count).filter(|k| self.has_gap_function(*k)) {
+            let Some(law) = laws.get(self.contacts[k].0) else { continue };
+            let row = self.places[self.rows[k].first];
+            let approach = positive_part(-entry_or_zero(before, row));
+            let is_elastic = law.restitution > T::zero();
+            let factor = if is_elastic { self.least[k] / law.restitution } else { approach };
+            if law.hypothesis == Restitution::Newton {
+                super::set_entry(&mut factors, row, factor);
+            }
         }
         factors
     }
