@@ -9,8 +9,9 @@
 /// `methods` are those of `Hooks`, after which the scalar type is named (`contact_methods` excludes functions
 /// that depend on how constraints are enforced). `tangent` and `derivatives` belong
 /// to `Derivatives`, without and with an argument of time (`given_derivatives` excludes derivatives of
-/// accelerations, `acceleration_derivatives`). Names with `inputless_` exclude functions of inputs. `second` belongs to `SecondDerivatives`, as `second_tangent` does, which has no time. A
-/// kind is the length of a vector, `scalar`, `state`, or `square` for a matrix that receives a result.
+/// accelerations, `acceleration_derivatives`). Names with `inputless_` exclude functions of inputs. `second`
+/// belongs to `SecondDerivatives`, as `second_tangent` does, which has no time. A kind is the length of a
+/// vector, `scalar`, `state`, or `square` for a matrix that receives a result.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
         $crate::forward::write! { [Self::Scalar] $($how)+;

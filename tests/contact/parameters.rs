@@ -176,16 +176,17 @@ fn contact_step_derivatives_by_parameters_have_closed_forms() {
     let h = 0.01;
     for method in stepping_methods(h) {
         let m = Block { friction: 0.3, m: 2.0, restitution: 0.0 };
-        let by = |m: &Block, v: [f64; 3]| {
+        let parameter_derivatives = |m: &Block, v: [f64; 3]| {
             discrete::by_parameters(m, &method, 0.0, &SVector::zeros(), &v.into(), &[1.0].into()).unwrap()
         };
-        let (by_q, by_v) = by(&m, [1.0, 0.0, 0.0]);
+        let (by_q, by_v) = parameter_derivatives(&m, [1.0, 0.0, 0.0]);
         assert!((by_v[(0, 0)] + h * 9.81).abs() < 1e-14 && (by_v[(0, 1)] + h / 4.0).abs() < 1e-14);
         assert!((by_q[(0, 0)] + h * h * 9.81 / 2.0).abs() < 1e-14 && by_q.row(2).amax() < 1e-14);
-        let (by_q, by_v) = by(&m, [0.0; 3]);
+        let (by_q, by_v) = parameter_derivatives(&m, [0.0; 3]);
         assert!(by_q.amax() + by_v.amax() < 1e-14, "a sticking block stays: {by_v}");
         for restitution in [0.0, 0.5] {
-            let (_, by_v) = by(&Block { friction: 0.0, restitution, ..m }, [0.3, 0.0, -2.0]);
+            let (_, by_v) =
+                parameter_derivatives(&Block { friction: 0.0, restitution, ..m }, [0.3, 0.0, -2.0]);
             assert!((by_v[(2, 2)] - 2.0).abs() < 1e-14 && by_v[(2, 1)].abs() < 1e-14, "{by_v}");
             assert!((by_v[(0, 1)] + h / 4.0).abs() < 1e-14 && by_v[(0, 0)] == 0.0, "{by_v}");
         }

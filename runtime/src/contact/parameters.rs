@@ -1,8 +1,8 @@
 //! Derivatives of a step with contacts with respect to the parameters of a mechanism.
 //!
-//! A step is differentiated with respect to parameters as it is with respect to inputs, for a mechanism whose
-//! inputs are the parameters: the force of such an input is the change of the generalized forces minus that
-//! of the inverse dynamics. Contacts also depend on parameters directly ([`ContactSensitivities`]).
+//! Derivatives with respect to parameters are those with respect to inputs of a mechanism whose inputs are
+//! the parameters: the force of such an input is the change of the generalized forces minus that of the
+//! inverse dynamics. Contacts also depend on parameters directly ([`ContactSensitivities`]).
 
 use super::derivatives::{ContactDerivatives, FirstOrder};
 use super::sensitivity::differentiate_step;

@@ -21,8 +21,8 @@ use nalgebra::{SMatrix, SVector};
 /// modes that the step has found, as [`transition`](super::transition) does. Parameters are masses, sizes of
 /// bodies and of surfaces, heights of the ground, coefficients of friction and restitution, and all others.
 /// Derivatives are one-sided where modes change: for a coefficient of restitution of zero towards positive
-/// values. A coefficient of friction of zero stays zero, so that its derivative is zero; identification begins
-/// at a positive value. Coefficients of static friction affect modes only.
+/// values. A coefficient of friction of zero stays zero, so that its derivative is zero; identification
+/// begins at a positive value. Coefficients of static friction affect modes only.
 ///
 /// ```
 /// use linkwork::discrete;

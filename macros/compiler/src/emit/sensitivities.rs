@@ -49,16 +49,18 @@ pub fn write_sensitivities_impl(out: &mut String, name: &str, i: &Interface<'_>,
     let _ = writeln!(
         out,
         "#[inline]\nfn differentiate_contact_step_by_parameters(&self, \
-            method: &::linkwork::integrate::TimeStepping<{scalar}>, t: {scalar}, state: (&{q}, &{v}), u: &{}) -> \
-            ::core::option::Option<::core::result::Result<({matrix}, {matrix}), ::linkwork::integrate::Error>> {{
-            ::core::option::Option::Some(::linkwork::__private::differentiate_step_by_parameters(self, method, t, \
-                state, u))
+            method: &::linkwork::integrate::TimeStepping<{scalar}>, t: {scalar}, state: (&{q}, &{v}), \
+            u: &{}) -> ::core::option::Option<::core::result::Result<({matrix}, {matrix}), \
+            ::linkwork::integrate::Error>> {{
+            ::core::option::Option::Some(::linkwork::__private::differentiate_step_by_parameters(self, \
+                method, t, state, u))
         }}
         }}
-        {ALLOW}impl{generics} ::linkwork::contact::ContactSensitivities<{}, {}, {}, {np}, {count}, {rates}> for \
+        {ALLOW}impl{generics} \
+            ::linkwork::contact::ContactSensitivities<{}, {}, {}, {np}, {count}, {rates}> for \
             {name}{arguments} {bounds} {{
-        #[inline]\nfn contact_derivatives_by_parameters(&self, t: {scalar}, q: &{q}, v: &{v}, forces: &{}) -> \
-            ::linkwork::contact::ContactsByParameters<{scalar}, {}, {np}, {count}, {rates}> {{
+        #[inline]\nfn contact_derivatives_by_parameters(&self, t: {scalar}, q: &{q}, v: &{v}, \
+            forces: &{}) -> ::linkwork::contact::ContactsByParameters<{scalar}, {}, {np}, {count}, {rates}> {{
             ::linkwork::contact::ContactsByParameters::from_list(\
                 &self.__contact_derivatives_by_parameters({time}q, v, &forces.data.0[0]))
         }}

@@ -11,6 +11,9 @@ use super::elimination::{independence_threshold, subtract_multiple, zero_matrix}
 use super::trial::ContactMode;
 use super::{ContactProblem, ContactRowMatrix, RowList, entry_or_zero};
 use crate::Real;
+use crate::arithmetic::Arithmetic;
+use crate::arithmetic::dispatch::{Evaluate, dispatch};
+use crate::blocks::zeros;
 use crate::private::{constant, epsilon, positive_part};
 use nalgebra::{SMatrix, SVector};
 
@@ -108,6 +111,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
     }
 
     /// Solves for right-hand sides in place, with the factors.
+    #[inline(always)]
     fn solve_with_stored_factors<const C: usize>(&self, right: &mut TotalArray<[T; C], NR>) {
         (0..self.size).for_each(|column| right.exchange_entries(self.pivots[column], column));
         for column in 0..self.size {
@@ -137,9 +141,30 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
         rates: &SMatrix<T, NR, C>,
         friction: Option<&SMatrix<T, NR, C>>,
     ) -> SMatrix<T, NR, C> {
+        let mut changes = zeros();
+        dispatch::<0, T, _, _>(&ImpulseChanges { equations: self, rates, friction }, &mut changes);
+        changes
+    }
+}
+
+/// Equations of impulses with their right-hand sides ([`LinearisedImpulses::impulse_changes`]).
+struct ImpulseChanges<'a, T, const NR: usize, const C: usize> {
+    equations: &'a LinearisedImpulses<T, NR>,
+    rates: &'a SMatrix<T, NR, C>,
+    friction: Option<&'a SMatrix<T, NR, C>>,
+}
+
+impl<T: Real, const NR: usize, const C: usize> Evaluate<0, &mut SMatrix<T, NR, C>>
+    for ImpulseChanges<'_, T, NR, C>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, all: &mut SMatrix<T, NR, C>) {
+        let Self { equations, rates, friction } = self;
         let mut right = TotalArray::<[T; C], NR>::repeat_entry([T::zero(); C]);
-        for (right, wanted) in right.iter_mut().zip(self.wanted.iter()).take(self.size) {
-            for (place, factor) in self.places.iter().zip(wanted.iter()).take(self.size) {
+        for (right, wanted) in right.iter_mut().zip(equations.wanted.iter()).take(equations.size) {
+            for (place, factor) in equations.places.iter().zip(wanted.iter()).take(equations.size) {
                 if *factor != T::zero() {
                     let columns = right.iter_mut().zip(&rates.data.0);
                     columns.for_each(|(to, from)| {
@@ -149,34 +174,32 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
             }
         }
         if let Some(friction) = friction {
-            let rows = right.iter_mut().zip(self.places.iter()).zip(self.by_friction.iter());
-            for ((right, place), factor) in rows.take(self.size) {
+            let rows = right.iter_mut().zip(equations.places.iter()).zip(equations.by_friction.iter());
+            for ((right, place), factor) in rows.take(equations.size) {
                 let columns = right.iter_mut().zip(&friction.data.0);
                 columns
                     .for_each(|(to, from)| *to += *factor * from.get(*place).copied().unwrap_or(T::zero()));
             }
         }
         let mut changes = right;
-        self.solve_with_stored_factors(&mut changes);
-        for _ in 1..if self.is_dependent { PASSES } else { 1 } {
+        equations.solve_with_stored_factors(&mut changes);
+        for _ in 1..if equations.is_dependent { PASSES } else { 1 } {
             let mut left = right;
-            for (left, row) in left.iter_mut().zip(self.system.iter()).take(self.size) {
-                for (factor, change) in row.iter().zip(changes.iter()).take(self.size) {
+            for (left, row) in left.iter_mut().zip(equations.system.iter()).take(equations.size) {
+                for (factor, change) in row.iter().zip(changes.iter()).take(equations.size) {
                     left.iter_mut().zip(change).for_each(|(left, change)| *left -= *factor * *change);
                 }
             }
-            self.solve_with_stored_factors(&mut left);
+            equations.solve_with_stored_factors(&mut left);
             for (change, more) in changes.iter_mut().zip(left.iter()) {
                 change.iter_mut().zip(more).for_each(|(change, more)| *change += *more);
             }
         }
-        let mut all = SMatrix::<T, NR, C>::zeros();
-        for (place, row) in self.places.iter().zip(changes.iter()).take(self.size) {
+        for (place, row) in equations.places.iter().zip(changes.iter()).take(equations.size) {
             for (to, change) in all.data.0.iter_mut().zip(row) {
                 to.iter_mut().skip(*place).take(1).for_each(|entry| *entry = *change);
             }
         }
-        all
     }
 }
 
