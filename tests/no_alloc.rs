@@ -269,19 +269,20 @@ fn constrained_mechanisms_do_not_allocate() {
 }
 
 /// Box that falls on its face and slides.
-#[mechanism(gravity = -9.81 * z, derivatives)]
+#[mechanism(gravity = -9.81 * z, derivatives, sensitivities)]
 struct Crate {
+    friction: f64,
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
     hull: Body,
     #[joint(ground -> hull)]
     pose: Free,
-    #[contact(hull.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = 0.3, restitution = 0.2)]
+    #[contact(hull.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = 0.2)]
     floor: Contact,
 }
 
 #[test]
 fn contacts_do_not_allocate() {
-    let m = Crate {};
+    let m = Crate { friction: 0.3 };
     let (q, v) = ([0.0, 0.0, 0.055, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, -0.5, 0.0, 0.0, 0.0]);
     let simulate_contacts = || simulate(&m).from(q, v).duration(0.1);
     let (at, rates) = (SVector::from(q), SVector::from(v));
@@ -298,6 +299,8 @@ fn contacts_do_not_allocate() {
     let (u, step) = (SVector::zeros(), TimeStepping::step(0.02));
     let transition_at_state = || discrete::transition(&m, &step, 0.0, &at, &rates, &u).unwrap();
     assert!(transition_at_state().v[2].abs() < 0.2 && heap_calls(transition_at_state) == 0, "transition");
+    let by_parameters = || discrete::by_parameters(&m, &step, 0.0, &at, &rates, &u).is_ok();
+    assert!(by_parameters() && heap_calls(by_parameters) == 0, "by_parameters");
     assert_eq!(heap_calls(|| contact::impact(&m, 0.0, &at, &rates)), 0, "impact");
     assert_eq!(heap_calls(|| contact::forces(&m, 0.0, &at, &rates, &SVector::zeros(), 1e-3)), 0, "forces");
 }

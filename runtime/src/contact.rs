@@ -103,6 +103,7 @@ mod layout;
 mod light;
 mod observer;
 mod overlap;
+mod parameters;
 mod phase;
 mod polytopes;
 mod problem;
@@ -132,6 +133,10 @@ use layout::ContactLayout;
 #[doc(hidden)]
 pub use overlap::start;
 pub use overlap::{check, project};
+pub(crate) use parameters::ParametersAsInputs;
+#[doc(hidden)]
+pub use parameters::differentiate_step_by_parameters;
+pub use parameters::{ContactSensitivities, ContactsByParameters};
 pub(crate) use phase::{
     ContactPhase, PhaseState, PhasedMechanism, state_projected_onto_contacts as kept, velocity_after_impact,
 };

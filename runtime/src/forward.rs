@@ -9,8 +9,9 @@
 /// `methods` are those of `Hooks`, after which the scalar type is named (`contact_methods` excludes functions
 /// that depend on how constraints are enforced). `tangent` and `derivatives` belong
 /// to `Derivatives`, without and with an argument of time (`given_derivatives` excludes derivatives of
-/// accelerations). `second` belongs to `SecondDerivatives`, as `second_tangent` does, which has no time. A
-/// kind is the length of a vector, `scalar`, `state`, or `square` for a matrix that receives a result.
+/// accelerations, `acceleration_derivatives`). Names with `inputless_` exclude functions of inputs. `second`
+/// belongs to `SecondDerivatives`, as `second_tangent` does, which has no time. A kind is the length of a
+/// vector, `scalar`, `state`, or `square` for a matrix that receives a result.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
         $crate::forward::write! { [Self::Scalar] $($how)+;
@@ -22,11 +23,16 @@ macro_rules! each_function {
         }
     };
     (dynamics, $($how:tt)+) => {
+        $crate::forward::each_function!(inputless_dynamics, $($how)+);
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            generalized_forces(q: NQ, v: NV, u: NU) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
+        }
+    };
+    (inputless_dynamics, $($how:tt)+) => {
         $crate::forward::write! { [Self::Scalar] $($how)+;
             mass_matrix(q: NQ) -> $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>;
             bias_forces(q: NQ, v: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
             inverse_dynamics(q: NQ, v: NV, a: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
-            generalized_forces(q: NQ, v: NV, u: NU) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
             kinetic_energy(q: NQ, v: NV) -> Self::Scalar;
             potential_energy(q: NQ) -> Self::Scalar;
             generalized_momentum(q: NQ, v: NV) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
@@ -50,16 +56,24 @@ macro_rules! each_function {
     };
     (derivatives, $($how:tt)+) => {
         $crate::forward::each_function!(given_derivatives, $($how)+);
+        $crate::forward::each_function!(acceleration_derivatives, $($how)+);
+    };
+    (acceleration_derivatives, $($how:tt)+) => {
         $crate::forward::write! { [Self::Scalar] $($how)+;
             forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
             forward_dynamics_derivatives_into(q: NQ, v: NV, tau: NV, by_q: square, by_v: square, by_tau: square) -> $crate::nalgebra::SVector<Self::Scalar, NV>;
         }
     };
     (given_derivatives, $($how:tt)+) => {
+        $crate::forward::each_function!(inputless_derivatives, $($how)+);
+        $crate::forward::write! { [Self::Scalar] $($how)+;
+            generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NU>);
+        }
+    };
+    (inputless_derivatives, $($how:tt)+) => {
         $crate::forward::write! { [Self::Scalar] $($how)+;
             coriolis_matrix(q: NQ, v: NV) -> $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>;
             inverse_dynamics_derivatives(q: NQ, v: NV, a: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
-            generalized_forces_derivatives(q: NQ, v: NV, u: NU) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NU>);
             generalized_momentum_derivatives(q: NQ, v: NV) -> $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>;
             momentum_rate_derivatives(q: NQ, v: NV) -> ($crate::nalgebra::SMatrix<Self::Scalar, NV, NV>, $crate::nalgebra::SMatrix<Self::Scalar, NV, NV>);
         }

@@ -212,7 +212,7 @@ pub mod __private {
     pub use crate::contact::Columns as ContactDerivatives;
     pub use crate::contact::{
         Polytope, PolytopeEdge, PolytopeFace, PolytopePair, contact_features, differentiate_step,
-        held_derivatives, write_contact_features,
+        differentiate_step_by_parameters, held_derivatives, write_contact_features,
     };
     pub use crate::derivatives::acceleration_derivatives;
     pub use crate::first_order::columns;

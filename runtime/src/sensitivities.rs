@@ -1,6 +1,7 @@
 //! Derivatives of the dynamics with respect to the parameters of the struct, for generic code:
 //! identification, design, robust control.
 
+use crate::integrate::{Error, TimeStepping};
 use crate::{At, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -47,6 +48,21 @@ pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
     ) -> SMatrix<Self::Scalar, NV, NP>;
+
+    /// Returns the derivatives of configuration and velocity after a step of time stepping with contacts with
+    /// respect to the parameters, for [`discrete::by_parameters`](crate::discrete::by_parameters). Returns
+    /// `None` for mechanisms without contacts, or without the option `derivatives`.
+    #[doc(hidden)]
+    #[allow(clippy::type_complexity, reason = "two matrices")]
+    fn differentiate_contact_step_by_parameters(
+        &self,
+        _method: &TimeStepping<Self::Scalar>,
+        _t: Self::Scalar,
+        _state: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        _u: &SVector<Self::Scalar, NU>,
+    ) -> Option<Result<(SMatrix<Self::Scalar, NV, NP>, SMatrix<Self::Scalar, NV, NP>), Error>> {
+        None
+    }
 }
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize> Sensitivities<NQ, NV, NU, NP>

@@ -18,6 +18,7 @@ mod laws;
 mod light;
 mod mechanisms;
 mod orders;
+mod parameters;
 mod piles;
 mod poisson;
 mod ratchet;

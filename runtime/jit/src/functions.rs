@@ -542,6 +542,7 @@ fn is_internal(id: Id) -> bool {
             | Id::ContactLaws
             | Id::ContactResponses
             | Id::ContactDerivatives
+            | Id::ContactDerivativesByParameters
             | Id::ConstraintCurvature
             | Id::PolytopePoses
             | Id::RateMatrix

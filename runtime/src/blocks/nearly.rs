@@ -3,6 +3,7 @@
 
 use super::zeros;
 use crate::Real;
+use crate::arithmetic::dispatch::{Evaluate, dispatch};
 use crate::arithmetic::{Arithmetic, Compiled, Vector};
 use crate::multiplication::part;
 use nalgebra::SMatrix;
@@ -87,12 +88,8 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
 
     /// Replaces a matrix `A` by the product `D A` with this matrix `D`.
     pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
-        if self.end - self.first.min(self.end) > 8 {
-            return self.left_multiply_many_rows(a);
-        }
-        let (start, is_other) = self.eight_rows_containing_range();
-        for column in &mut a.data.0 {
-            self.left_multiply_column(column, start, is_other);
+        if self.first < self.end {
+            dispatch::<0, T, _, _>(self, a);
         }
     }
 
@@ -108,11 +105,11 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         for (column, from) in into.data.0.iter_mut().zip(&a.data.0) {
             column.iter_mut().zip(from).for_each(|(entry, x)| *entry = *x * s);
             if few && self.first < self.end {
-                self.left_multiply_column(column, start, is_other);
+                self.left_multiply_column::<Compiled>(column, start, is_other);
             }
         }
         if !few {
-            self.left_multiply_many_rows(into);
+            self.left_multiply_many_rows::<Compiled, C>(into);
         }
     }
 
@@ -126,8 +123,8 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
 
     /// Replaces one column `x` by `D x` with this matrix `D`, as a step of [`lead`](Self::lead).
     #[inline(always)]
-    fn left_multiply_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
-        let sum = self.eight_rows_of_product(column, start);
+    fn left_multiply_column<A: Arithmetic>(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
+        let sum = self.eight_rows_of_product::<A>(column, start);
         if let Some(places) = column.get_mut(start..).and_then(<[T]>::first_chunk_mut::<8>) {
             // Eight entries at once, each either the sum or its previous value.
             let given = *places;
@@ -147,30 +144,48 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
 
     /// Returns eight rows, from `start` on, of the product of this matrix with a column.
     #[inline(always)]
-    fn eight_rows_of_product(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
-        let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
+    fn eight_rows_of_product<A: Arithmetic>(&self, column: &[T], start: usize) -> Vector<A, T, 8> {
+        let mut sum = Vector::<A, T, 8>::splat(T::zero());
         let some = self.first..self.end;
         let (factors, own) = (column.get(some.clone()), self.matrix.data.0.get(some));
         for (factor, own) in factors.unwrap_or(&[]).iter().zip(own.unwrap_or(&[])) {
-            sum = Compiled::mul_add(part(own, start), Compiled::splat(*factor), sum);
+            sum = A::mul_add(part(own, start), A::splat(*factor), sum);
         }
         sum
     }
 
     /// Computes [`lead`](Self::lead) for a matrix that differs from the identity in more than eight rows.
-    fn left_multiply_many_rows<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
+    #[inline(always)]
+    fn left_multiply_many_rows<A: Arithmetic, const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         let length = N.min(8);
         for column in &mut a.data.0 {
             let given = *column;
             for from in (self.first..self.end).step_by(8) {
                 let start = from.min(N - length);
-                let sum = self.eight_rows_of_product(&given, start);
+                let sum = self.eight_rows_of_product::<A>(&given, start);
                 let kept = self.end.min(start + length);
                 let places = column.get_mut(from..kept).unwrap_or(&mut []);
                 for (place, sum) in places.iter_mut().zip(sum.lane_numbers().iter().skip(from - start)) {
                     *place = *sum;
                 }
             }
+        }
+    }
+}
+
+impl<T: Real, const N: usize, const C: usize> Evaluate<0, &mut SMatrix<T, N, C>>
+    for NearlyIdentity<'_, T, N>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, a: &mut SMatrix<T, N, C>) {
+        if self.end - self.first.min(self.end) > 8 {
+            return self.left_multiply_many_rows::<A, C>(a);
+        }
+        let (start, is_other) = self.eight_rows_containing_range();
+        for column in &mut a.data.0 {
+            self.left_multiply_column::<A>(column, start, is_other);
         }
     }
 }

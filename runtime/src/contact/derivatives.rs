@@ -2,6 +2,7 @@
 
 use super::held::accelerations_and_responses;
 use super::layout::ContactLayout;
+use super::parameters::ContactsByParameters;
 use super::problem::{ContactProblem, entry_or_zero};
 use super::{Contacts, Rows, Touch};
 use crate::blocks::{
@@ -40,6 +41,31 @@ pub trait ContactDerivatives<
         a: &SVector<Self::Scalar, NV>,
         forces: &SVector<Self::Scalar, NR>,
     ) -> FirstOrder<Self::Scalar, NV, NR>;
+
+    /// Returns the derivatives of contacts that depend on the inputs directly, at constant contact forces;
+    /// `None` if no contact does. Inputs that are parameters change contacts.
+    #[doc(hidden)]
+    fn contact_derivatives_by_inputs(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _v: &SVector<Self::Scalar, NV>,
+        _forces: &SVector<Self::Scalar, NR>,
+    ) -> Option<ContactsByParameters<Self::Scalar, NV, NU, NK, NR>> {
+        None
+    }
+
+    /// Returns the derivatives of the momentum `M δv` of a constant change of the velocity with respect to
+    /// the inputs; `None` if the mass matrix does not depend on them.
+    #[doc(hidden)]
+    fn momentum_change_by_inputs(
+        &self,
+        _t: Self::Scalar,
+        _q: &SVector<Self::Scalar, NQ>,
+        _change: &SVector<Self::Scalar, NV>,
+    ) -> Option<SMatrix<Self::Scalar, NV, NU>> {
+        None
+    }
 }
 
 /// First derivatives of generalized contact forces `Gᵀ f`, contact accelerations `G a + b` and contact

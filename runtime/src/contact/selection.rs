@@ -60,6 +60,11 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
         self.count
     }
 
+    /// Returns the number of selected rows.
+    pub(super) fn row_count(&self) -> usize {
+        self.size
+    }
+
     /// Returns a selected contact's index in the mechanism.
     pub(super) fn index_of_contact(&self, k: usize) -> usize {
         self.contacts[k]

@@ -14,7 +14,7 @@ use super::selection::ContactSelection;
 use super::solution::ContactsWithImpulses;
 use super::stepping::observed_step;
 use super::{Touched, touching_distance};
-use crate::blocks::{add_multiple, add_product, zeros};
+use crate::blocks::{add_multiple, add_product, product, zeros};
 use crate::constraint::ConstraintError;
 use crate::discrete::{
     ConfigurationManifold, DifferentiatedStepStart, Transition, VectorWithDerivatives,
@@ -246,15 +246,31 @@ struct ClosedContacts<
     responses: &'a SMatrix<T, NV, CR>,
     /// Contact Jacobian `G` of the closed contacts.
     jacobian: SMatrix<T, CR, NV>,
-    /// Factor of the mass matrix; `None` if forces depend on accelerations.
-    factor: Option<CholeskyFactor<T, NV>>,
+    inertia: InertiaAtImpulses<T, NV>,
 }
 
-/// Derivatives with respect to the configuration: of the velocity change by constant impulses, and of the
-/// contact velocities at a constant velocity.
-struct ContactConfigurationDerivatives<T, const NV: usize, const CR: usize> {
+/// Effect of generalized impulses on velocities.
+enum InertiaAtImpulses<T, const NV: usize> {
+    /// Factor of the mass matrix, and the derivative of the forces at rest with respect to the configuration.
+    MassMatrix(CholeskyFactor<T, NV>, SMatrix<T, NV, NV>),
+    /// Forces depend on accelerations: forces at rest without acceleration, the derivatives of the
+    /// accelerations under these forces with respect to the configuration and to forces.
+    Response(SVector<T, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, NV>),
+}
+
+/// Derivatives with respect to the configuration, and to inputs that act directly: of the velocity change by
+/// constant impulses, and of the contact velocities at a constant velocity.
+struct DirectDerivatives<T, const NV: usize, const NU: usize, const CR: usize> {
     velocities: SMatrix<T, NV, NV>,
-    rates: SMatrix<T, CR, NV>,
+    velocities_by_u: Option<SMatrix<T, NV, NU>>,
+    rates: ContactVelocityDerivatives<T, NV, NU, CR>,
+}
+
+/// Derivatives of the contact velocities at a constant velocity with respect to the configuration, and to
+/// inputs that act directly.
+struct ContactVelocityDerivatives<T, const NV: usize, const NU: usize, const CR: usize> {
+    by_q: SMatrix<T, CR, NV>,
+    by_u: Option<SMatrix<T, CR, NU>>,
 }
 
 /// Derivatives of values at the rows of contacts, with respect to configuration, velocity and inputs before
@@ -285,19 +301,31 @@ impl<T: Real, const CR: usize, const NV: usize, const NU: usize> ContactRowDeriv
         add_product(&mut self.by_u, by, &of.by_u);
     }
 
+    /// Adds the derivatives `of`, with the rows multiplied by the entries of a vector.
+    fn add_scaled_rows(&mut self, factors: &SVector<T, CR>, of: &Self) {
+        add_scaled_rows(&mut self.by_q, factors, &of.by_q);
+        add_scaled_rows(&mut self.by_v, factors, &of.by_v);
+        add_scaled_rows(&mut self.by_u, factors, &of.by_u);
+    }
+
     /// Returns all derivatives, multiplied by a number.
     fn scaled_row_derivatives(&self, s: T) -> Self {
         Self { by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
     }
 
     /// Returns the derivatives of the impulses, if `self` holds the derivatives of the contact velocities
-    /// without impulses.
-    fn impulse_derivatives(&self, equations: &LinearisedImpulses<T, CR>) -> Self {
+    /// without impulses. Inputs may also change the coefficients of friction, with derivatives `friction` at
+    /// the rows of friction.
+    fn impulse_derivatives(
+        &self,
+        equations: &LinearisedImpulses<T, CR>,
+        friction: Option<&SMatrix<T, CR, NU>>,
+    ) -> Self {
         let Self { by_q, by_v, by_u } = self;
         Self {
-            by_q: equations.impulse_changes(by_q),
-            by_v: equations.impulse_changes(by_v),
-            by_u: equations.impulse_changes(by_u),
+            by_q: equations.impulse_changes(by_q, None),
+            by_v: equations.impulse_changes(by_v, None),
+            by_u: equations.impulse_changes(by_u, friction),
         }
     }
 
@@ -331,93 +359,152 @@ where
         acted: &'a ContactsWithImpulses<T, NV, CK, CR>,
         responses: &'a SMatrix<T, NV, CR>,
     ) -> Self {
-        let (m, q) = (contacts.mechanism, at.q);
-        let jacobian = selected_contact_rows(&acted.selection, &m.contact_jacobian(at.t, q));
+        let (m, t, q, still) = (contacts.mechanism, at.t, at.q, SVector::zeros());
+        let jacobian = selected_contact_rows(&acted.selection, &m.contact_jacobian(t, q));
         let factor = if m.features().feedback {
             None
         } else {
-            CholeskyFactor::cholesky_of_mass_matrix(&m.mass_matrix(at.t, q))
+            CholeskyFactor::cholesky_of_mass_matrix(&m.mass_matrix(t, q))
         };
-        Self { contacts, at, acted, responses, jacobian, factor }
-    }
-
-    /// Returns two derivatives with respect to the configuration: of the velocity change by `impulses`, and
-    /// of the contact velocities at the velocity `v`.
-    fn configuration_derivatives(
-        &self,
-        v: &SVector<T, NV>,
-        impulses: &SVector<T, CR>,
-    ) -> ContactConfigurationDerivatives<T, NV, CR> {
-        let (m, t, q) = (self.contacts.mechanism, self.at.t, self.at.q);
-        let (still, effect) = (SVector::zeros(), self.responses * impulses);
-        let parts = m.contact_derivatives(
-            t,
-            q,
-            v,
-            &still,
-            &self.acted.selection.impulses_at_mechanism_rows(impulses),
-        );
-        let rates = selected_contact_rows(&self.acted.selection, &parts.rates_by_q);
-        let mut velocities;
-        match &self.factor {
+        let inertia = match factor {
             Some(factor) => {
-                let mass_times_derivative =
-                    |a: &SVector<T, NV>| m.inverse_dynamics_derivatives(t, q, &still, a).0;
-                velocities = factor.solve_all_columns(
-                    &(parts.forces_by_q - mass_times_derivative(&effect) + mass_times_derivative(&still)),
-                );
+                InertiaAtImpulses::MassMatrix(factor, m.inverse_dynamics_derivatives(t, q, &still, &still).0)
             }
             None => {
                 let bias = m.bias_forces(t, q, &still);
-                let loaded = bias + self.jacobian.tr_mul(impulses);
-                let (by_q, _, response) = m.forward_dynamics_derivatives(t, q, &still, &loaded);
-                velocities = by_q - m.forward_dynamics_derivatives(t, q, &still, &bias).0;
-                add_product(&mut velocities, &response, &parts.forces_by_q);
+                let (by_q, _, response) = m.forward_dynamics_derivatives(t, q, &still, &bias);
+                InertiaAtImpulses::Response(bias, by_q, response)
             }
-        }
-        ContactConfigurationDerivatives { velocities, rates }
+        };
+        Self { contacts, at, acted, responses, jacobian, inertia }
     }
 
-    /// Returns the derivatives of [`configuration_derivatives`](Self::configuration_derivatives) for a
-    /// displacement `v` instead of a velocity: contact velocities of prescribed motions are left out.
+    /// Returns the derivatives of the velocity change by `impulses`, and of the contact velocities at the
+    /// velocity `v`.
+    fn direct_derivatives(
+        &self,
+        v: &SVector<T, NV>,
+        impulses: &SVector<T, CR>,
+    ) -> DirectDerivatives<T, NV, NU, CR> {
+        let (m, t, q) = (self.contacts.mechanism, self.at.t, self.at.q);
+        let (still, effect) = (SVector::zeros(), self.responses * impulses);
+        let (selection, all) =
+            (&self.acted.selection, self.acted.selection.impulses_at_mechanism_rows(impulses));
+        let parts = m.contact_derivatives(t, q, v, &still, &all);
+        let by_inputs = m.contact_derivatives_by_inputs(t, q, v, &all);
+        let by_u = by_inputs.as_ref().map(|parts| selected_contact_rows(selection, &parts.rates));
+        let rates =
+            ContactVelocityDerivatives { by_q: selected_contact_rows(selection, &parts.rates_by_q), by_u };
+        let mut momenta_by_u = by_inputs.map(|parts| parts.forces);
+        if let (Some(momenta), Some(change)) = (&mut momenta_by_u, m.momentum_change_by_inputs(t, q, &effect))
+        {
+            *momenta -= change;
+        }
+        let mut velocities;
+        match &self.inertia {
+            InertiaAtImpulses::MassMatrix(factor, at_rest) => {
+                let mut momenta = m.inverse_dynamics_derivatives(t, q, &still, &effect).0;
+                momenta = parts.forces_by_q - momenta + at_rest;
+                velocities = factor.solve_all_columns(&momenta);
+            }
+            InertiaAtImpulses::Response(bias, at_rest, response) => {
+                let loaded = bias + self.jacobian.tr_mul(impulses);
+                velocities = m.forward_dynamics_derivatives(t, q, &still, &loaded).0 - at_rest;
+                add_product(&mut velocities, response, &parts.forces_by_q);
+            }
+        }
+        let velocities_by_u = momenta_by_u.map(|momenta| match &self.inertia {
+            InertiaAtImpulses::MassMatrix(factor, _) => {
+                let mut velocities = momenta;
+                for column in &mut velocities.data.0 {
+                    *column = factor.solve_with_factor(*column);
+                }
+                velocities
+            }
+            InertiaAtImpulses::Response(.., response) => product(response, &momenta),
+        });
+        DirectDerivatives { velocities, velocities_by_u, rates }
+    }
+
+    /// Returns [`direct_derivatives`](Self::direct_derivatives) for a displacement `v` instead of a velocity:
+    /// contact velocities of prescribed motions are left out.
     fn displacement_derivatives(
         &self,
         v: &SVector<T, NV>,
         impulses: &SVector<T, CR>,
-    ) -> ContactConfigurationDerivatives<T, NV, CR> {
-        let found = self.configuration_derivatives(v, impulses);
-        let still = self.contact_velocity_derivatives(&SVector::zeros());
-        ContactConfigurationDerivatives { rates: found.rates - still, ..found }
+    ) -> DirectDerivatives<T, NV, NU, CR> {
+        let mut found = self.direct_derivatives(v, impulses);
+        if self.contacts.mechanism.contacts_drift() {
+            let still = self.contact_velocity_derivatives(&SVector::zeros());
+            found.rates.by_q -= still.by_q;
+            if let (Some(by_u), Some(still)) = (&mut found.rates.by_u, still.by_u) {
+                *by_u -= still;
+            }
+        }
+        found
     }
 
-    /// Returns the derivatives of contact velocities at the velocity `v` with respect to the configuration.
-    fn contact_velocity_derivatives(&self, v: &SVector<T, NV>) -> SMatrix<T, CR, NV> {
-        let (m, t, q) = (self.contacts.mechanism, self.at.t, self.at.q);
-        let parts = m.contact_derivatives(t, q, v, &SVector::zeros(), &SVector::zeros());
-        selected_contact_rows(&self.acted.selection, &parts.rates_by_q)
+    /// Returns the derivatives of contact velocities at the velocity `v`.
+    fn contact_velocity_derivatives(&self, v: &SVector<T, NV>) -> ContactVelocityDerivatives<T, NV, NU, CR> {
+        let (m, t, q, none) = (self.contacts.mechanism, self.at.t, self.at.q, SVector::zeros());
+        let parts = m.contact_derivatives(t, q, v, &SVector::zeros(), &none);
+        let by_inputs = m.contact_derivatives_by_inputs(t, q, v, &none);
+        let selection = &self.acted.selection;
+        ContactVelocityDerivatives {
+            by_q: selected_contact_rows(selection, &parts.rates_by_q),
+            by_u: by_inputs.map(|parts| selected_contact_rows(selection, &parts.rates)),
+        }
     }
 
-    /// Adds to a velocity the change that follows from the displacement of the configuration.
-    fn add_velocity_change_by_displacement(
+    /// Returns the derivatives of the coefficients of friction with respect to the inputs at the rows of
+    /// friction, and of those of restitution at the normal rows; `None` if no contact depends on inputs.
+    fn coefficient_derivatives(&self) -> Option<[SMatrix<T, CR, NU>; 2]> {
+        let none = SVector::zeros();
+        let (m, selection) = (self.contacts.mechanism, &self.acted.selection);
+        let parts = m.contact_derivatives_by_inputs(self.at.t, self.at.q, &SVector::zeros(), &none)?;
+        let (layout, mut rows) = (selection.contact_layout(), [zeros(); 2]);
+        let [friction, restitution] = &mut rows;
+        for k in 0..selection.contact_count() {
+            let contact = selection.index_of_contact(k);
+            layout.tangent_rows(k).for_each(|i| copy_row(&parts.friction, contact, friction, i));
+            copy_row(&parts.restitution, contact, restitution, layout.rows(k).first);
+        }
+        Some(rows)
+    }
+
+    /// Adds to a velocity the change that follows from the displacement of the configuration and from inputs
+    /// that act directly, multiplied by a number.
+    fn add_direct_velocity_change(
         &self,
         sum: &mut VectorWithDerivatives<T, NV, NU>,
-        by_place: &SMatrix<T, NV, NV>,
+        direct: &DirectDerivatives<T, NV, NU, CR>,
+        factor: T,
     ) {
-        let Some(motion) = self.at.motion else { return add_multiple(&mut sum.by_q, T::one(), by_place) };
-        add_product(&mut sum.by_q, by_place, &motion.by_q);
-        add_product(&mut sum.by_v, by_place, &motion.by_v);
-        add_product(&mut sum.by_u, by_place, &motion.by_u);
+        if let Some(by_u) = &direct.velocities_by_u {
+            add_multiple(&mut sum.by_u, factor, by_u);
+        }
+        let Some(motion) = self.at.motion else {
+            return add_multiple(&mut sum.by_q, factor, &direct.velocities);
+        };
+        let by_place = direct.velocities * factor;
+        add_product(&mut sum.by_q, &by_place, &motion.by_q);
+        add_product(&mut sum.by_v, &by_place, &motion.by_v);
+        add_product(&mut sum.by_u, &by_place, &motion.by_u);
     }
 
-    /// Adds to contact velocities the change that follows from the displacement of the configuration.
-    fn add_contact_velocity_by_displacement(
+    /// Adds to contact velocities the change that follows from the displacement of the configuration and from
+    /// inputs that act directly.
+    fn add_direct_contact_velocity(
         &self,
         sum: &mut ContactRowDerivatives<T, CR, NV, NU>,
-        by_place: &SMatrix<T, CR, NV>,
+        direct: &ContactVelocityDerivatives<T, NV, NU, CR>,
     ) {
+        if let Some(by_u) = &direct.by_u {
+            add_multiple(&mut sum.by_u, T::one(), by_u);
+        }
         match self.at.motion {
-            Some(motion) => sum.add_product(by_place, motion),
-            None => add_multiple(&mut sum.by_q, T::one(), by_place),
+            Some(motion) => sum.add_product(&direct.by_q, motion),
+            None => add_multiple(&mut sum.by_q, T::one(), &direct.by_q),
         }
     }
 
@@ -428,25 +515,28 @@ where
         let impulses = problem.impulses_at_mechanism_rows(impulses);
         let mut after = *self.at.free;
         after.value = corrected + self.responses * impulses;
+        let coefficients = self.coefficient_derivatives();
+        let friction = coefficients.as_ref().map(|[friction, _]| friction);
         let (mut acting, is_corrected) = (impulses, *corrected != self.at.free.value);
         let transport = self.at.given.filter(|_| is_corrected).map(|given| {
             let half =
                 VectorWithDerivatives { value: after.value, ..after.plus_scaled(constant(0.5), given) };
             after = half;
-            let transport = self.impulses_of_rotation_correction(given, is_whole);
+            let transport = self.impulses_of_rotation_correction(given, is_whole, friction);
             acting += transport.0;
             transport.1
         });
-        let by_place = self.configuration_derivatives(&after.value, &acting);
-        self.add_velocity_change_by_displacement(&mut after, &by_place.velocities);
+        let direct = self.direct_derivatives(&after.value, &acting);
+        self.add_direct_velocity_change(&mut after, &direct, T::one());
         if let Some(Some(transported)) = transport {
             transported.add_velocity_change(self.responses, &mut after);
         }
         let mut rates = ContactRowDerivatives::zeros();
-        self.add_contact_velocity_by_displacement(&mut rates, &by_place.rates);
+        self.add_direct_contact_velocity(&mut rates, &direct.rates);
         rates.add_product(&self.jacobian, &after);
-        self.subtract_restitution_derivatives(&mut rates);
-        rates.impulse_derivatives(&equations).add_velocity_change(self.responses, &mut after);
+        let restitution = coefficients.as_ref().map(|[_, restitution]| restitution);
+        self.subtract_restitution_derivatives(&mut rates, restitution);
+        rates.impulse_derivatives(&equations, friction).add_velocity_change(self.responses, &mut after);
         after
     }
 
@@ -457,6 +547,7 @@ where
         &self,
         given: &VectorWithDerivatives<T, NV, NU>,
         is_whole: bool,
+        friction: Option<&SMatrix<T, CR, NU>>,
     ) -> (SVector<T, CR>, Option<ContactRowDerivatives<T, CR, NV, NU>>) {
         let (problem, half) = (&self.acted.problem, constant::<T>(0.5));
         let (start, is_regular) = problem
@@ -466,14 +557,17 @@ where
             return (start * -half, None);
         }
         let left = given.value - self.responses * start;
-        let by_place = self.displacement_derivatives(&left, &start);
+        let direct = self.displacement_derivatives(&left, &start);
         let mut effect = VectorWithDerivatives { value: SVector::zeros(), ..*given };
-        self.add_velocity_change_by_displacement(&mut effect, &(-by_place.velocities));
+        self.add_direct_velocity_change(&mut effect, &direct, -T::one());
         let mut rates = ContactRowDerivatives::zeros();
-        self.add_contact_velocity_by_displacement(&mut rates, &by_place.rates);
+        self.add_direct_contact_velocity(&mut rates, &direct.rates);
         rates.add_product(&self.jacobian, &effect);
         let starts = rates
-            .impulse_derivatives(&problem.velocity_preserving_equations(&problem.chosen_rows_with_impulses()))
+            .impulse_derivatives(
+                &problem.velocity_preserving_equations(&problem.chosen_rows_with_impulses()),
+                None,
+            )
             .scaled_row_derivatives(-T::one());
         let (mut offset, mut derivatives) = (start * -half, starts.scaled_row_derivatives(-half));
         if is_regular {
@@ -487,21 +581,26 @@ where
             let rotated = problem.friction_correction_for_rotation(&start, &slip);
             offset += rotated.impulses;
             let mut slips = ContactRowDerivatives::zeros();
-            self.add_contact_velocity_by_displacement(
-                &mut slips,
-                &self.contact_velocity_derivatives(&slipping.value),
-            );
+            self.add_direct_contact_velocity(&mut slips, &self.contact_velocity_derivatives(&slipping.value));
             slips.add_product(&self.jacobian, &slipping);
             derivatives.add_rows(&rotated.by_impulses, &starts);
             derivatives.add_rows(&rotated.by_slip, &slips);
+            if let Some(friction) = friction {
+                add_scaled_rows(&mut derivatives.by_u, &rotated.by_friction, friction);
+            }
         }
         (offset, Some(derivatives))
     }
 
-    /// Subtracts the derivatives of the normal velocities that restitution demands.
-    fn subtract_restitution_derivatives(&self, rates: &mut ContactRowDerivatives<T, CR, NV, NU>) {
+    /// Subtracts the derivatives of the normal velocities that restitution demands. `restitution` holds the
+    /// derivatives of the coefficients with respect to the inputs, if there are any.
+    fn subtract_restitution_derivatives(
+        &self,
+        rates: &mut ContactRowDerivatives<T, CR, NV, NU>,
+        restitution: Option<&SMatrix<T, CR, NU>>,
+    ) {
         let ContactsWithImpulses { problem, selection, .. } = self.acted;
-        if !problem.demands_restitution() {
+        if !problem.demands_restitution() && restitution.is_none() {
             return;
         }
         let (ContactStepStart { mechanism: m, manifold, start }, at) = (self.contacts, self.at);
@@ -511,14 +610,19 @@ where
             Some(motion) => manifold.transport_between(at.t, (start.0, &velocity), (at.q, motion)),
         };
         let before = selection.selected_contact_rates(&m.contact_rates(at.t, at.q, &carried.value));
+        if let Some(restitution) = restitution {
+            let laws = selection.selected_laws(&m.contact_laws());
+            let factors = problem.demand_derivatives_by_restitution(&laws, &before);
+            add_scaled_rows(&mut rates.by_u, &-factors, restitution);
+        }
+        if !problem.demands_restitution() {
+            return;
+        }
         let factors = problem.restitution_derivatives(&before);
         let mut before = ContactRowDerivatives::zeros();
-        self.add_contact_velocity_by_displacement(
-            &mut before,
-            &self.contact_velocity_derivatives(&carried.value),
-        );
+        self.add_direct_contact_velocity(&mut before, &self.contact_velocity_derivatives(&carried.value));
         before.add_product(&self.jacobian, &carried);
-        rates.add_rows(&SMatrix::from_diagonal(&-factors), &before);
+        rates.add_scaled_rows(&-factors, &before);
     }
 
     /// Returns the displacement that closes gaps at the end of a step, with its derivatives; `None` if there
@@ -535,41 +639,75 @@ where
         }
         let (closed, kept) =
             problem.closed_rows(impulses, (gaps, touching_distance(), *reach), pushes.as_ref());
-        let jacobian =
-            selected_contact_rows(selection, &self.contacts.mechanism.contact_jacobian(self.at.t, q));
+        let m = self.contacts.mechanism;
+        let jacobian = selected_contact_rows(selection, &m.contact_jacobian(self.at.t, q));
         let mut rates = ContactRowDerivatives::zeros();
         rates.add_product(&jacobian, motion);
-        let mut rows = problem.indicator_matrix_of_rows(&closed);
+        let none = SVector::zeros();
+        if let Some(parts) = m.contact_derivatives_by_inputs(self.at.t, q, &SVector::zeros(), &none) {
+            let (layout, mut gaps) = (selection.contact_layout(), zeros::<T, CR, NU>());
+            for k in 0..selection.contact_count() {
+                copy_row(&parts.gaps, selection.index_of_contact(k), &mut gaps, layout.rows(k).first);
+            }
+            rates.by_u += gaps;
+        }
+        let mut rows = problem.indicator_of_rows(&closed);
         let mut by = VectorWithDerivatives { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
         // The gaps of these contacts stay the same.
         let mut all = ContactRowDerivatives::zeros();
-        all.add_rows(&rows, &rates);
+        all.add_scaled_rows(&rows, &rates);
         if let Some(pushes) = pushes {
             by.value = self.responses * pushes;
-            let by_place = self.displacement_derivatives(&by.value, pushes);
-            self.add_velocity_change_by_displacement(&mut by, &by_place.velocities);
+            let direct = self.displacement_derivatives(&by.value, pushes);
+            self.add_direct_velocity_change(&mut by, &direct, T::one());
             let mut more = ContactRowDerivatives::zeros();
-            self.add_contact_velocity_by_displacement(&mut more, &by_place.rates);
+            self.add_direct_contact_velocity(&mut more, &direct.rates);
             more.add_product(&self.jacobian, &by);
-            rows += problem.indicator_matrix_of_rows(&kept);
-            all.add_rows(&rows, &more);
+            rows += problem.indicator_of_rows(&kept);
+            all.add_scaled_rows(&rows, &more);
         }
         let mut held = closed;
         held.iter_mut().zip(kept.iter()).for_each(|(held, kept)| *held |= *kept);
-        all.impulse_derivatives(&problem.velocity_preserving_equations(&held))
+        all.impulse_derivatives(&problem.velocity_preserving_equations(&held), None)
             .add_velocity_change(self.responses, &mut by);
         Some(by.scaled_derivatives(*part))
     }
 }
 
 /// Returns the rows of selected contacts.
-fn selected_contact_rows<T: Real, const NV: usize, const NR: usize, const CK: usize, const CR: usize>(
+fn selected_contact_rows<T: Real, const C: usize, const NR: usize, const CK: usize, const CR: usize>(
     selection: &ContactSelection<CK, CR>,
-    all: &SMatrix<T, NR, NV>,
-) -> SMatrix<T, CR, NV> {
-    let mut rows = zeros::<T, CR, NV>();
+    all: &SMatrix<T, NR, C>,
+) -> SMatrix<T, CR, C> {
+    let mut rows = zeros::<T, CR, C>();
     for (to, from) in rows.data.0.iter_mut().zip(&all.data.0) {
         *to = selection.selected_contact_rates(&SVector::from(*from)).data.0[0];
     }
     rows
+}
+
+/// Copies row `i` of a matrix to row `j` of another one.
+fn copy_row<T: Real, const R: usize, const S: usize, const C: usize>(
+    from: &SMatrix<T, R, C>,
+    i: usize,
+    to: &mut SMatrix<T, S, C>,
+    j: usize,
+) {
+    for (to, from) in to.data.0.iter_mut().zip(&from.data.0) {
+        if let (Some(to), Some(from)) = (to.get_mut(j), from.get(i)) {
+            *to = *from;
+        }
+    }
+}
+
+/// Adds a matrix whose rows are multiplied by the entries of a vector.
+fn add_scaled_rows<T: Real, const R: usize, const C: usize>(
+    sum: &mut SMatrix<T, R, C>,
+    factors: &SVector<T, R>,
+    rows: &SMatrix<T, R, C>,
+) {
+    for (sum, column) in sum.data.0.iter_mut().zip(&rows.data.0) {
+        let entries = sum.iter_mut().zip(column).zip(factors);
+        entries.for_each(|((sum, entry), factor)| *sum += *entry * *factor);
+    }
 }

@@ -1,6 +1,6 @@
 //! Impulses of closed contacts, and the velocity after them.
 
-use super::problem::{ContactProblem, ImpulseEquations};
+use super::problem::{ContactProblem, ImpulseEquations, set_entry};
 use super::response::ImpulseEffects;
 use super::selection::ContactSelection;
 use super::total::TotalArray;
@@ -44,11 +44,15 @@ impl<T: Real, const NV: usize, const CK: usize, const CR: usize> ContactsWithImp
 
     /// Returns `M⁻¹ Gᵀ`: the changes of the velocity by unit impulses at the rows of the selected contacts.
     pub(super) fn velocity_responses(&self) -> SMatrix<T, NV, CR> {
+        if let ImpulseEffects::Matrix(responses) = &self.effects {
+            return *responses;
+        }
         let mut responses = SMatrix::<T, NV, CR>::zeros();
-        for row in 0..CR {
+        let rows = self.selection.row_count();
+        for (row, column) in responses.data.0.iter_mut().enumerate().take(rows) {
             let mut unit = SVector::zeros();
-            unit[row] = T::one();
-            responses.set_column(row, &self.velocity_change(&unit));
+            set_entry(&mut unit, row, T::one());
+            *column = self.velocity_change(&unit).data.0[0];
         }
         responses
     }

@@ -2,7 +2,9 @@
 
 use super::{ConfigurationVelocityRelation, DifferentiableStep, Transition, implicit, plain};
 use crate::Real;
-use crate::blocks::{add_multiple, add_product, product, scale, write_multiple, write_scaled_sum, zeros};
+use crate::blocks::{
+    NearlyIdentity, add_multiple, add_product, product, scale, write_multiple, write_scaled_sum, zeros,
+};
 use crate::constraint::ConstrainedDerivatives;
 use crate::derivatives::{Derivatives, write_acceleration_derivatives};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -43,20 +45,20 @@ impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU>
         sum
     }
 
+    /// Adds `s other` to the vector, with its derivatives.
+    pub(crate) fn add_scaled(&mut self, s: T, other: &Self) {
+        self.value += other.value * s;
+        add_multiple(&mut self.by_q, s, &other.by_q);
+        add_multiple(&mut self.by_v, s, &other.by_v);
+        add_multiple(&mut self.by_u, s, &other.by_u);
+    }
+
     pub(crate) fn scaled_derivatives(&self, s: T) -> Self {
         let mut multiple = Self { value: self.value * s, by_q: zeros(), by_v: zeros(), by_u: zeros() };
         write_multiple(s, &self.by_q, &mut multiple.by_q);
         write_multiple(s, &self.by_v, &mut multiple.by_v);
         write_multiple(s, &self.by_u, &mut multiple.by_u);
         multiple
-    }
-
-    /// Sets the derivatives of all entries to zero that do not satisfy a condition.
-    pub(crate) fn zero_other_derivatives(&mut self, is_kept: impl Fn(usize) -> bool) {
-        let columns = self.by_q.data.0.iter_mut().chain(&mut self.by_v.data.0).chain(&mut self.by_u.data.0);
-        for column in columns {
-            column.iter_mut().enumerate().filter(|(k, _)| !is_kept(*k)).for_each(|(_, x)| *x = T::zero());
-        }
     }
 
     /// Returns a function of two vectors with derivatives, by the chain rule; `by_a` and `by_b` are the
@@ -117,6 +119,14 @@ where
             return (q, VectorWithDerivatives { by_q, ..*displacement });
         }
         let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(self.q, &displacement.value);
+        if let Some(rotating) = M::TURNED {
+            let (turning, mut motion) = (NearlyIdentity::with_range(&by_dv, rotating), *displacement);
+            turning.lead(&mut motion.by_q);
+            turning.lead(&mut motion.by_v);
+            turning.lead(&mut motion.by_u);
+            add_multiple(&mut motion.by_q, T::one(), &by_q);
+            return (q, motion);
+        }
         let mut motion = VectorWithDerivatives {
             value: displacement.value,
             by_q,

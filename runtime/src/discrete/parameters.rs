@@ -1,9 +1,10 @@
 //! Derivatives of steps with respect to the parameters of a mechanism.
 
-use super::FixedStep;
 use super::explicit::runge_kutta_change;
+use super::{DifferentiableStep, FixedStep, Transition};
 use crate::blocks::{add_product, product};
-use crate::integrate::{Error, Rk4, SemiImplicitEuler};
+use crate::contact::ParametersAsInputs;
+use crate::integrate::{Error, Rk4, SemiImplicitEuler, TimeStepping};
 use crate::private::{constant, to_f64};
 use crate::{Derivatives, Real, Sensitivities, at};
 use nalgebra::{SMatrix, SVector};
@@ -15,6 +16,13 @@ use nalgebra::{SMatrix, SVector};
 /// joints. Parameter estimation and design optimisation over many steps accumulate `x_p⁺ = A x_p + ∂x⁺/∂p`.
 ///
 /// The mechanism has the options `derivatives` and `sensitivities`, and no constraints.
+///
+/// Steps of [`TimeStepping`] of a mechanism with [contacts](crate::contact) are differentiated in the contact
+/// modes that the step has found, as [`transition`](super::transition) does. Parameters are masses, sizes of
+/// bodies and of surfaces, heights of the ground, coefficients of friction and restitution, and all others.
+/// Derivatives are one-sided where modes change: for a coefficient of restitution of zero towards positive
+/// values. A coefficient of friction of zero stays zero, so that its derivative is zero; identification
+/// begins at a positive value. Coefficients of static friction affect modes only.
 ///
 /// ```
 /// use linkwork::discrete;
@@ -40,10 +48,35 @@ use nalgebra::{SMatrix, SVector};
 /// # }
 /// ```
 ///
+/// ```
+/// use linkwork::discrete;
+/// use linkwork::prelude::*;
+///
+/// #[mechanism(gravity = -9.81 * z, derivatives, sensitivities)]
+/// struct Block {
+///     friction: f64,
+///     #[body(mass = 2)]
+///     block: Body,
+///     #[joint(ground -> block, along = (x, z))]
+///     place: Stage,
+///     #[contact(block, ground.plane(z), friction = friction)]
+///     foot: Contact,
+/// }
+///
+/// # fn main() -> Result<(), Error> {
+/// let (method, q, v) = (TimeStepping::step(0.01), [0.0, 0.0].into(), [1.0, 0.0].into());
+/// let (_, by_friction) =
+///     discrete::by_parameters(&Block { friction: 0.3 }, &method, 0.0, &q, &v, &[].into())?;
+/// // v⁺ = v − μ g h while the block slides.
+/// assert!((by_friction[0] + 9.81 * 0.01).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 ///
 /// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state
-/// that is not.
+/// that is not; with contacts the errors of [`transition`](super::transition).
 #[allow(clippy::type_complexity, reason = "two matrices")]
 pub fn by_parameters<M, T, S, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     mechanism: &M,
@@ -64,13 +97,18 @@ where
             "a step with derivatives with respect to parameters needs a mechanism without constraints"
         );
         assert!(
-            !M::CONTACTING,
-            "a step with derivatives with respect to parameters needs a mechanism without contacts that open \
-             and close"
+            !M::CONTACTING || S::CONTACTS,
+            "a step with derivatives with respect to parameters of a mechanism with contacts that open and \
+             close needs the method `TimeStepping`"
+        );
+        assert!(
+            !M::CONTACTING || M::LOCATABLE && !M::SPEEDS,
+            "a step with derivatives with respect to parameters of a mechanism with contacts that open and \
+             close needs a mechanism without declared speeds and states of first order"
         );
     }
     method.check()?;
-    let (by_q, by_v) = method.differentiate_by_parameters(mechanism, t, (q, v), u);
+    let (by_q, by_v) = method.differentiate_by_parameters(mechanism, t, (q, v), u)?;
     let finite = by_q.iter().chain(by_v.iter()).all(|x| x.is_finite());
     if finite { Ok((by_q, by_v)) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
@@ -78,10 +116,14 @@ where
 /// Methods whose steps have derivatives with respect to parameters.
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no derivatives by parameters",
-    note = "those of `Rk4` and `SemiImplicitEuler` have"
+    note = "those of `Rk4`, `SemiImplicitEuler` and `TimeStepping` have"
 )]
 pub trait StepByParameters<T: Real>: FixedStep<T> {
     /// Returns the derivatives of a step of a mechanism without constraints; called by [`by_parameters`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`transition`](super::transition).
     #[allow(clippy::type_complexity, reason = "two matrices")]
     fn differentiate_by_parameters<M, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
         &self,
@@ -89,7 +131,7 @@ pub trait StepByParameters<T: Real>: FixedStep<T> {
         t: T,
         state: (&SVector<T, NQ>, &SVector<T, NV>),
         u: &SVector<T, NU>,
-    ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
+    ) -> Result<(SMatrix<T, NV, NP>, SMatrix<T, NV, NP>), Error>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>;
 }
@@ -168,7 +210,7 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
         t: T,
         (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
         u: &SVector<T, NU>,
-    ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
+    ) -> Result<(SMatrix<T, NV, NP>, SMatrix<T, NV, NP>), Error>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
@@ -183,7 +225,7 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
                 u,
             ),
         );
-        (configuration_derivatives(m, q, &after.scaled_derivatives(h)), after.by)
+        Ok((configuration_derivatives(m, q, &after.scaled_derivatives(h)), after.by))
     }
 }
 
@@ -194,7 +236,7 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
         t: T,
         (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
         u: &SVector<T, NU>,
-    ) -> (SMatrix<T, NV, NP>, SMatrix<T, NV, NP>)
+    ) -> Result<(SMatrix<T, NV, NP>, SMatrix<T, NV, NP>), Error>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
@@ -234,6 +276,27 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
             VectorWithParameterDerivatives::plus_scaled,
             VectorWithParameterDerivatives::scaled_derivatives,
         );
-        (configuration_derivatives(m, q, &displacement), change.by)
+        Ok((configuration_derivatives(m, q, &displacement), change.by))
+    }
+}
+
+impl<T: Real> StepByParameters<T> for TimeStepping<T> {
+    fn differentiate_by_parameters<M, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+        &self,
+        m: &M,
+        t: T,
+        (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+        u: &SVector<T, NU>,
+    ) -> Result<(SMatrix<T, NV, NP>, SMatrix<T, NV, NP>), Error>
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
+    {
+        if let Some(found) = m.differentiate_contact_step_by_parameters(self, t, (q, v), u) {
+            return found;
+        }
+        let mut step = Transition::<T, NQ, NV, NP>::zeros();
+        let by_parameters = ParametersAsInputs { mechanism: m, u };
+        self.differentiate_into(&by_parameters, t, q, v, &SVector::zeros(), &mut step)?;
+        Ok((step.q_by_u, step.v_by_u))
     }
 }

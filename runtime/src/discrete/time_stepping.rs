@@ -4,7 +4,7 @@
 use super::explicit::{DifferentiatedStepStart, VectorWithDerivatives, runge_kutta_change};
 use super::{DifferentiableStep, Transition};
 use crate::Real;
-use crate::blocks::{NearlyIdentity, add_product, add_product_of_some, is_zero, scale};
+use crate::blocks::{NearlyIdentity, add_multiple, add_product, add_product_of_some, is_zero, scale, zeros};
 use crate::constraint::ConstraintError;
 use crate::contact::{Contacts, Visitor};
 use crate::derivatives::Derivatives;
@@ -89,30 +89,42 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let (mut turned, mut way) = (*motion, *by);
         self.multiply_derivatives_from_left(&by_q, &mut turned);
         self.multiply_derivatives_from_left(&by_dv, &mut way);
-        (to, turned.plus_scaled(T::one(), &way))
+        turned.add_scaled(T::one(), &way);
+        (to, turned)
     }
 
-    /// Returns [`displaced_configuration`](Self::displaced_configuration) for a displacement during which the
-    /// origins of free bodies move along straight lines.
-    fn displaced_along_straight_lines<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns the configuration after a displacement during which the origins of free bodies move along
+    /// straight lines, and its derivatives with respect to the configuration before and to the displacement.
+    fn displacement_along_straight_lines<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
-        from: (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
-        by: &VectorWithDerivatives<T, NV, NU>,
-    ) -> (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>)
+        q: &SVector<T, NQ>,
+        dv: &SVector<T, NV>,
+    ) -> (SVector<T, NQ>, [SMatrix<T, NV, NV>; 2])
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let is_linear = self.mechanism.translation(t, &SVector::repeat(T::one()));
-        if is_linear.iter().all(|x| *x == T::zero()) {
-            return self.displaced_configuration(from, by);
+        let m = self.mechanism;
+        if self.has_fixed_axes() {
+            return (m.integrate(q, dv), [SMatrix::identity(); 2]);
         }
-        let mut translation =
-            VectorWithDerivatives { value: self.mechanism.translation(t, &by.value), ..*by };
-        translation.zero_other_derivatives(|k| is_linear.get(k) == Some(&T::one()));
-        let remainder = by.plus_scaled(-T::one(), &translation);
-        let (q, motion) = self.displaced_configuration(from, &translation);
-        self.displaced_configuration((&q, &motion), &remainder)
+        let is_linear = m.translation(t, &SVector::repeat(T::one()));
+        if is_linear.iter().all(|x| *x == T::zero()) {
+            let (by_q, by_dv) = m.integrate_derivatives_at(q, dv);
+            return (m.integrate(q, dv), [by_q, by_dv]);
+        }
+        let translation = m.translation(t, dv);
+        let (translated, rotation) = (m.integrate(q, &translation), dv - translation);
+        let (mut by_q, mut by_dv) = m.integrate_derivatives_at(q, &translation);
+        let (rotated_by_q, rotated_by_dv) = m.integrate_derivatives_at(&translated, &rotation);
+        let rotated = NearlyIdentity::with_range(&rotated_by_q, self.rotating);
+        rotated.lead(&mut by_q);
+        rotated.lead(&mut by_dv);
+        let columns = by_dv.data.0.iter_mut().zip(&rotated_by_dv.data.0).zip(&is_linear);
+        for ((column, rotated), _) in columns.filter(|(_, is_linear)| **is_linear != T::one()) {
+            *column = *rotated;
+        }
+        (m.integrate(&translated, &rotation), [by_q, by_dv])
     }
 
     /// Returns a velocity in the axes after a displacement `by` from the configuration `q`, with its
@@ -136,19 +148,96 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         self.transport_to_end(t, q, (&by.value, &end), v)
     }
 
-    /// Returns [`transported_velocity`](Self::transported_velocity), or with declared generalized speeds the
-    /// same speeds.
-    fn transported_or_same_speeds<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns the axes of ball and free joints after a displacement `dv` from `q`.
+    fn axes_after_displacement<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
-        by: &VectorWithDerivatives<T, NV, NU>,
-        v: &VectorWithDerivatives<T, NV, NU>,
-    ) -> VectorWithDerivatives<T, NV, NU>
+        dv: &SVector<T, NV>,
+    ) -> DisplacedAxes<T, NV>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.mechanism.features().speeds { *v } else { self.transported_velocity(t, q, by, v) }
+        if self.keeps_velocities() {
+            return DisplacedAxes { dv: *dv, axes: SMatrix::identity(), by_dv: SMatrix::zeros() };
+        }
+        let (_, by_dv) = self.mechanism.integrate_derivatives_at(q, dv);
+        DisplacedAxes { dv: *dv, axes: self.transport_matrix(t, q, dv), by_dv }
+    }
+
+    /// Whether velocities have the same components in all configurations.
+    fn keeps_velocities<T: Real, const NQ: usize, const NU: usize>(&self) -> bool
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        self.has_fixed_axes() || self.mechanism.features().speeds
+    }
+
+    /// Returns a velocity in the axes after a displacement, and the derivative of its components with respect
+    /// to the displacement.
+    fn transported_with_axes<T: Real, const NQ: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        displaced: &DisplacedAxes<T, NV>,
+        v: &SVector<T, NV>,
+    ) -> (SVector<T, NV>, SMatrix<T, NV, NV>)
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let mut by_dv = SMatrix::zeros();
+        if self.keeps_velocities() {
+            return (*v, by_dv);
+        }
+        let value = self.mechanism.carry(t, q, &displaced.dv, v);
+        let rotation = self.rotation_matrix(t, q, &value);
+        add_product_of_some(&mut by_dv, self.ball_and_free_velocity_indices(), &rotation, &displaced.by_dv);
+        (value, by_dv)
+    }
+
+    /// Returns the matrix that expresses velocities in the axes after a displacement `dv` from `q`.
+    fn transport_matrix<T: Real, const NQ: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        dv: &SVector<T, NV>,
+    ) -> SMatrix<T, NV, NV>
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let mut axes = SMatrix::<T, NV, NV>::identity();
+        for k in self.ball_and_free_velocity_indices() {
+            if let Some(column) = axes.data.0.get_mut(*k) {
+                *column = self.mechanism.carry(t, q, dv, &unit_vector(*k, T::one())).data.0[0];
+            }
+        }
+        axes
+    }
+
+    /// Returns the derivative of the components of a velocity with respect to rotations of the axes.
+    fn rotation_matrix<T: Real, const NQ: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+    ) -> SMatrix<T, NV, NV>
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let (mut rotation, right_angle) =
+            (SMatrix::<T, NV, NV>::zeros(), constant::<T>(core::f64::consts::FRAC_PI_2));
+        for k in self.ball_and_free_velocity_indices() {
+            // By Rodrigues' formula, half the difference of a vector rotated by right angles in both
+            // directions is its cross product with the axis: the derivative of a rotation about it.
+            let transported_by_rotation = |angle: T| self.mechanism.carry(t, q, &unit_vector(*k, angle), v);
+            if let Some(column) = rotation.data.0.get_mut(*k) {
+                *column = ((transported_by_rotation(right_angle) - transported_by_rotation(-right_angle))
+                    * constant::<T>(0.5))
+                .data
+                .0[0];
+            }
+        }
+        rotation
     }
 
     /// Returns an acceleration at the velocity `v`, with its derivatives with respect to the state, without
@@ -164,7 +253,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let m = self.mechanism;
         acceleration.value -= m.carry_rate(t, v, v);
         for k in self.ball_and_free_velocity_indices() {
-            let unit = SVector::<T, NV>::from_fn(|i, _| if i == *k { T::one() } else { T::zero() });
+            let unit = unit_vector(*k, T::one());
             // The rate is bilinear.
             let change = m.carry_rate(t, &unit, v) + m.carry_rate(t, v, &unit);
             if let Some(column) = acceleration.by_v.data.0.get_mut(*k) {
@@ -189,29 +278,10 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         if self.has_fixed_axes() {
             return *v;
         }
-        let m = self.mechanism;
-        let value = m.carry(t, q, dv, &v.value);
+        let value = self.mechanism.carry(t, q, dv, &v.value);
         let mut carried = VectorWithDerivatives { value, ..*v };
-        let unit =
-            |k: usize, length: T| SVector::<T, NV>::from_fn(|i, _| if i == k { length } else { T::zero() });
-        let (mut axes, mut rotation) = (SMatrix::<T, NV, NV>::identity(), SMatrix::<T, NV, NV>::zeros());
-        let right_angle = constant::<T>(core::f64::consts::FRAC_PI_2);
-        for k in self.ball_and_free_velocity_indices() {
-            if let Some(column) = axes.data.0.get_mut(*k) {
-                *column = m.carry(t, q, dv, &unit(*k, T::one())).data.0[0];
-            }
-            // By Rodrigues' formula, half the difference of a vector rotated by right angles in both
-            // directions is its cross product with the axis: the derivative of a rotation about it.
-            let transported_by_rotation = |angle: T| m.carry(t, q, &unit(*k, angle), &value);
-            if let Some(column) = rotation.data.0.get_mut(*k) {
-                *column = ((transported_by_rotation(right_angle) - transported_by_rotation(-right_angle))
-                    * constant::<T>(0.5))
-                .data
-                .0[0];
-            }
-        }
-        self.multiply_derivatives_from_left(&axes, &mut carried);
-        self.add_rotational_block_product(&mut carried, &rotation, end);
+        self.multiply_derivatives_from_left(&self.transport_matrix(t, q, dv), &mut carried);
+        self.add_rotational_block_product(&mut carried, &self.rotation_matrix(t, q, &value), end);
         carried
     }
 
@@ -234,6 +304,21 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         let relative = VectorWithDerivatives { by_q: motion.by_q - by_q, ..*motion };
         self.transport_to_end(t, from, (&way, &relative), v)
     }
+}
+
+/// Axes of ball and free joints after a displacement.
+struct DisplacedAxes<T, const NV: usize> {
+    /// Displacement.
+    dv: SVector<T, NV>,
+    /// Matrix that expresses velocities in these axes.
+    axes: SMatrix<T, NV, NV>,
+    /// Derivative of the motion of the axes with respect to the displacement.
+    by_dv: SMatrix<T, NV, NV>,
+}
+
+/// Returns a vector whose only nonzero entry is `length`, at index `k`.
+fn unit_vector<T: Real, const NV: usize>(k: usize, length: T) -> SVector<T, NV> {
+    SVector::from_fn(|i, _| if i == k { length } else { T::zero() })
 }
 
 /// End of a step before the impulses of its contacts, with derivatives.
@@ -295,44 +380,63 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
-    let to_middle = v.scaled_derivatives(half);
+    let way = v.value * half;
     // Only the configuration and the velocity at the start move the middle.
-    let (middle, motion) = manifold.displaced_along_straight_lines(
-        start.t,
-        (start.q, &VectorWithDerivatives::zero_displacement_with_derivatives()),
-        &to_middle,
-    );
-    let velocity_at_midpoint_axes = |x: &VectorWithDerivatives<T, NV, NU>| {
-        manifold.transported_or_same_speeds(start.t, start.q, &to_middle, x)
+    let (middle, [by_q, by_way]) = manifold.displacement_along_straight_lines(start.t, start.q, &way);
+    let axes = manifold.axes_after_displacement(start.t, start.q, &way);
+    let transported_to_middle = |x: &VectorWithDerivatives<T, NV, NU>| {
+        let (value, by_way) = manifold.transported_with_axes(start.t, start.q, &axes, &x.value);
+        let mut transported = VectorWithDerivatives { value, ..*x };
+        manifold.multiply_derivatives_from_left(&axes.axes, &mut transported);
+        add_multiple(&mut transported.by_v, half, &by_way);
+        transported
     };
-    let rate = rate.map(|rate| manifold.transported_velocity(start.t, start.q, &to_middle, rate));
-    let velocity_with_contact_rate = |v: VectorWithDerivatives<T, NV, NU>, h: T| match &rate {
-        Some(rate) => v.plus_scaled(h, rate),
-        None => v,
-    };
-    let velocity = velocity_with_contact_rate(velocity_at_midpoint_axes(&v.plus_scaled(half, before)), half);
+    let rate = rate.map(transported_to_middle);
+    let (value, turned) = manifold.transported_with_axes(start.t, start.q, &axes, &v.value);
+    let mut at_middle = VectorWithDerivatives { value, by_q: zeros(), by_v: axes.axes, by_u: zeros() };
+    add_multiple(&mut at_middle.by_v, half, &turned);
+    let mut velocity = transported_to_middle(before);
+    if let Some(rate) = &rate {
+        velocity.add_scaled(T::one(), rate);
+    }
+    velocity = at_middle.plus_scaled(half, &velocity);
     let own = start.acceleration_with_derivatives(half, (&middle, &velocity.value));
     let own = manifold.acceleration_without_axis_rotation(own, (start.t + half, &velocity.value));
     let mut acceleration =
         VectorWithDerivatives { value: own.value, by_q: own.by_q, by_v: own.by_q, by_u: own.by_u };
-    if !manifold.has_fixed_axes() {
-        NearlyIdentity::with_range(&motion.by_q, manifold.rotating).follow(&mut acceleration.by_q);
-        let by_displacement = motion.by_v * (T::one() / half);
-        NearlyIdentity::with_range(&by_displacement, manifold.rotating).follow(&mut acceleration.by_v);
-    }
+    NearlyIdentity::with_range(&by_q, manifold.rotating).follow(&mut acceleration.by_q);
+    NearlyIdentity::with_range(&by_way, manifold.rotating).follow(&mut acceleration.by_v);
     scale(&mut acceleration.by_v, half);
     add_product(&mut acceleration.by_q, &own.by_v, &velocity.by_q);
     add_product(&mut acceleration.by_v, &own.by_v, &velocity.by_v);
     add_product(&mut acceleration.by_u, &own.by_v, &velocity.by_u);
-    let in_axes_of_middle =
-        velocity_with_contact_rate(velocity_at_midpoint_axes(v).plus_scaled(h, &acceleration), h);
-    let to_end = in_axes_of_middle.scaled_derivatives(half);
-    let end = manifold.transported_or_same_speeds(start.t + half, &middle, &to_end, &in_axes_of_middle);
-    let given = rate.map(|rate| {
-        manifold.transported_velocity(start.t + half, &middle, &to_end, &rate).scaled_derivatives(h)
+    if let Some(rate) = &rate {
+        acceleration.add_scaled(T::one(), rate);
+    }
+    at_middle.add_scaled(h, &acceleration);
+    // The second half of the step, with the velocity at its end in the axes of the middle.
+    let way = at_middle.value * half;
+    let (q, [to_by_q, to_by_way]) = manifold.displacement_along_straight_lines(start.t + half, &middle, &way);
+    let axes = manifold.axes_after_displacement(start.t + half, &middle, &way);
+    let mut motion = at_middle.scaled_derivatives(half);
+    let given = rate.map(|mut rate| {
+        let (value, by_way) = manifold.transported_with_axes(start.t + half, &middle, &axes, &rate.value);
+        manifold.multiply_derivatives_from_left(&axes.axes, &mut rate);
+        manifold.add_rotational_block_product(&mut rate, &by_way, &motion);
+        VectorWithDerivatives { value, ..rate }.scaled_derivatives(h)
     });
-    let q = manifold.displaced_along_straight_lines(start.t + half, (&middle, &motion), &to_end);
-    StepBeforeImpulses { q, v: end, given }
+    manifold.multiply_derivatives_from_left(&to_by_way, &mut motion);
+    let [mut from_q, mut from_v] = [by_q, by_way];
+    let to = NearlyIdentity::with_range(&to_by_q, manifold.rotating);
+    to.lead(&mut from_q);
+    to.lead(&mut from_v);
+    add_multiple(&mut motion.by_q, T::one(), &from_q);
+    add_multiple(&mut motion.by_v, half, &from_v);
+    let (value, by_way) = manifold.transported_with_axes(start.t + half, &middle, &axes, &at_middle.value);
+    let mut by_end = axes.axes;
+    add_multiple(&mut by_end, half, &by_way);
+    manifold.multiply_derivatives_from_left(&by_end, &mut at_middle);
+    StepBeforeImpulses { q: (q, motion), v: VectorWithDerivatives { value, ..at_middle }, given }
 }
 
 fn four_stage_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
@@ -362,10 +466,10 @@ where
         }
         let (_, by_dv, by_v) = start.mechanism.displacement_rate_derivatives(start.q, &way.value, &v.value);
         let value = start.mechanism.displacement_rate(start.q, &way.value, &v.value);
-        (
-            (VectorWithDerivatives::compose_derivatives(value, (&by_dv, &way), (&by_v, &v)), acceleration),
-            carried,
-        )
+        let mut rates = VectorWithDerivatives { value, ..v };
+        manifold.multiply_derivatives_from_left(&by_v, &mut rates);
+        manifold.add_rotational_block_product(&mut rates, &by_dv, &way);
+        ((rates, acceleration), carried)
     };
     let k1 = (*v, rate.map_or(*before, |rate| before.plus_scaled(T::one(), rate)));
     let (k2, _) = stage_state(half, &k1);

@@ -7,6 +7,10 @@ use super::shape::{Record, Shape};
 use crate::mechanism::{PAIR_POSE, SuppliedQuantity};
 use crate::syntax::RequestOption;
 
+/// Number of values of a contact that have derivatives with respect to the parameters, in addition to its
+/// contact velocities: the gap, and the coefficients of friction and restitution.
+const GAP_AND_COEFFICIENTS: usize = 3;
+
 const TOUCHING: &[FunctionNeed] = &[FunctionNeed::Contacts];
 
 /// Rows of the functions of mechanisms with contacts.
@@ -81,6 +85,27 @@ pub const ROWS: &[Row] = &[
         |f| Declaration {
             arguments: vec![Q, V, A, contact_forces(f)],
             shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts.rates)),
+            ..Declaration::default()
+        },
+    )
+    .without_batch(),
+    Row::derived_row(
+        Id::ContactDerivativesByParameters,
+        "__contact_derivatives_by_parameters",
+        &[
+            FunctionNeed::Contacts,
+            FunctionNeed::Inertia,
+            FunctionNeed::NoConstraints,
+            FunctionNeed::NoSpeeds,
+            FunctionNeed::Parameters,
+            FunctionNeed::Asks(RequestOption::Derivatives),
+            FunctionNeed::Asks(RequestOption::Sensitivities),
+        ],
+        |f| Declaration {
+            arguments: vec![Q, V, contact_forces(f)],
+            shape: Shape::Array(
+                f.parameters * (f.nv + f.contacts.rates + GAP_AND_COEFFICIENTS * f.contacts.count),
+            ),
             ..Declaration::default()
         },
     )

@@ -40,6 +40,7 @@ pub enum Id {
     ContactLaws,
     ContactResponses,
     ContactDerivatives,
+    ContactDerivativesByParameters,
     PolytopePoses,
     CentroidalMomentumMatrix,
     CentroidalMomentumBias,

@@ -5,7 +5,7 @@ use crate::expr::{Expr, Symbol};
 use crate::kinematics::time_derivatives_along_motion;
 use crate::mechanics::constraints;
 use crate::mechanics::crba::Matrix;
-use crate::mechanics::derivatives::symbolic;
+use crate::mechanics::derivatives::{parameters, symbolic};
 use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanism::{Model, Quantity};
 
@@ -37,6 +37,34 @@ pub(super) fn contact_coefficients<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.contacts.iter().flat_map(|c| [c.friction, c.restitution, c.stiction]).collect()
 }
 
+/// Returns the generalized forces `Gᵀ f` of the contact forces of some of the contact velocities `rates`.
+fn contact_joint_forces<'g>(
+    model: &Model<'g>,
+    rates: &[Expr<'g>],
+    numbers: impl Iterator<Item = usize>,
+) -> Vec<Expr<'g>> {
+    let g = model.graph;
+    // Reverse differentiation of the power of the forces transforms each force only once to the axes of the
+    // links that it acts on.
+    let powers = numbers.map(|i| rates[i] * Quantity::ContactForce(i).expr(g));
+    let power = powers.reduce(|sum, power| sum + power).unwrap_or(g.zero());
+    let velocities: Vec<Symbol> = (0..model.nv()).map(|k| Quantity::Velocity(k).symbol()).collect();
+    gradient(power, &velocities)
+}
+
+/// Returns the derivatives of contacts with respect to each parameter, one parameter after another: of the
+/// generalized forces `Gᵀ f` at constant contact forces `f`, the contact velocities, the gaps, the
+/// coefficients of friction, and those of restitution.
+pub(super) fn contact_parameter_derivatives<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    let rates = model.contact_rates();
+    let mut values = contact_joint_forces(model, &rates, 0..rates.len());
+    values.extend(rates);
+    values.extend(contact_gaps(model));
+    values.extend(model.contacts.iter().map(|contact| contact.friction));
+    values.extend(model.contacts.iter().map(|contact| contact.restitution));
+    parameters::parameter_derivatives(model, &values).concat()
+}
+
 /// First derivatives of the contributions of contacts to the equations of motion, at constant accelerations
 /// `a` and contact forces `f`: of `Gᵀ f` with respect to `q`, of `G a + b` with respect to `q` and `v`, and
 /// of the contact velocities with respect to `q`, each column by column.
@@ -62,13 +90,7 @@ impl<'g> ContactDerivatives<'g> {
         model: &Model<'g>,
         numbers: impl Iterator<Item = usize>,
     ) -> Matrix<'g> {
-        let g = model.graph;
-        // Reverse differentiation of the power of the forces transforms each force only once to the axes of
-        // the links that it acts on.
-        let powers = numbers.map(|i| self.rates[i] * Quantity::ContactForce(i).expr(g));
-        let power = powers.reduce(|sum, power| sum + power).unwrap_or(g.zero());
-        let velocities: Vec<Symbol> = (0..model.nv()).map(|k| Quantity::Velocity(k).symbol()).collect();
-        symbolic::configuration_derivatives(model, &gradient(power, &velocities))
+        symbolic::configuration_derivatives(model, &contact_joint_forces(model, &self.rates, numbers))
     }
 
     pub(super) fn contact_derivative_outputs(&self, model: &Model<'g>) -> Vec<Expr<'g>> {

@@ -289,6 +289,9 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::ContactLaws => self.lower_unstructured(&constraints::contact_coefficients(model)),
             Id::ContactResponses => unstructured_program(self.contact_responses()),
             Id::ContactDerivatives => unstructured_program(self.contact_derivatives()),
+            Id::ContactDerivativesByParameters => {
+                self.lower_unstructured(&constraints::contact_parameter_derivatives(model))
+            }
             Id::ConstrainedDynamics => unstructured_program(self.derived_dynamics().constrained_dynamics()),
             Id::ConstraintResponse => unstructured_program(self.derived_dynamics().constraint_response()),
             Id::SlippingResponse => unstructured_program(self.derived_dynamics().slipping_response()),

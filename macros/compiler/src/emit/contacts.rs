@@ -135,12 +135,11 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         )
     } else {
         let columns: Vec<(usize, usize)> = i.contacts.iter().map(|contact| contact.columns).collect();
-        let drifts = i.contacts.iter().any(|contact| contact.drifts);
         format!(
-            "#[inline]\nfn contact_columns(&self) -> [(usize, usize); {count}] {{ {columns:?} }}
-            #[inline]\nfn contacts_drift(&self) -> bool {{ {drifts} }}\n        "
+            "#[inline]\nfn contact_columns(&self) -> [(usize, usize); {count}] {{ {columns:?} }}\n        "
         )
     };
+    let drifts = i.contacts.iter().any(|contact| contact.drifts);
     let pressed_by = if i.contacts.iter().any(|c| c.pressed_by.is_some()) {
         let all: Vec<usize> = i.contacts.iter().enumerate().map(|(k, c)| c.pressed_by.unwrap_or(k)).collect();
         format!("const PRESSED_BY: [usize; {count}] = {all:?};\n        ")
@@ -183,7 +182,8 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             ::linkwork::nalgebra::SMatrix<{scalar}, {rows}, {nv}> {{ Self::contact_jacobian(self, {pass}q) }}
         #[inline]\nfn contact_bias(&self, t: {scalar}, q: &{q}, v: &{v}) -> {rates} {{ \
             Self::contact_bias(self, {pass}q, v) }}
-        {responses}#[inline]\nfn contact_laws(&self) -> [::linkwork::contact::Law<{scalar}>; {count}] {{
+        {responses}#[inline]\nfn contacts_drift(&self) -> bool {{ {drifts} }}
+        #[inline]\nfn contact_laws(&self) -> [::linkwork::contact::Law<{scalar}>; {count}] {{
             let laws = self.__contact_laws();
             [{}]
         }}",

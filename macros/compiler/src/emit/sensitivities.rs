@@ -2,7 +2,7 @@
 
 use super::interface::{ALLOW, ImplGenerics, Interface};
 use super::signature::Signature;
-use crate::catalogue::{Argument, Shape};
+use crate::catalogue::{Argument, ContactCounts, Shape};
 use std::fmt::Write;
 
 /// Writes the trait implementation for the type `name`, if the mechanism has these derivatives.
@@ -34,5 +34,42 @@ pub fn write_sensitivities_impl(out: &mut String, name: &str, i: &Interface<'_>,
             own.join(", ")
         );
     }
-    out.push_str("}\n");
+    let has_contact_sensitivities = facts.contacts.count > 0 && facts.requests.derivatives && !facts.speeds;
+    if !has_contact_sensitivities {
+        return out.push_str("}\n");
+    }
+    let (scalar, q, v, matrix) = (
+        s.scalar.scalar_name(),
+        s.vector_type(s.nq),
+        s.vector_type(s.nv),
+        s.shape_type(Shape::Matrix(s.nv, np)),
+    );
+    let ContactCounts { count, rates } = facts.contacts;
+    let time = if s.time { "t, " } else { "" };
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn differentiate_contact_step_by_parameters(&self, \
+            method: &::linkwork::integrate::TimeStepping<{scalar}>, t: {scalar}, state: (&{q}, &{v}), \
+            u: &{}) -> ::core::option::Option<::core::result::Result<({matrix}, {matrix}), \
+            ::linkwork::integrate::Error>> {{
+            ::core::option::Option::Some(::linkwork::__private::differentiate_step_by_parameters(self, \
+                method, t, state, u))
+        }}
+        }}
+        {ALLOW}impl{generics} \
+            ::linkwork::contact::ContactSensitivities<{}, {}, {}, {np}, {count}, {rates}> for \
+            {name}{arguments} {bounds} {{
+        #[inline]\nfn contact_derivatives_by_parameters(&self, t: {scalar}, q: &{q}, v: &{v}, \
+            forces: &{}) -> ::linkwork::contact::ContactsByParameters<{scalar}, {}, {np}, {count}, {rates}> {{
+            ::linkwork::contact::ContactsByParameters::from_list(\
+                &self.__contact_derivatives_by_parameters({time}q, v, &forces.data.0[0]))
+        }}
+        }}",
+        s.vector_type(s.nu),
+        s.nq,
+        s.nv,
+        s.nu,
+        s.vector_type(rates),
+        s.nv,
+    );
 }

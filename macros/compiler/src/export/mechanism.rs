@@ -141,7 +141,8 @@ impl<'a> ExportedMechanism<'a> {
             Id::Limits => self.limits = Some(f),
             // Variants that write to matrices of the caller: all exported functions do so.
             Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto | Id::MassMatrixInto => {}
-            Id::ContactDerivatives | Id::Figures | Id::ConstraintCurvature | Id::ConstraintResponse => {}
+            Id::ContactDerivatives | Id::ContactDerivativesByParameters => {}
+            Id::Figures | Id::ConstraintCurvature | Id::ConstraintResponse => {}
             Id::SlippingResponse => {}
             Id::ConstrainedDynamics => self.left_out.push(
                 "forward_dynamics, assemble and the other functions that solve for constraint forces"

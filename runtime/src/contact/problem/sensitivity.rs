@@ -5,12 +5,16 @@
 //! `δΛₜ = μ d δΛₙ − μ Λₙ (1 − d dᵀ) δuₜ / |uₜ|`.
 
 use super::super::total::TotalArray;
+use super::super::{Law, Restitution};
 use super::banded::set_unit_rows;
 use super::elimination::{independence_threshold, subtract_multiple, zero_matrix};
 use super::trial::ContactMode;
 use super::{ContactProblem, ContactRowMatrix, RowList, entry_or_zero};
 use crate::Real;
-use crate::private::{constant, epsilon};
+use crate::arithmetic::Arithmetic;
+use crate::arithmetic::dispatch::{Evaluate, dispatch};
+use crate::blocks::zeros;
+use crate::private::{constant, epsilon, positive_part};
 use nalgebra::{SMatrix, SVector};
 
 /// Number of refinements of equations among dependent rows.
@@ -36,12 +40,17 @@ pub(in super::super) struct SlipRotationImpulses<T, const NR: usize> {
     pub(in super::super) by_impulses: SMatrix<T, NR, NR>,
     /// Derivatives of `impulses` with respect to the slip velocities.
     pub(in super::super) by_slip: SMatrix<T, NR, NR>,
+    /// Derivative of each impulse with respect to the coefficient of friction of its contact.
+    pub(in super::super) by_friction: SVector<T, NR>,
 }
 
 /// Linear equations `system δΛ = wanted δE` of the impulses, with the contact velocities `E` without them.
 pub(in super::super) struct LinearisedImpulses<T, const NR: usize> {
     system: ContactRowMatrix<T, NR>,
     wanted: ContactRowMatrix<T, NR>,
+    /// Derivative of each friction impulse of a sliding contact with respect to the coefficient of friction,
+    /// at constant normal impulses and slip directions.
+    by_friction: RowList<T, NR>,
     /// Triangular factors of the system, with a small addition to the diagonal if rows depend on each other,
     /// and the row of each pivot.
     factors: ContactRowMatrix<T, NR>,
@@ -59,6 +68,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
         Self {
             system,
             wanted: zero_matrix(),
+            by_friction: RowList::repeat_entry(T::zero()),
             factors: zero_matrix(),
             pivots,
             is_dependent: false,
@@ -101,6 +111,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
     }
 
     /// Solves for right-hand sides in place, with the factors.
+    #[inline(always)]
     fn solve_with_stored_factors<const C: usize>(&self, right: &mut TotalArray<[T; C], NR>) {
         (0..self.size).for_each(|column| right.exchange_entries(self.pivots[column], column));
         for column in 0..self.size {
@@ -123,14 +134,37 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
     }
 
     /// Returns the changes of the impulses with changes `rates` of the contact velocities without them, both
-    /// at the rows of the mechanism.
+    /// at the rows of the mechanism. `friction` holds the changes of the coefficients of friction at the rows
+    /// of friction, if they change.
     pub(in super::super) fn impulse_changes<const C: usize>(
         &self,
         rates: &SMatrix<T, NR, C>,
+        friction: Option<&SMatrix<T, NR, C>>,
     ) -> SMatrix<T, NR, C> {
+        let mut changes = zeros();
+        dispatch::<0, T, _, _>(&ImpulseChanges { equations: self, rates, friction }, &mut changes);
+        changes
+    }
+}
+
+/// Equations of impulses with their right-hand sides ([`LinearisedImpulses::impulse_changes`]).
+struct ImpulseChanges<'a, T, const NR: usize, const C: usize> {
+    equations: &'a LinearisedImpulses<T, NR>,
+    rates: &'a SMatrix<T, NR, C>,
+    friction: Option<&'a SMatrix<T, NR, C>>,
+}
+
+impl<T: Real, const NR: usize, const C: usize> Evaluate<0, &mut SMatrix<T, NR, C>>
+    for ImpulseChanges<'_, T, NR, C>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, all: &mut SMatrix<T, NR, C>) {
+        let Self { equations, rates, friction } = self;
         let mut right = TotalArray::<[T; C], NR>::repeat_entry([T::zero(); C]);
-        for (right, wanted) in right.iter_mut().zip(self.wanted.iter()).take(self.size) {
-            for (place, factor) in self.places.iter().zip(wanted.iter()).take(self.size) {
+        for (right, wanted) in right.iter_mut().zip(equations.wanted.iter()).take(equations.size) {
+            for (place, factor) in equations.places.iter().zip(wanted.iter()).take(equations.size) {
                 if *factor != T::zero() {
                     let columns = right.iter_mut().zip(&rates.data.0);
                     columns.for_each(|(to, from)| {
@@ -139,27 +173,33 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
                 }
             }
         }
+        if let Some(friction) = friction {
+            let rows = right.iter_mut().zip(equations.places.iter()).zip(equations.by_friction.iter());
+            for ((right, place), factor) in rows.take(equations.size) {
+                let columns = right.iter_mut().zip(&friction.data.0);
+                columns
+                    .for_each(|(to, from)| *to += *factor * from.get(*place).copied().unwrap_or(T::zero()));
+            }
+        }
         let mut changes = right;
-        self.solve_with_stored_factors(&mut changes);
-        for _ in 1..if self.is_dependent { PASSES } else { 1 } {
+        equations.solve_with_stored_factors(&mut changes);
+        for _ in 1..if equations.is_dependent { PASSES } else { 1 } {
             let mut left = right;
-            for (left, row) in left.iter_mut().zip(self.system.iter()).take(self.size) {
-                for (factor, change) in row.iter().zip(changes.iter()).take(self.size) {
+            for (left, row) in left.iter_mut().zip(equations.system.iter()).take(equations.size) {
+                for (factor, change) in row.iter().zip(changes.iter()).take(equations.size) {
                     left.iter_mut().zip(change).for_each(|(left, change)| *left -= *factor * *change);
                 }
             }
-            self.solve_with_stored_factors(&mut left);
+            equations.solve_with_stored_factors(&mut left);
             for (change, more) in changes.iter_mut().zip(left.iter()) {
                 change.iter_mut().zip(more).for_each(|(change, more)| *change += *more);
             }
         }
-        let mut all = SMatrix::<T, NR, C>::zeros();
-        for (place, row) in self.places.iter().zip(changes.iter()).take(self.size) {
+        for (place, row) in equations.places.iter().zip(changes.iter()).take(equations.size) {
             for (to, change) in all.data.0.iter_mut().zip(row) {
                 to.iter_mut().skip(*place).take(1).for_each(|entry| *entry = *change);
             }
         }
-        all
     }
 }
 
@@ -203,8 +243,12 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             match modes[k].1 {
                 ContactMode::Open => is_whole = false,
                 ContactMode::Slip { direction, .. } if speed > still => {
-                    let largest = self.friction[k] * self.friction_bounding_impulse(k, impulses[n]);
-                    self.write_sliding_equations(k, (direction, largest / speed), &mut equations);
+                    let normal = self.friction_bounding_impulse(k, impulses[n]);
+                    let ratio = self.friction[k] * normal / speed;
+                    self.write_sliding_equations(k, (direction, ratio), &mut equations);
+                    for (i, d) in tangents.zip(direction) {
+                        equations.by_friction[i] = normal * d;
+                    }
                     is_whole = false;
                 }
                 _ => tangents.for_each(|i| held[i] = true),
@@ -257,13 +301,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         rows
     }
 
-    /// Returns the diagonal matrix that is one at chosen rows.
-    pub(in super::super) fn indicator_matrix_of_rows(&self, held: &ContactRowMask<NR>) -> SMatrix<T, NR, NR> {
+    /// Returns ones at chosen rows, and zeros elsewhere.
+    pub(in super::super) fn indicator_of_rows(&self, held: &ContactRowMask<NR>) -> SVector<T, NR> {
         let mut chosen = SVector::<T, NR>::zeros();
         for i in (0..self.size).filter(|i| held[*i]) {
             super::set_entry(&mut chosen, self.places[i], T::one());
         }
-        SMatrix::from_diagonal(&chosen)
+        chosen
     }
 
     /// Returns impulses, without those of compression, at the rows of the mechanism.
@@ -307,6 +351,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             impulses: SVector::zeros(),
             by_impulses: SMatrix::zeros(),
             by_slip: SMatrix::zeros(),
+            by_friction: SVector::zeros(),
         };
         let half = constant::<T>(0.5);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
@@ -327,6 +372,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let mechanism_row_and_column = |i: usize, j: usize| (self.places[i], self.places[j]);
             for i in tangents.clone() {
                 let along = slip[i] / speed;
+                super::set_entry(&mut found.by_friction, self.places[i], half * impulses[n] * along);
                 set_matrix_entry(&mut found.by_impulses, mechanism_row_and_column(i, i), half);
                 set_matrix_entry(
                     &mut found.by_impulses,
@@ -361,6 +407,27 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         for k in (0..self.count).filter(|k| self.has_gap_function(*k) && self.least[*k] > T::zero()) {
             let row = self.places[self.rows[k].first];
             super::set_entry(&mut factors, row, self.least[k] / entry_or_zero(before, row));
+        }
+        factors
+    }
+
+    /// Returns, for each contact with Newton's restitution, the derivative of the normal velocity that
+    /// restitution demands with respect to the coefficient of restitution.
+    pub(in super::super) fn demand_derivatives_by_restitution(
+        &self,
+        laws: &[Law<T>; NK],
+        before: &SVector<T, NR>,
+    ) -> SVector<T, NR> {
+        let mut factors = SVector::zeros();
+        for k in (0..self.count).filter(|k| self.has_gap_function(*k)) {
+            let Some(law) = laws.get(self.contacts[k].0) else { continue };
+            let row = self.places[self.rows[k].first];
+            let approach = positive_part(-entry_or_zero(before, row));
+            let is_elastic = law.restitution > T::zero();
+            let factor = if is_elastic { self.least[k] / law.restitution } else { approach };
+            if law.hypothesis == Restitution::Newton {
+                super::set_entry(&mut factors, row, factor);
+            }
         }
         factors
     }

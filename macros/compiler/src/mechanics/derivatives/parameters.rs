@@ -21,7 +21,8 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix
     parameter_derivatives(model, &forces::generalized_forces(model, joints))
 }
 
-fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
+/// Returns the columns of the derivatives of values, one for each parameter.
+pub fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
     let parameter_derivative =
         |k| DirectionalDerivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
     let derivative_column =
