@@ -94,14 +94,14 @@ impl Contender for Peer {
         self.variant.to_string()
     }
 
-    fn pass(&mut self) {
+    fn evaluate_all_states(&mut self) {
         for state in 0..self.states {
             // SAFETY: the robot is open, and `state` is the index of one of its states.
             unsafe { (self.step)(self.robot, state) };
         }
     }
 
-    fn result(&mut self, state: usize) -> Vec<f64> {
+    fn result_at_state(&mut self, state: usize) -> Vec<f64> {
         let mut out = vec![0.0; self.size];
         // SAFETY: as above; `out` has the size of this function's result.
         unsafe {
@@ -156,7 +156,7 @@ pub fn load_casadi_function(
     Some(Box::new(Casadi {
         variant: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         call,
-        arguments: rows.numbers.chunks_exact(rows.length()).map(argument_pointers).collect(),
+        arguments: rows.numbers.chunks_exact(rows.row_length()).map(argument_pointers).collect(),
         given: vec![std::ptr::null(); arguments],
         out: vec![0.0; function.column_count(rows.nv) * rows.nv],
         results: vec![std::ptr::null_mut(); results],
@@ -186,13 +186,13 @@ impl Contender for Casadi {
         self.variant.clone()
     }
 
-    fn pass(&mut self) {
+    fn evaluate_all_states(&mut self) {
         for state in 0..self.arguments.len() {
             self.evaluate_state(state);
         }
     }
 
-    fn result(&mut self, state: usize) -> Vec<f64> {
+    fn result_at_state(&mut self, state: usize) -> Vec<f64> {
         self.evaluate_state(state);
         self.out.clone()
     }

@@ -33,18 +33,18 @@ impl<M, R: ToNumberList, const NQ: usize, const NV: usize> Contender for Generat
         String::new()
     }
 
-    fn pass(&mut self) {
+    fn evaluate_all_states(&mut self) {
         for state in self.states.iter() {
             let result = (self.call)(black_box(&self.mechanism), black_box(state));
             black_box(&result);
         }
     }
 
-    fn result(&mut self, state: usize) -> Vec<f64> {
+    fn result_at_state(&mut self, state: usize) -> Vec<f64> {
         (self.call)(&self.mechanism, &self.states[state]).flatten()
     }
 
-    fn bytes(&self) -> Option<u64> {
+    fn machine_code_size(&self) -> Option<u64> {
         code::machine_code_bytes::<M>(self.call as *const (), self.name)
     }
 }
@@ -72,19 +72,19 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for MatrixCo
         String::new()
     }
 
-    fn pass(&mut self) {
+    fn evaluate_all_states(&mut self) {
         for state in self.states.iter() {
             (self.call)(black_box(&self.mechanism), black_box(state), &mut self.matrices);
             black_box(&self.matrices);
         }
     }
 
-    fn result(&mut self, state: usize) -> Vec<f64> {
+    fn result_at_state(&mut self, state: usize) -> Vec<f64> {
         (self.call)(&self.mechanism, &self.states[state], &mut self.matrices);
         self.matrices.iter().flat_map(ToNumberList::flatten).collect()
     }
 
-    fn bytes(&self) -> Option<u64> {
+    fn machine_code_size(&self) -> Option<u64> {
         code::machine_code_bytes::<M>(self.call as *const (), self.name)
     }
 }

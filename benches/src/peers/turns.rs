@@ -29,11 +29,12 @@ pub fn remove_disagreeing_contenders(
     tolerance: f64,
 ) -> Vec<String> {
     let Some(first) = contenders.first_mut() else { return Vec::new() };
-    let expected: Vec<Vec<f64>> = (0..states).map(|state| first.result(state)).collect();
+    let expected: Vec<Vec<f64>> = (0..states).map(|state| first.result_at_state(state)).collect();
     let mut wrong = Vec::new();
     contenders.retain_mut(|contender| {
         let errors = expected.iter().enumerate();
-        let errors = errors.map(|(state, expected)| difference(&contender.result(state), expected, nv));
+        let errors =
+            errors.map(|(state, expected)| difference(&contender.result_at_state(state), expected, nv));
         let error = largest_or_nan(errors);
         let good = error <= tolerance;
         if !good {
@@ -76,7 +77,7 @@ pub fn measure_in_turns(
     let seconds_per_pass = |contender: &mut Box<dyn Contender>, passes: usize| {
         let start = clock::thread_seconds();
         for _ in 0..passes {
-            contender.pass();
+            contender.evaluate_all_states();
         }
         (clock::thread_seconds() - start) / passes as f64
     };
@@ -96,7 +97,7 @@ pub fn measure_in_turns(
         owner: contender.owner(),
         variant: contender.variant_name(),
         time: least * 1e9 / states as f64,
-        bytes: contender.bytes(),
+        bytes: contender.machine_code_size(),
     });
     measured.collect()
 }

@@ -76,8 +76,8 @@ fn balls_collide_unless_the_file_excludes_it() -> Result<(), Error> {
         ),
     )?;
     assert_eq!(robot.contacts(), 1);
-    let at = |x: f64, velocity: f64| ([x, 0.0, 0.0], 0.0, [velocity, 0.0, 0.0]);
-    let start = [at(0.0, 4.0), at(0.5, 0.0), at(1.0, 0.0), at(1.5, 0.0)];
+    let ball_state = |x: f64, velocity: f64| ([x, 0.0, 0.0], 0.0, [velocity, 0.0, 0.0]);
+    let start = [ball_state(0.0, 4.0), ball_state(0.5, 0.0), ball_state(1.0, 0.0), ball_state(1.5, 0.0)];
     let end = end_of_motion(&robot, &start, 2.0)?;
     let velocities = [0, 6, 12, 18].map(|k| end.v[k]);
     assert!(velocities.iter().zip([1.0, 1.0, 0.0, 0.0]).all(|(v, e)| (v - e).abs() < 1e-9), "{velocities:?}");

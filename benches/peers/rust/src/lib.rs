@@ -55,7 +55,10 @@ impl Peer {
         };
         let order = (0..model.joint_count()).map(index_of_joint_name).collect::<Result<Vec<_>, Failure>>()?;
         let free = folder.join("free").exists();
-        let kind = if free { AnyRobot::Free(model.floating_robot()?) } else { AnyRobot::Fixed(model.robot()) };
+        let kind = match free {
+            true => AnyRobot::Free(model.floating_robot()?),
+            false => AnyRobot::Fixed(model.robot()),
+        };
         let nv = names.len() + if free { 6 } else { 0 };
         let mut peer = Peer { kind, states: Vec::new(), order, out: vec![0.0; nv * nv] };
         for row in numbers.chunks_exact(numbers.len() / count) {

@@ -88,7 +88,8 @@ pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), Stri
             let what = format!("{} {}", mechanism.title, function.title_in_table());
             wrong.extend(remove_disagreeing_contenders(&mut exact, &what, (rows.nv, states), tolerance));
             if let (Some(other), Function::Constrained) = (others.first_mut(), function) {
-                let errors = (0..states).map(|k| difference(&other.result(k), &exact[0].result(k), rows.nv));
+                let errors = (0..states)
+                    .map(|k| difference(&other.result_at_state(k), &exact[0].result_at_state(k), rows.nv));
                 soft = Some(largest_or_nan(errors));
             }
             exact.extend(others);
@@ -184,9 +185,9 @@ impl Contender for PlaceholderContender {
         String::new()
     }
 
-    fn pass(&mut self) {}
+    fn evaluate_all_states(&mut self) {}
 
-    fn result(&mut self, _state: usize) -> Vec<f64> {
+    fn result_at_state(&mut self, _state: usize) -> Vec<f64> {
         Vec::new()
     }
 }

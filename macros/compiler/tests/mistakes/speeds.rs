@@ -66,5 +66,5 @@ fn invalid_generalized_speeds_are_reported() {
         ),
         ("#[speed(rate(rail))] u: GeneralizedSpeed,", "unknown element type `GeneralizedSpeed`", "Speed"),
     ];
-    check_error_rows(mechanism_setting, ROWS);
+    check_error_rows(cart_and_arm_mechanism_source, ROWS);
 }
