@@ -23,7 +23,7 @@ mod words;
 use jet::{C, real_number};
 use kane::State;
 use linkwork::nalgebra::SVector;
-use spec::{Spec, Style};
+use spec::{GeneratorSettings, Spec};
 use std::fmt::Write;
 
 /// Number of random mechanisms that the test compiles.
@@ -39,7 +39,10 @@ fn random_mechanism(k: u64) -> Spec {
     let limbs = if k % 3 == 2 { 2 + k as usize % 2 } else { 0 };
     Spec {
         symbolic: false,
-        ..spec::random_mechanism_spec(7_000 + k, Style { bodies: 5, limbs, decades: 0.5, noise: None })
+        ..spec::random_mechanism_spec(
+            7_000 + k,
+            GeneratorSettings { bodies: 5, limbs, decades: 0.5, noise: None },
+        )
     }
 }
 
