@@ -135,7 +135,7 @@ fn pairs_have_eight_contact_points() {
 fn least_gap_is_the_signed_distance() {
     let mut random = Random(3);
     let (mut overlapping, mut apart) = (0, 0);
-    for k in 0..1050 {
+    for k in 0..63 {
         let (body, distance) = (k % 3, [0.0, 1e-5, 0.02, 0.2, -1e-6, -1e-4, -3e-3][k % 7]);
         let (place, turn) = pose_at_distance(body, distance, &mut random);
         let q = configuration(body, place, &turn);
@@ -150,7 +150,7 @@ fn least_gap_is_the_signed_distance() {
         assert!(wanted < gap + 2e-9, "{k}: {gap} {wanted}");
         (overlapping, apart) = (overlapping + usize::from(gap < -1e-7), apart + usize::from(gap > 1e-3));
     }
-    assert!(overlapping > 250 && apart > 250, "{overlapping} {apart}");
+    assert!(overlapping > 15 && apart > 15, "{overlapping} {apart}");
 }
 
 /// The least gap changes at the normal rate of its contact, and the contact velocities change at the rate of
@@ -159,7 +159,7 @@ fn least_gap_is_the_signed_distance() {
 fn rates_and_biases_are_derivatives() {
     let (m, mut random, h) = (Can {}, Random(5), 1e-5);
     let mut compared = [0; 3];
-    for k in 0..600 {
+    for k in 0..60 {
         let body = k % 3;
         let (place, turn) = pose_at_distance(body, [0.01, 1e-3, -1e-3][k / 3 % 3], &mut random);
         let q = configuration(body, place, &turn);

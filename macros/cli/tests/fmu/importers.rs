@@ -1,7 +1,7 @@
 //! Importers of others: FMPy, and `fmi-sim`, which is written in Rust. Both read the descriptions and
 //! simulate six mechanisms in both modes.
 
-use super::{TOP, find_c_compiler, run_linkwork, set_option_arguments, simulate_states};
+use super::{TOP, find_c_compiler, run_linkwork, set_option_arguments, states_from_simulate_command};
 use linkwork::Table;
 use linkwork_models::Fighter;
 use std::fs;

@@ -27,7 +27,7 @@ impl AngleGroup {
     /// Returns the place of the angle in each lane, for programs whose values have one lane.
     #[cfg(any(test, target_arch = "aarch64"))]
     pub fn lanes(&self) -> impl Iterator<Item = Place> {
-        self.sources.iter().flat_map(|(first, count)| (0..*count).map(|k| first.following(k)))
+        self.sources.iter().flat_map(|(first, count)| (0..*count).map(|k| first.offset_place(k)))
     }
 
     /// Adds a number to the lanes; adjacent inputs become one source.
