@@ -187,5 +187,5 @@ fn rates_and_biases_are_derivatives() {
         }
         compared[body] += 1;
     }
-    assert!(compared.iter().all(|count| *count > 120), "{compared:?}");
+    assert!(compared.iter().all(|count| *count > 10), "{compared:?}");
 }

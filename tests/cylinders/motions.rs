@@ -2,7 +2,7 @@
 
 use linkwork::contact;
 use linkwork::discrete;
-use linkwork::nalgebra::UnitQuaternion;
+use linkwork::nalgebra::{self, UnitQuaternion};
 use linkwork::prelude::*;
 
 const G: f64 = 9.81;
@@ -135,14 +135,19 @@ fn can_leaves_a_can_at_the_angle_of_the_closed_form() {
         let energy_of = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
         let energy = energy_of(&q, &SVector::zeros());
         let mut left = false;
-        for sample in simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(5e-4)).duration(0.6) {
+        for sample in simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(0.6) {
             let sample = sample.unwrap();
             let lost = energy - energy_of(&sample.q, &sample.v);
-            assert!(lost.abs() < 2e-4, "{friction} {}: {lost}", sample.t);
+            assert!(lost.abs() < 1e-3, "{friction} {}: {lost}", sample.t);
             assert!((sample.q[1] - 0.02).abs() < 1e-4, "{}", sample.q);
             left = m.contact_gaps(&sample.q).min() > 0.01;
             if left {
-                assert!((sample.v[0] / speed - 1.0).abs() < 1e-2, "{friction}: {} {speed}", sample.v[0]);
+                // The velocity is in the axes of the can.
+                let turn = UnitQuaternion::from_quaternion(nalgebra::Quaternion::from(
+                    sample.q.fixed_rows::<4>(3).into_owned(),
+                ));
+                let horizontal = (turn * sample.v.fixed_rows::<3>(0).into_owned())[0];
+                assert!((horizontal / speed - 1.0).abs() < 1e-2, "{friction}: {horizontal} {speed}");
                 break;
             }
         }

@@ -192,7 +192,8 @@ fn check_tree<const N: usize, const B: usize, const FREE: bool>(
     let mut inertias = [[Row([0.0; 8]); 10]; B];
     for (b, block) in blocks.iter().enumerate() {
         for lane in 0..block.count {
-            let (link, inertia) = tree.lane_quantities(block.first + lane, q.as_slice(), v.as_slice(), a.as_slice());
+            let (link, inertia) =
+                tree.lane_quantities(block.first + lane, q.as_slice(), v.as_slice(), a.as_slice());
             for (row, x) in rows[b].iter_mut().zip(link) {
                 row.0[lane] = x;
             }
