@@ -139,6 +139,7 @@ impl SurfaceSize {
             (Capsule, Cylinder | Hull) | (Cylinder, Hull | Cuboid) => 3,
             (Cuboid, Cuboid) => 13,
             (Drum, Cuboid) => 16,
+            (Drum, Drum | Cylinder | Hull) | (Cylinder, Drum) => 8,
             _ => 1,
         })
     }
