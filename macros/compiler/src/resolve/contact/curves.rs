@@ -7,14 +7,10 @@
 //! Newton's method, which do not move the points in this pose, make them functions of the pose whose first
 //! and second derivatives are exact: contact points move along rims and sides as on smooth round surfaces.
 
-use super::geometry::{PointContact, tangents_of};
-use super::polytopes::{PlacedPair, PolytopeFrame};
+use super::geometry::{PointContact, limited_norm, tangents_of};
+use super::polytopes::{LEAST_SQUARE, PlacedPair, PolytopeFrame};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::mechanism::{CYLINDER_PAIR_FEATURES, CYLINDER_POINT_FEATURES, CYLINDER_POINTS};
-
-/// Squared length below which a distance does not determine a direction, m², and squared sine of the angle
-/// below which tangents do not.
-const LEAST_SQUARE: f64 = 1e-30;
 
 /// Point of a curve with tangent and curvature vector, in common axes.
 #[derive(Clone, Copy)]
@@ -126,24 +122,23 @@ impl<'g> PlacedPair<'g> {
         let one = self.unused.num(1.0);
         let [[first, own], [second, other]] = features.closest_points(face);
         let between = first - second;
-        let limited_norm = |v: Vec3<'g>| v.dot(v).minimum_or_maximum(Extreme::Max, one * LEAST_SQUARE).sqrt();
         let across = own.cross(other);
-        let (is_crossing, is_on_curves) = (side.square(), side.square() + is_closest);
+        let is_on_curves = side.square() + is_closest;
         let normal = face.normal * (one - is_on_curves)
-            + across * (side / limited_norm(across))
-            + between * (is_closest / limited_norm(between));
+            + across * (side / limited_norm(across, LEAST_SQUARE))
+            + between * (is_closest / limited_norm(between, LEAST_SQUARE));
         let place = second + (first - second) * face.is_second;
         let height = face.outward.dot(place - face.origin);
         let gap_of_curves = normal.dot(between) - own_radius - other_radius;
         let gap_on_face = height.minimum_or_maximum(Extreme::Max, face.least);
+        let middle_on_face = place - face.outward * (height * 0.5);
         let middle = (first + second) * (one * 0.5) + normal * ((other_radius - own_radius) * 0.5);
         let (first_tangent, second_tangent) = tangents_of(normal);
         PointContact {
             gap: self.unused
-                + (gap_of_curves - self.unused) * (is_crossing + is_closest)
+                + (gap_of_curves - self.unused) * is_on_curves
                 + (gap_on_face - self.unused) * on_face,
-            point: place - face.outward * (height * 0.5)
-                + (middle - (place - face.outward * (height * 0.5))) * is_on_curves,
+            point: middle_on_face + (middle - middle_on_face) * is_on_curves,
             axes: [("normal", normal), ("first", first_tangent), ("second", second_tangent)],
             conditions: Vec::new(),
         }

@@ -61,6 +61,12 @@ pub(super) fn rim<'g>(
     [lowest, quarter, -lowest, -quarter]
 }
 
+/// Returns the norm of a vector; if its square is below `least_square`, the root of the latter.
+pub(super) fn limited_norm<'g>(v: Vec3<'g>, least_square: f64) -> Expr<'g> {
+    let square = v.dot(v);
+    square.minimum_or_maximum(Extreme::Max, square.num(1.0) * least_square).sqrt()
+}
+
 /// Clamps `x` to the interval from `-limit` to `limit`.
 pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
     x.minimum_or_maximum(Extreme::Max, -limit).minimum_or_maximum(Extreme::Min, limit)

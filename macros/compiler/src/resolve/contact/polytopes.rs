@@ -12,7 +12,7 @@
 //! surfaces, or the negative depth of their penetration. Unused contact points have gaps above any distance
 //! of the surfaces.
 
-use super::geometry::{PointContact, nearest, tangents_of};
+use super::geometry::{PointContact, limited_norm, nearest, tangents_of};
 use super::pair::SurfacePair;
 use super::polytope_shapes::{box_polytope, hull_polytope, segment_polytope};
 use super::surface::SurfaceForm;
@@ -34,8 +34,9 @@ const TIE_BREAK: [f64; 3] = [0.2113, 0.3779, 0.9014];
 /// Squared sine of the angle below which edges are treated as parallel.
 const PARALLEL: f64 = 1e-12;
 
-/// Squared length below which a distance does not determine a direction, m².
-const LEAST_SQUARE: f64 = 1e-30;
+/// Squared length below which a distance does not determine a direction, m², and squared sine of the angle
+/// below which tangents of curves do not.
+pub(super) const LEAST_SQUARE: f64 = 1e-30;
 
 /// Axes and origin of a body in common axes, relative to the centre of the first surface.
 #[derive(Clone, Copy)]
@@ -195,11 +196,11 @@ impl<'g> SurfacePair<'_, 'g> {
     }
 }
 
-/// Returns a dimension of a cylinder.
+/// Returns a dimension of a cylinder, m.
 ///
 /// # Errors
 ///
-/// It is not a positive number: [`CYLINDER_NOT_CONSTANT`].
+/// [`CYLINDER_NOT_CONSTANT`] if the dimension is not a positive number.
 fn positive_number(x: Expr<'_>) -> Result<f64, &'static str> {
     x.constant_value().filter(|x| *x > 0.0).ok_or(CYLINDER_NOT_CONSTANT)
 }
@@ -256,7 +257,7 @@ impl<'g> PlacedPair<'g> {
     fn edge_contact(&self, face_normal: Vec3<'g>) -> PointContact<'g> {
         let (values, one) = (&self.features.values, self.unused.num(1.0));
         let (side, is_closest) = (values[6], values[7]);
-        let crosses_singular_configuration = side.square();
+        let is_crossing = side.square();
         let (start, own) =
             (self.first.position(self.features.vector(8)), self.first.direction(self.features.vector(11)));
         let (end, along) =
@@ -264,18 +265,15 @@ impl<'g> PlacedPair<'g> {
         let (near, far) = nearest(start - end, (own, values[14]), (along, values[21]));
         let (start, end) = (start + own * near, end + along * far);
         let (separation, across) = (start - end, own.cross(along));
-        let limited_norm =
-            |v: Vec3<'g>, least: f64| v.dot(v).minimum_or_maximum(Extreme::Max, one * least).sqrt();
         let distance = limited_norm(separation, LEAST_SQUARE);
         let crossing = across * (side / limited_norm(across, PARALLEL));
-        let normal = crossing
-            + separation * (is_closest / distance)
-            + face_normal * (one - crosses_singular_configuration - is_closest);
+        let normal =
+            crossing + separation * (is_closest / distance) + face_normal * (one - is_crossing - is_closest);
         let [own_radius, other_radius] = self.radii;
         let depth = crossing.dot(separation) + distance * is_closest - own_radius - other_radius;
         let (first, second) = tangents_of(normal);
         PointContact {
-            gap: self.unused + (depth - self.unused) * (crosses_singular_configuration + is_closest),
+            gap: self.unused + (depth - self.unused) * (is_crossing + is_closest),
             point: (start + end) * (one * 0.5) + normal * ((other_radius - own_radius) * 0.5),
             axes: [("normal", normal), ("first", first), ("second", second)],
             conditions: Vec::new(),
