@@ -24,6 +24,7 @@ mod transport;
 mod trial;
 
 pub(super) use basis::{DelassusFactor, UsedColumns, dot};
+pub(super) use elimination::subtract_multiple;
 pub(super) use linear::ImpulseEquations;
 pub(super) use sensitivity::LinearisedImpulses;
 use trial::ContactMode;

@@ -1,6 +1,6 @@
 //! Responses of velocities to contact impulses.
 
-use super::problem::DelassusFactor;
+use super::problem::{DelassusFactor, subtract_multiple};
 use super::{Contacts, Responses, Rows};
 use crate::Real;
 use crate::blocks::transposed;
@@ -156,11 +156,8 @@ impl<T: Real, const N: usize> CholeskyFactor<T, N> {
     }
 
     /// Returns the solutions `X` of `L Lᵀ X = P`, with operations on rows of all columns at once.
-    pub(super) fn solve_all_columns(&self, p: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    pub(super) fn solve_all_columns<const C: usize>(&self, p: &SMatrix<T, N, C>) -> SMatrix<T, N, C> {
         let Self { rows, starts, .. } = self;
-        let subtract_multiple = |from: &mut [T; N], factor: T, row: &[T; N]| {
-            from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
-        };
         let mut x = transposed(p).data.0;
         for i in 0..N {
             let (above, below) = x.split_at_mut(i);

@@ -5,12 +5,13 @@
 //! conditions that hold with equality in these modes are linearised. The effect of constant impulses `Λ`
 //! changes with the configuration by `M⁻¹ (∂(Gᵀ Λ)/∂q − ∂(M a)/∂q)` with `a = M⁻¹ Gᵀ Λ`.
 
+mod rows;
+
 use super::derivatives::ContactDerivatives;
 use super::impulses::Impulses;
 use super::observer::{GapClosingDisplacement, ImpulseObserver};
-use super::problem::{ImpulseEquations, LinearisedImpulses};
+use super::problem::ImpulseEquations;
 use super::response::CholeskyFactor;
-use super::selection::ContactSelection;
 use super::solution::ContactsWithImpulses;
 use super::stepping::observed_step;
 use super::{Touched, touching_distance};
@@ -24,6 +25,7 @@ use crate::integrate::{Error, TimeStepping};
 use crate::private::{constant, to_f64};
 use crate::{Derivatives, Real};
 use nalgebra::{SMatrix, SVector};
+use rows::{ContactRowDerivatives, add_scaled_rows, copy_row, selected_contact_rows};
 
 /// Writes a time-stepping step of a mechanism with contacts, with its first derivatives. The mechanism
 /// implements [`ContactDerivatives`](super::ContactDerivatives). Generated code calls this function.
@@ -273,70 +275,6 @@ struct ContactVelocityDerivatives<T, const NV: usize, const NU: usize, const CR:
     by_u: Option<SMatrix<T, CR, NU>>,
 }
 
-/// Derivatives of values at the rows of contacts, with respect to configuration, velocity and inputs before
-/// the step.
-#[derive(Clone, Copy)]
-struct ContactRowDerivatives<T, const CR: usize, const NV: usize, const NU: usize> {
-    by_q: SMatrix<T, CR, NV>,
-    by_v: SMatrix<T, CR, NV>,
-    by_u: SMatrix<T, CR, NU>,
-}
-
-impl<T: Real, const CR: usize, const NV: usize, const NU: usize> ContactRowDerivatives<T, CR, NV, NU> {
-    fn zeros() -> Self {
-        Self { by_q: zeros(), by_v: zeros(), by_u: zeros() }
-    }
-
-    /// Adds a matrix times the derivatives of a vector.
-    fn add_product(&mut self, by: &SMatrix<T, CR, NV>, of: &VectorWithDerivatives<T, NV, NU>) {
-        add_product(&mut self.by_q, by, &of.by_q);
-        add_product(&mut self.by_v, by, &of.by_v);
-        add_product(&mut self.by_u, by, &of.by_u);
-    }
-
-    /// Adds the product of a matrix `by` and the derivatives `of`, whose rows belong to contact velocities.
-    fn add_rows(&mut self, by: &SMatrix<T, CR, CR>, of: &Self) {
-        add_product(&mut self.by_q, by, &of.by_q);
-        add_product(&mut self.by_v, by, &of.by_v);
-        add_product(&mut self.by_u, by, &of.by_u);
-    }
-
-    /// Adds the derivatives `of`, with the rows multiplied by the entries of a vector.
-    fn add_scaled_rows(&mut self, factors: &SVector<T, CR>, of: &Self) {
-        add_scaled_rows(&mut self.by_q, factors, &of.by_q);
-        add_scaled_rows(&mut self.by_v, factors, &of.by_v);
-        add_scaled_rows(&mut self.by_u, factors, &of.by_u);
-    }
-
-    /// Returns all derivatives, multiplied by a number.
-    fn scaled_row_derivatives(&self, s: T) -> Self {
-        Self { by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
-    }
-
-    /// Returns the derivatives of the impulses, if `self` holds the derivatives of the contact velocities
-    /// without impulses. Inputs may also change the coefficients of friction, with derivatives `friction` at
-    /// the rows of friction.
-    fn impulse_derivatives(
-        &self,
-        equations: &LinearisedImpulses<T, CR>,
-        friction: Option<&SMatrix<T, CR, NU>>,
-    ) -> Self {
-        let Self { by_q, by_v, by_u } = self;
-        Self {
-            by_q: equations.impulse_changes(by_q, None),
-            by_v: equations.impulse_changes(by_v, None),
-            by_u: equations.impulse_changes(by_u, friction),
-        }
-    }
-
-    /// Adds the velocity change that these impulses cause.
-    fn add_velocity_change(&self, responses: &SMatrix<T, NV, CR>, to: &mut VectorWithDerivatives<T, NV, NU>) {
-        add_product(&mut to.by_q, responses, &self.by_q);
-        add_product(&mut to.by_v, responses, &self.by_v);
-        add_product(&mut to.by_u, responses, &self.by_u);
-    }
-}
-
 impl<
     'a,
     M,
@@ -414,13 +352,7 @@ where
             }
         }
         let velocities_by_u = momenta_by_u.map(|momenta| match &self.inertia {
-            InertiaAtImpulses::MassMatrix(factor, _) => {
-                let mut velocities = momenta;
-                for column in &mut velocities.data.0 {
-                    *column = factor.solve_with_factor(*column);
-                }
-                velocities
-            }
+            InertiaAtImpulses::MassMatrix(factor, _) => factor.solve_all_columns(&momenta),
             InertiaAtImpulses::Response(.., response) => product(response, &momenta),
         });
         DirectDerivatives { velocities, velocities_by_u, rates }
@@ -671,43 +603,5 @@ where
         all.impulse_derivatives(&problem.velocity_preserving_equations(&held), None)
             .add_velocity_change(self.responses, &mut by);
         Some(by.scaled_derivatives(*part))
-    }
-}
-
-/// Returns the rows of selected contacts.
-fn selected_contact_rows<T: Real, const C: usize, const NR: usize, const CK: usize, const CR: usize>(
-    selection: &ContactSelection<CK, CR>,
-    all: &SMatrix<T, NR, C>,
-) -> SMatrix<T, CR, C> {
-    let mut rows = zeros::<T, CR, C>();
-    for (to, from) in rows.data.0.iter_mut().zip(&all.data.0) {
-        *to = selection.selected_contact_rates(&SVector::from(*from)).data.0[0];
-    }
-    rows
-}
-
-/// Copies row `i` of a matrix to row `j` of another one.
-fn copy_row<T: Real, const R: usize, const S: usize, const C: usize>(
-    from: &SMatrix<T, R, C>,
-    i: usize,
-    to: &mut SMatrix<T, S, C>,
-    j: usize,
-) {
-    for (to, from) in to.data.0.iter_mut().zip(&from.data.0) {
-        if let (Some(to), Some(from)) = (to.get_mut(j), from.get(i)) {
-            *to = *from;
-        }
-    }
-}
-
-/// Adds a matrix whose rows are multiplied by the entries of a vector.
-fn add_scaled_rows<T: Real, const R: usize, const C: usize>(
-    sum: &mut SMatrix<T, R, C>,
-    factors: &SVector<T, R>,
-    rows: &SMatrix<T, R, C>,
-) {
-    for (sum, column) in sum.data.0.iter_mut().zip(&rows.data.0) {
-        let entries = sum.iter_mut().zip(column).zip(factors);
-        entries.for_each(|((sum, entry), factor)| *sum += *entry * *factor);
     }
 }

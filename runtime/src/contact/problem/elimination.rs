@@ -155,7 +155,11 @@ fn subtract_short_row<T: Real, const N: usize>(
 
 /// Subtracts a multiple of a row from another row.
 #[inline(always)]
-pub(super) fn subtract_multiple<T: Real, const N: usize>(from: &mut [T; N], factor: T, row: &[T; N]) {
+pub(in super::super) fn subtract_multiple<T: Real, const N: usize>(
+    from: &mut [T; N],
+    factor: T,
+    row: &[T; N],
+) {
     from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
 }
 
