@@ -138,8 +138,9 @@ pub enum Slipping {}
 /// surfaces, or the negative of the depth of their penetration. Contact points that are not used have larger
 /// gaps than any distance of the surfaces. These contacts are rigid. The same applies to cylinders with two
 /// ends in contact with each other, with unbounded cylinders and with hulls: radii, lengths and axes are
-/// numbers. Contact points move along rims and sides: rolling cylinders have the acceleration of smooth
-/// bodies.
+/// numbers. Their depth of penetration is the smallest one for shallow overlaps, and may be that along
+/// another direction for overlaps of a tenth of the size of the bodies. Contact points move along rims and
+/// sides: rolling cylinders have the acceleration of smooth bodies.
 ///
 /// The height of a terrain is an expression of `u` and `w`, the position along the body's x and y axes, and
 /// of parameters: `ground.terrain(0.1 * sin(3 * u))`, or `ground.terrain(heights(u, w))` with a
