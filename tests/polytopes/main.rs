@@ -1,6 +1,7 @@
-//! Contacts of convex hulls with hulls, boxes, capsules and cylinders.
+//! Contacts of convex hulls with hulls, boxes, capsules and cylinders, and of cylinders with cylinders.
 
 mod boxes;
+mod cylinders;
 mod derivatives;
 mod distances;
 mod files;

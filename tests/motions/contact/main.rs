@@ -1,5 +1,6 @@
 //! Contacts that open and close, tested with thousands of states or steps.
 
+mod cans;
 mod fuzz;
 mod impacts;
 #[path = "../../contact/laws.rs"]

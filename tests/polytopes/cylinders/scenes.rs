@@ -77,9 +77,9 @@ fn random_heaps_gain_no_energy() {
         };
         let mut q = m.neutral();
         for k in 0..3 {
-            let (place, turn) = (random.point() * 0.04, random.rotation().coords);
+            let (place, rotation) = (random.point() * 0.04, random.rotation().coords);
             q.fixed_rows_mut::<3>(7 * k).copy_from_slice(&[place[0], place[1], 0.2 + 0.25 * k as f64]);
-            q.fixed_rows_mut::<4>(7 * k + 3).copy_from(&turn);
+            q.fixed_rows_mut::<4>(7 * k + 3).copy_from(&rotation);
         }
         let mut v = SVector::<f64, 18>::zeros();
         v.iter_mut().for_each(|v| *v = random.next());

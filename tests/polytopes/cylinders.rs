@@ -3,6 +3,3 @@
 mod distances;
 mod motions;
 mod scenes;
-#[path = "../polytopes/shapes.rs"]
-#[allow(dead_code)]
-mod shapes;

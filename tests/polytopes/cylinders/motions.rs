@@ -28,8 +28,8 @@ struct Cans {
     slab: Contact,
 }
 
-fn configuration(place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
-    let c = turn.coords;
+fn configuration(place: [f64; 3], rotation: UnitQuaternion<f64>) -> SVector<f64, 7> {
+    let c = rotation.coords;
     [place[0], place[1], place[2], c[0], c[1], c[2], c[3]].into()
 }
 
@@ -65,14 +65,14 @@ fn numbers_of_contact_points_follow_from_the_geometry() {
 #[test]
 fn cans_rest_on_a_slab() {
     let m = Cans { friction: 0.5 };
-    let turned = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.4);
+    let rotated = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.4);
     for q in [
         configuration([3.0, 0.0, 0.15], upright()),
         configuration([3.27, 0.1, 0.15], upright()),
-        configuration([3.27, 0.27, 0.15], turned * upright()),
+        configuration([3.27, 0.27, 0.15], rotated * upright()),
         configuration([3.0, 0.0, 0.1], UnitQuaternion::identity()),
         configuration([3.0, 0.25, 0.1], UnitQuaternion::identity()),
-        configuration([3.1, -0.2, 0.1], turned),
+        configuration([3.1, -0.2, 0.1], rotated),
     ] {
         let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
         let carried: f64 = Cans::CONTACT_ROWS.iter().map(|rows| forces[rows.first]).sum();
@@ -105,8 +105,8 @@ fn towers_of_cans_stay_at_rest() {
         for k in 0..3 {
             q[7 * k] = shift * [0.0, 1.0, 0.5][k];
             q[7 * k + 2] = 0.1 + 0.2 * k as f64;
-            let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.3 * k as f64).coords;
-            q.fixed_rows_mut::<4>(7 * k + 3).copy_from(&turn);
+            let rotation = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.3 * k as f64).coords;
+            q.fixed_rows_mut::<4>(7 * k + 3).copy_from(&rotation);
         }
         let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
         for (name, bodies) in [("seat_0", 2.0), ("seat_1", 1.0)] {
@@ -121,8 +121,8 @@ fn towers_of_cans_stay_at_rest() {
     }
 }
 
-/// At the top of a fixed can, a rolling can is pressed with `m (g − v² / L)`: the acceleration of its centre
-/// follows from the curvatures of both sides.
+/// At the top of a fixed can, the normal force on a rolling can is `m (g − v² / L)`: the acceleration of its
+/// centre follows from the curvatures of both sides.
 #[test]
 fn normal_force_of_a_rolling_can_includes_the_curvature() {
     let m = Cans { friction: 1.0 };
@@ -130,9 +130,9 @@ fn normal_force_of_a_rolling_can_includes_the_curvature() {
     let speed = 0.6;
     let v = SVector::from([speed, 0.0, 0.0, 0.0, speed / 0.1, 0.0]);
     let forces = contact::acting(&m, 0.0, &q, &v, &SVector::zeros()).unwrap();
-    let pressed: f64 = Cans::CONTACT_ROWS.iter().map(|rows| forces[rows.first]).sum();
-    let wanted = G - speed * speed / 0.3;
-    assert!((pressed - wanted).abs() < 1e-6, "{pressed} {wanted}");
+    let normal_force: f64 = Cans::CONTACT_ROWS.iter().map(|rows| forces[rows.first]).sum();
+    let expected = G - speed * speed / 0.3;
+    assert!((normal_force - expected).abs() < 1e-6, "{normal_force} {expected}");
 }
 
 /// The Jacobians of a step are central differences while a can rolls on a can.
