@@ -74,7 +74,7 @@ extern "C" Robot *peer_open(const char *folder, const double *states, size_t, si
     return new Robot(folder, states, count);
 }
 
-extern "C" Step peer_step(Robot *, size_t function, size_t variant) {
+extern "C" Step peer_step_fn(Robot *, size_t function, size_t variant) {
     const auto &steps = STEPS[function];
     return variant < steps.size() ? steps[variant] : nullptr;
 }

@@ -89,7 +89,7 @@ static void motion(Robot *r, size_t k) {
 
 typedef void (*Step)(Robot *, size_t);
 
-Step peer_step(Robot *r, size_t function, size_t variant) {
+Step peer_step_fn(Robot *r, size_t function, size_t variant) {
     (void)r;
     if (variant) return NULL;
     return function == 5 ? accelerations : function == 6 ? motion : NULL;

@@ -134,7 +134,7 @@ extern "C" Robot *peer_open(const char *folder, const double *states, size_t len
     return new Robot(folder, states, length / count, count);
 }
 
-extern "C" Step peer_step(Robot *, size_t function, size_t variant) {
+extern "C" Step peer_step_fn(Robot *, size_t function, size_t variant) {
     if (variant >= VARIANTS) return nullptr;
     return function == 5 ? ACCELERATIONS[variant] : function == 6 ? MOTIONS[variant] : nullptr;
 }

@@ -145,7 +145,7 @@ Robot *peer_open(const char *folder, const double *states, size_t length, size_t
     return r;
 }
 
-Step peer_step(Robot *r, size_t function, size_t variant) {
+Step peer_step_fn(Robot *r, size_t function, size_t variant) {
     (void)r;
     static const Step accelerations[] = {elimination, complement}, motions[] = {motion_by_elimination, motion_by_complement};
     if (variant >= 2) return NULL;

@@ -112,7 +112,7 @@ class Mechanism(metaclass=_Kind):
 
     @property
     def _sets(self) -> int | None:
-        return self._robot.sets
+        return self._robot.parameter_set_count
 
     @property
     def parameters(self) -> dict[str, Any]:

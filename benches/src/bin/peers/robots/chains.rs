@@ -15,8 +15,8 @@ macro_rules! chain {
             $type,
             $(
                 $functions!($type, $type {}, Linkwork),
-                $functions!($symbolic, $symbolic::numbers(), Parameters),
-                $functions!($prepared, $symbolic::numbers().prepare(), Prepared)
+                $functions!($symbolic, $symbolic::with_link_values(), Parameters),
+                $functions!($prepared, $symbolic::with_link_values().prepare(), Prepared)
             ),+
         )
     };
