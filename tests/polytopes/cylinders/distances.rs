@@ -135,7 +135,7 @@ fn pairs_have_eight_contact_points() {
 fn least_gap_is_the_signed_distance() {
     let mut random = Random(3);
     let (mut overlapping, mut apart) = (0, 0);
-    for k in 0..210 {
+    for k in 0..105 {
         let (body, distance) = (k % 3, [0.0, 1e-5, 0.02, 0.2, -1e-6, -1e-4, -3e-3][k % 7]);
         let (place, rotation) = pose_at_distance(body, distance, &mut random);
         let q = configuration(body, place, &rotation);
@@ -150,7 +150,7 @@ fn least_gap_is_the_signed_distance() {
         assert!(expected < gap + 2e-9, "{k}: {gap} {expected}");
         (overlapping, apart) = (overlapping + usize::from(gap < -1e-7), apart + usize::from(gap > 1e-3));
     }
-    assert!(overlapping > 50 && apart > 50, "{overlapping} {apart}");
+    assert!(overlapping > 25 && apart > 25, "{overlapping} {apart}");
 }
 
 /// The least gap changes at the normal rate of its contact, and the contact velocities change at the rate of
@@ -159,7 +159,7 @@ fn least_gap_is_the_signed_distance() {
 fn rates_and_biases_are_derivatives() {
     let (m, mut random, h) = (Can {}, Random(5), 1e-5);
     let mut compared = [0; 3];
-    for k in 0..150 {
+    for k in 0..90 {
         let body = k % 3;
         let (place, rotation) = pose_at_distance(body, [0.01, 1e-3, -1e-3][k / 3 % 3], &mut random);
         let q = configuration(body, place, &rotation);
@@ -187,5 +187,5 @@ fn rates_and_biases_are_derivatives() {
         }
         compared[body] += 1;
     }
-    assert!(compared.iter().all(|count| *count > 30), "{compared:?}");
+    assert!(compared.iter().all(|count| *count > 18), "{compared:?}");
 }
