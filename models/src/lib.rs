@@ -125,7 +125,7 @@
 //! | joint | freedom | element of the language | example |
 //! | --- | --- | --- | --- |
 //! | pin, hinge | 1 | `Pin` | [`Pendulum`], [`BrakedFlywheel`] |
-//! | dual pin | 2 | `Pin`, then `Pin` | parallel: [`DoublePendulum`]; crossed: [`FurutaPendulum`] |
+//! | dual pin | 2 | `Pin`, then `Pin` | parallel: [`DoublePendulum`]; perpendicular: [`FurutaPendulum`] |
 //! | universal | 2 | `Universal` | [`SphericalPendulum`], [`StewartPlatform`] |
 //! | ball | 3 | `Ball` | [`HeavyTop`], [`StewartPlatform`] |
 //! | sleeve | 1 | `Sleeve` | [`CartPole`], [`DuffingOscillator`] |

@@ -37,9 +37,9 @@ pub struct Block<'a> {
     pub count: usize,
     /// Block whose last link is the parent of the first link; `None` if the ground is.
     pub parent: Option<usize>,
-    /// Blocks on the path to the root, in ascending order.
+    /// Indices of the blocks on the path from this block to the root, in ascending order.
     pub ancestors: &'a [usize],
-    /// Blocks of the descendants, in ascending order.
+    /// Indices of the blocks whose path to the root contains this block, in ascending order.
     pub descendants: &'a [usize],
 }
 

@@ -4,7 +4,7 @@
 use crate::Real;
 use nalgebra::SVector;
 
-/// Origin of an action in a free-body diagram.
+/// Kind of an action in a free-body diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// The action is the weight of the body in uniform gravity, at the centre of mass.
@@ -30,7 +30,7 @@ pub enum Origin {
 pub struct Action<T> {
     /// Name of the force element, input, joint, constraint or contact that acts on the body.
     pub name: &'static str,
-    /// Origin of the action: gravity, force element, input, joint, constraint or contact.
+    /// Kind of the action: gravity, force element, input, joint, constraint or contact.
     pub origin: Origin,
     /// Point of application, relative to the body's centre of mass, m.
     pub point: SVector<T, 3>,

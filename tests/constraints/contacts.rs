@@ -4,7 +4,7 @@ use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 
-/// Bevel gears without teeth: two rolling cones on crossed axles.
+/// Bevel gears without teeth: two cones that roll on each other, on intersecting axles.
 #[mechanism]
 struct Cones {
     small: f64,

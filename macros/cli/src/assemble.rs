@@ -134,8 +134,8 @@ impl MechanismAssembler<'_, '_> {
     }
 
     /// Returns a configuration with the given entries, reached in small steps from the configuration on the
-    /// constraints that is nearest to zero, so that a loop stays in the assembly mode of that configuration.
-    /// If the given entries contradict the constraints, the result violates them.
+    /// constraints that is nearest to the initial one, so that a loop stays in the assembly mode of that
+    /// configuration. If the given entries contradict the constraints, the result violates them.
     pub fn configuration_by_continuation(
         &self,
         q: &[f64],
@@ -143,12 +143,12 @@ impl MechanismAssembler<'_, '_> {
         apart: &[bool],
         held: &[bool],
     ) -> Result<Vec<f64>, Stop> {
-        let mut zero = self.robot.neutral()?.as_slice().to_vec();
+        let mut initial = self.robot.initial_configuration()?.as_slice().to_vec();
         let is_apart = self.entries_moved_only_by_marked(apart);
         for k in (0..q.len()).filter(|k| is_apart[*k]) {
-            zero[k] = q[k];
+            initial[k] = q[k];
         }
-        let Some(begin) = self.assemble_near(&zero, &zero, apart) else { return Ok(q.to_vec()) };
+        let Some(begin) = self.assemble_near(&initial, &initial, apart) else { return Ok(q.to_vec()) };
         let (mut at, held) = (begin.clone(), indices_of_true_values(held));
         for step in 1..=STEPS {
             let part = f64::from(step) / f64::from(STEPS);

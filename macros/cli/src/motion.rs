@@ -94,7 +94,7 @@ impl<'a, 'g> Start<'a, 'g> {
         // States of first order are zero by default, as coordinates are.
         states.iter().for_each(|(_, k)| parameters[*k] = Some(0.0));
         let of_states: Vec<String> = states.iter().map(|(name, _)| format!("x.{name}")).collect();
-        let mut q = neutral_configuration(model);
+        let mut q = model.initial_configuration.clone().unwrap_or_else(|| model.neutral_configuration());
         let (mut v, mut u) = (vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
         for (name, value) in named_option_values("set", matches)? {
@@ -461,15 +461,6 @@ fn fill_missing_parameters(model: &Model<'_>, parameters: &mut [Option<f64>]) {
     if !chosen.is_empty() {
         crate::note!("linkwork: parameters without a value begin at {}", chosen.join(", "));
     }
-}
-
-/// Returns the neutral configuration of a model: zero coordinates and identity quaternions.
-fn neutral_configuration(model: &Model<'_>) -> Vec<f64> {
-    let mut q = vec![0.0; model.nq()];
-    for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
-        q[first.0 + 3] = 1.0;
-    }
-    q
 }
 
 /// Returns the time at which a numerical error ended a motion.

@@ -46,8 +46,8 @@ pub use output::{
 /// Maximum number of products in the elimination of constraints.
 const MOST_PRODUCTS: usize = 100_000;
 
-/// Derives all functions except the optional ones. Returns `None` with the error in `cx` if the mass matrix
-/// is singular.
+/// Derives all functions except the optional ones. Returns `None` with the errors in `cx` if the equations
+/// cannot be derived, for example because the mass matrix is singular.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     derive_with_options(model, RequestedFunctions::default(), Passes::default(), cx)
 }

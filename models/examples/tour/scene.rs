@@ -18,7 +18,7 @@ pub struct Scene {
     pub parts: Vec<Part>,
     /// Positions of all points in each frame of the animation.
     pub frames: Vec<Vec<Point>>,
-    /// Time of the frame that is shown while the animation is stopped, s.
+    /// Time of the frame that the page shows as a picture (address with `#picture`), s.
     pub still: f64,
     /// Captions of the scene, each with its first frame.
     pub captions: Vec<(usize, String)>,

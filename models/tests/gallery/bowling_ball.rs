@@ -54,7 +54,8 @@ fn bowling_ball_slides_then_rolls() -> Result<(), Error> {
     Ok(())
 }
 
-/// Checks that a bowling ball with spin transverse to its path moves along a parabola while it slides.
+/// Checks that a bowling ball that spins about the direction of its path moves along a parabola while it
+/// slides: the spin makes its lowest point slip sideways.
 #[test]
 fn spinning_bowling_ball_follows_parabola() -> Result<(), Error> {
     let v = SVector::from([4.0, 0.0, 0.0, 30.0, 0.0, 0.0]);

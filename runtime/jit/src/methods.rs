@@ -89,6 +89,20 @@ impl Robot {
         let [jacobian] = self.matrices_of_function(index, State { q, ..State::default() })?;
         Ok(jacobian)
     }
+
+    /// Returns the configuration in the pose of the robot file: free bodies are where the file places them,
+    /// and a joint with a `ref` has this coordinate. All other coordinates are those of
+    /// [`neutral`](Self::neutral).
+    ///
+    /// # Errors
+    ///
+    /// The parameters do not satisfy the conditions of the mechanism.
+    pub fn initial_configuration(&self) -> Result<DVector<f64>, Error> {
+        match self.function("initial_configuration") {
+            Ok(f) => Ok(DVector::from_vec(self.evaluate(&f, &[])?)),
+            Err(_) => self.neutral(),
+        }
+    }
 }
 
 macro_rules! methods {

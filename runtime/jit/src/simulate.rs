@@ -104,7 +104,8 @@ pub struct Simulation<'a, 'i> {
 }
 
 impl Robot {
-    /// Returns a simulation of the robot, from the neutral configuration at rest at t = 0 with zero inputs.
+    /// Returns a simulation of the robot, from its [initial configuration](Robot::initial_configuration) at
+    /// rest at t = 0 with zero inputs.
     pub fn simulate(&self) -> Simulation<'_, 'static> {
         Simulation {
             robot: self,
@@ -248,7 +249,10 @@ impl<'a, 'i> Simulation<'a, 'i> {
         self.check_times()?;
         let robot = self.robot;
         let (n, states) = (robot.nv(), &robot.shared.states);
-        let q = self.q.map_or_else(|| robot.neutral().map(|q| q.as_slice().to_vec()), |q| Ok(q.to_vec()))?;
+        let q = self.q.map_or_else(
+            || robot.initial_configuration().map(|q| q.as_slice().to_vec()),
+            |q| Ok(q.to_vec()),
+        )?;
         let mut v = self.v.map_or_else(|| vec![0.0; n], <[f64]>::to_vec);
         if v.len() == n {
             v.extend(states.iter().map(|one| robot.parameter_values()[one.parameter]));

@@ -299,3 +299,56 @@ fn robots_of_files_have_names_and_limits() -> Result<(), Error> {
     assert_eq!(mass, Some(2.0));
     Ok(())
 }
+
+/// Free bodies, and joints with a `ref`, begin where the file places them: all frames are those of the file
+/// without joints, whose bodies are fixed in the world.
+#[test]
+fn robots_begin_in_the_pose_of_their_file() -> Result<(), Error> {
+    let scene = |[free, hinge, slide]: [&str; 3]| {
+        format!(
+            "<mujoco><compiler autolimits='true'/><worldbody><frame pos='0 0 1' euler='0 0 90'><body \
+             name='crate' pos='.3 -.2 .5' euler='30 -100 170'>{free}<geom size='.1'/></body></frame>\
+             <body name='ball' pos='1 2 3' quat='0 1 0 0'>{free}<geom size='.1'/>\
+             <body name='lid' pos='0 .1 .2' euler='0 20 0'>{hinge}<geom size='.1' pos='.2 0 0'/>\
+             </body></body>\
+             <body name='block'>{slide}<geom size='.1'/></body>\
+             <body name='origin'>{free}<geom size='.1'/></body>\
+             </worldbody></mujoco>"
+        )
+    };
+    let load = |test: &str, text: String| {
+        let path = std::env::temp_dir().join(format!("linkwork-pose-{test}-{}.xml", std::process::id()));
+        std::fs::write(&path, text).expect("a temporary file");
+        let robot = Loader::file(&path).load();
+        std::fs::remove_file(&path).expect("the file is there");
+        robot
+    };
+    let moving = load(
+        "moving",
+        scene([
+            "<freejoint/>",
+            "<joint name='swing' axis='0 1 .5' pos='.1 0 0' ref='35'/>",
+            "<joint name='lift' type='slide' axis='0 0 1' ref='.4'/>",
+        ]),
+    )?;
+    let q = moving.initial_configuration()?;
+    // The frame rotates the position of the crate by a right angle about z.
+    assert!([0.2, 0.3, 1.5].iter().zip(&q).all(|(expected, found)| (expected - found).abs() < 1e-15), "{q}");
+    let fixed = load("fixed", scene([""; 3]))?;
+    for frame in ["crate", "ball", "lid", "block", "origin"] {
+        let there = fixed.frame_placement(frame, &[])?;
+        let here = moving.frame_placement(frame, q.as_slice())?;
+        assert!((there.to_homogeneous() - here.to_homogeneous()).amax() < 1e-14, "{frame}: {here} {there}");
+    }
+    // Simulations begin there, too.
+    let start = moving.simulate().duration(0.0).finish()?;
+    assert_eq!(start.q, q.as_slice());
+    // A mechanism of another source begins in its neutral configuration.
+    let cart = Loader::text(CART_POLE).load()?.with_parameters(&[
+        ("cart_mass", 1.0),
+        ("pole_mass", 1.0),
+        ("pole_length", 1.0),
+    ])?;
+    assert_eq!(cart.initial_configuration()?, cart.neutral()?);
+    Ok(())
+}

@@ -251,11 +251,19 @@ class Mechanism(metaclass=_Kind):
 
     # Motions
 
+    def initial_configuration(self) -> NDArray[Any]:
+        """Returns the configuration in which simulations begin.
+
+        It is the neutral configuration. Classes of robot files that place free bodies, or have joints with a
+        `ref`, override it: free bodies are where the file places them.
+        """
+        return np.array(self._call("neutral"))
+
     def _vector(self, value: Any, length: int, what: str) -> NDArray[Any]:
         if isinstance(value, Mapping):
             entries = ENTRIES[what]
             names = {"q": self.configuration, "v": self.velocities, "u": self.inputs}[entries]
-            vector: NDArray[Any] = self._neutral() if entries == "q" else np.zeros(length)
+            vector: NDArray[Any] = self.initial_configuration() if entries == "q" else np.zeros(length)
             kind = {"q": "coordinate", "v": "velocity", "u": "input"}[entries]
             for name, entry in value.items():
                 vector[index(names, name, kind)] = number(entry, f"the {kind} {name!r}")
@@ -305,7 +313,8 @@ class Mechanism(metaclass=_Kind):
         """Simulates a motion.
 
         Args:
-            q: initial configuration: an array, or values by name. The default is the neutral configuration.
+            q: initial configuration: an array, or values by name. The default is `initial_configuration()`, which
+                also has the values that are not named.
             v: initial velocity: an array, or values by name. The default is zero.
             duration: duration, s.
             every: time between samples, s. The default is a hundredth of the duration.
@@ -329,7 +338,7 @@ class Mechanism(metaclass=_Kind):
         """
         if self._sets is not None:
             raise TypeError("a simulation has one value of each parameter; `roll_out` takes one for each state")
-        first_q = self._neutral() if q is None else self._vector(q, self.nq, "q")
+        first_q = self.initial_configuration() if q is None else self._vector(q, self.nq, "q")
         first_v = np.zeros(self.nv) if v is None else self._vector(v, self.nv, "v")
         duration = number(duration, "`duration`")
         if not (duration >= 0 and np.isfinite(duration)):
@@ -475,7 +484,7 @@ class Mechanism(metaclass=_Kind):
         if self._description["contacts"]:
             raise Error("equilibria at contacts are found by the crate linkwork-design")
         self._need("inverse_dynamics_derivatives", "derivatives")
-        first = self._neutral() if q is None else self._vector(q, self.nq, "q")
+        first = self.initial_configuration() if q is None else self._vector(q, self.nq, "q")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
         free = marked(held, self.velocities) == 0
         tolerance, iterations = number(tolerance, "`tolerance`"), count(iterations, "iterations")
@@ -517,10 +526,6 @@ class Mechanism(metaclass=_Kind):
     def _call(self, name: str, *arguments: Any) -> Any:
         """Calls a generated function by its name."""
         return getattr(self, name)(*arguments)
-
-    def _neutral(self) -> NDArray[Any]:
-        """Returns the neutral configuration, in which all coordinates are zero."""
-        return np.array(self._call("neutral"))
 
     def _forces(self, time: list[float], q: NDArray[Any], v: NDArray[Any], u: NDArray[Any]) -> Any:
         if not self.nu:

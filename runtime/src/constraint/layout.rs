@@ -45,7 +45,8 @@ pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
     pub bias_by_v: [[T; NC]; NV],
     /// Derivatives of the constraint rates with respect to `q`.
     pub rates_by_q: [[T; NC]; NV],
-    /// Rotation of displacements that are measured in rotating axes.
+    /// Columns of the matrix `δq × v` that maps displacements of ball and free joints to their own rates;
+    /// zero otherwise.
     pub turning: [[T; NV]; NV],
 }
 

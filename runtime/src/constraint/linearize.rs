@@ -100,7 +100,8 @@ pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
     pub jacobian: SMatrix<T, NC, NV>,
     /// Derivatives of the constraint rates with respect to `q`.
     pub rates_by_q: SMatrix<T, NC, NV>,
-    /// Contribution of displacements in rotating axes to their own rates.
+    /// Matrix `δq × v` of the rates of displacements of ball and free joints, whose axes rotate with the
+    /// child; zero otherwise.
     pub turning: SMatrix<T, NV, NV>,
     /// Number of holonomic constraints, which come first among the rows of the constraints.
     pub holonomic: usize,

@@ -379,7 +379,7 @@ fn closed_rows<const NK: usize, const NR: usize>(
     (places, count)
 }
 
-/// Adds to the contact accelerations and their derivatives the terms of the gains, `kᵥ u + kₚ g`, for gaps
+/// Adds to the derivatives of the contact accelerations the terms of the gains, `kᵥ u + kₚ g`, for gaps
 /// `g` and contact velocities `u` of enforced contacts.
 fn add_gain_terms<T: Real, const NV: usize, const NK: usize, const NR: usize>(
     parts: &mut FirstOrder<T, NV, NR>,

@@ -41,7 +41,7 @@ const LARGE: usize = 18;
 /// Number of iterations of Newton's method in a step of a simulation after which the restitution that the
 /// energy allows is not refined further.
 const MAX_ITERATIONS: usize = 128;
-/// Rounding errors of contact velocities that a solution may leave in the equations.
+/// Maximum residual of solved equations, in units of the rounding error of the contact velocities.
 const ROUNDINGS: f64 = 64.0;
 
 /// Closed contacts, with contact velocities `u = u₀ + W Λ` after impulses `Λ`.

@@ -16,8 +16,9 @@ use nalgebra::{SMatrix, SVector};
 #[derive(Clone, Copy)]
 pub(crate) struct ConfigurationManifold<'a, M, const NV: usize> {
     mechanism: &'a M,
-    /// Indices of all velocities, and the half-open range of those of ball and free joints.
+    /// Indices of all velocities.
     indices: [usize; NV],
+    /// Half-open range of the velocities of ball and free joints; empty without such joints.
     rotating: (usize, usize),
 }
 
@@ -32,7 +33,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         Self { mechanism, indices: core::array::from_fn(|i| i), rotating }
     }
 
-    /// Whether no joint has rotating axes.
+    /// Returns true if no velocity belongs to a ball or free joint, so that displacements add like vectors.
     fn has_fixed_axes(&self) -> bool {
         self.rotating.0 >= self.rotating.1
     }

@@ -58,7 +58,7 @@ pub enum EventOutcome {
     Jump,
 }
 
-/// Effect of an event on the velocity and the run.
+/// Effect of an event on the state and the run; only the velocity may change.
 pub trait Action<T, const NQ: usize, const NV: usize> {
     /// Whether an event with this effect ends the run of a simulation.
     const STOPS: bool;

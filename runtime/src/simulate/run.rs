@@ -64,7 +64,8 @@ struct SimultaneousEvents<T, const NQ: usize, const NV: usize> {
     elapsed: f64,
     /// Position on the step up to which events belong to the same instant.
     limit: T,
-    /// Position on the step up to which events belong to the same instant.
+    /// Index of the event that has just changed the velocity, while the sample after the change is still to
+    /// be emitted.
     jump: Option<usize>,
     /// Index of the first event whose effect has not been applied yet.
     next: usize,

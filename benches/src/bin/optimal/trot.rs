@@ -45,11 +45,13 @@ type Transition = discrete::Transition<f64, 19, 18, 12>;
 type TrotStepCost = Quadratic<f64, 18, 12>;
 
 const PERIOD: f64 = 0.01;
-/// Number of nodes of a swing phase, and of the preceding stance on four feet.
+/// Number of nodes of a swing phase.
 const SWING: usize = 25;
+/// Number of nodes of the stance on four feet before a swing phase.
 const STAND: usize = 2;
-/// Step length and height of a swinging foot, m.
+/// Step length of a swinging foot, m.
 const REACH: f64 = 0.1;
+/// Maximum height of a swinging foot, m.
 const LIFT: f64 = 0.05;
 const FRICTION: f64 = 0.7;
 /// Gain of the constraint stabilization, by which velocities of sticking feet decay, 1/s.

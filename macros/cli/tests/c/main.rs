@@ -210,7 +210,7 @@ fn vector_from_slice<const N: usize>(numbers: &[f64]) -> linkwork::nalgebra::SVe
     linkwork::nalgebra::SVector::from_fn(|k, _| numbers[k])
 }
 
-/// Returns calls for the first and the last frame.
+/// Returns the calls of the functions of frames for the first and the last frame, with the results of Rust.
 fn first_and_last_frame_calls<M, const NQ: usize, const NV: usize>(
     m: &M,
     time: Option<f64>,

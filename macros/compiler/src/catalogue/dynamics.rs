@@ -9,6 +9,9 @@ use crate::syntax::RequestOption;
 
 const INERTIA: &[FunctionNeed] = &[FunctionNeed::Inertia];
 
+/// Need of the configuration in which a robot file places its bodies.
+const PLACED: &[FunctionNeed] = &[FunctionNeed::InitialConfiguration];
+
 /// Need of functions that a drawing reads.
 const DRAWING: FunctionNeed = FunctionNeed::Asks(RequestOption::Drawing);
 
@@ -21,6 +24,16 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Vector(f.nq),
         docs: vec!["The configuration with zero coordinates and identity quaternions."],
+        ..Declaration::default()
+    })
+    .without_batch(),
+    Row::derived_row(Id::InitialConfiguration, "initial_configuration", PLACED, |f| Declaration {
+        timeless: true,
+        shape: Shape::Vector(f.nq),
+        docs: vec![
+            "The configuration in the pose of the robot file: free bodies are where the file places them, \
+             and a joint with a `ref` has this coordinate. The other coordinates are zero.",
+        ],
         ..Declaration::default()
     })
     .without_batch(),

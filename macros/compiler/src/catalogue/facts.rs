@@ -30,6 +30,8 @@ pub enum FunctionNeed {
     FileParameters,
     /// Inertial parameters of links of a file are parameters of the struct.
     FileInertials,
+    /// The robot file places joints elsewhere than in the neutral configuration.
+    InitialConfiguration,
     /// The mechanism declares equilibria.
     Equilibria,
     /// The mechanism has limits of coordinates.
@@ -65,6 +67,7 @@ impl FunctionNeed {
             FunctionNeed::Parameters,
             FunctionNeed::FileParameters,
             FunctionNeed::FileInertials,
+            FunctionNeed::InitialConfiguration,
             FunctionNeed::Equilibria,
             FunctionNeed::Limits,
             FunctionNeed::Terrain,
@@ -93,7 +96,8 @@ impl FunctionNeed {
             FunctionNeed::FileParameters => "HasFileParameters",
             FunctionNeed::FileInertials => "HasFileInertials",
             FunctionNeed::Equilibria => "DeclaresEquilibria",
-            FunctionNeed::Limits
+            FunctionNeed::InitialConfiguration
+            | FunctionNeed::Limits
             | FunctionNeed::Terrain
             | FunctionNeed::Calls
             | FunctionNeed::PassiveCalls
@@ -140,6 +144,8 @@ pub struct Facts {
     pub bodies: usize,
     /// Number of base parameters.
     pub base: usize,
+    /// True if the robot file places joints elsewhere than in the neutral configuration.
+    pub initial_configuration: bool,
     /// Number of declared equilibria.
     pub equilibria: usize,
     /// Number of cyclic coordinates that the option `routh` eliminates.
@@ -213,6 +219,7 @@ impl Facts {
             contacts: ContactCounts { count: model.contacts.len(), rates: model.contact_rates().len() },
             polytopes: model.polytopes.len(),
             limits: model.coordinate_limit_bounds().len(),
+            initial_configuration: model.initial_configuration.is_some(),
             equilibria: model.equilibria.len(),
             drawing: model.drawing_numbers().len(),
             heights: model.heights.len(),
@@ -237,6 +244,7 @@ impl Facts {
             FunctionNeed::Parameters => self.parameters > 0,
             FunctionNeed::FileParameters => self.requests.file_parameters,
             FunctionNeed::FileInertials => self.requests.file_inertials,
+            FunctionNeed::InitialConfiguration => self.initial_configuration,
             FunctionNeed::Equilibria => self.equilibria > 0,
             FunctionNeed::Limits => self.limits > 0,
             FunctionNeed::Terrain => self.heights > 0,

@@ -8,6 +8,7 @@ use super::shape::{Argument, Shape};
 #[allow(missing_docs, reason = "the rows say what each is")]
 pub enum Id {
     Neutral,
+    InitialConfiguration,
     Limits,
     Drawing,
     Heights,

@@ -9,7 +9,7 @@ use super::sensitivities::SensitivityDerivation;
 use super::specialisation::ParameterSpecialisation;
 use super::{OptionalFunctionData, constraints, outputs};
 use crate::catalogue::{DeclaredFunction, Facts, Id, Structure};
-use crate::expr::Expr;
+use crate::expr::{Expr, Graph};
 use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
 use crate::mechanics::derivatives::parameters;
@@ -18,7 +18,7 @@ use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanics::routh::Routh;
 use crate::mechanics::speeds::SpeedTransformation;
 use crate::mechanics::{energy, forces, power};
-use crate::mechanism::{Chart, Model, PassiveForces};
+use crate::mechanism::{Model, PassiveForces};
 use crate::passes::Passes;
 use std::cell::OnceCell;
 use std::rc::Rc;
@@ -33,7 +33,7 @@ pub(super) struct Derivation<'a, 'g> {
     passes: Passes,
     specialisation: ParameterSpecialisation,
     facts: &'a Facts,
-    /// Data for the options `regressor`, `hamilton` and `conserved`.
+    /// Data of the optional functions; `None` while only the functions without an option are derived.
     extras: Option<&'a OptionalFunctionData<'a, 'g>>,
     /// Data of the option `derivatives`; `None` without the option.
     derivatives: Option<&'a Derivatives<'a, 'g>>,
@@ -238,7 +238,13 @@ impl<'a, 'g> Derivation<'a, 'g> {
         let (model, joints) = (self.model, self.joints);
         let find_derived_function = |id: Id| done.iter().find(|f| f.id == id);
         match declared.id {
-            Id::Neutral => self.lower_unstructured(&neutral_configuration(model)),
+            Id::Neutral => {
+                self.lower_unstructured(&constant_expressions(model.graph, &model.neutral_configuration()))
+            }
+            Id::InitialConfiguration => {
+                let configuration = model.initial_configuration.as_deref().unwrap_or_default();
+                self.lower_unstructured(&constant_expressions(model.graph, configuration))
+            }
             Id::Limits => self.lower_unstructured(&model.coordinate_limit_bounds()),
             Id::Drawing => self.lower_unstructured(&model.drawing_numbers()),
             Id::Heights => self.lower_unstructured(&model.heights),
@@ -390,16 +396,7 @@ fn program_of_function(other: Option<&Function>) -> (Program, Structure) {
     other.map(|f| (f.program.clone(), f.structure.clone())).unwrap_or_default()
 }
 
-/// Returns the configuration with all coordinates zero and identity quaternions.
-fn neutral_configuration<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let g = model.graph;
-    let mut q = vec![g.zero(); model.nq()];
-    for chart in &model.charts {
-        match chart {
-            Chart::Plain(..) => {}
-            Chart::Ball(k, _) => q[k.0 + 3] = g.one(),
-            Chart::Free(k, _) => q[k.0 + 6] = g.one(),
-        }
-    }
-    q
+/// Returns constants as expressions.
+fn constant_expressions<'g>(graph: &'g Graph, values: &[f64]) -> Vec<Expr<'g>> {
+    values.iter().map(|value| graph.num(*value)).collect()
 }

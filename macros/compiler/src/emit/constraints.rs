@@ -130,7 +130,8 @@ fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>
     );
 }
 
-/// Writes the inherent functions of constrained dynamics, completion and projection.
+/// Writes the inherent functions of a mechanism with constraints: dynamics, assembly, completion, projection
+/// and derivatives.
 pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], s: &Signature<'_>) {
     if c.names.is_empty() {
         return;

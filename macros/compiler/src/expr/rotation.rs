@@ -93,8 +93,8 @@ impl<'g> Rotation<'g> {
         Rotation { steps, graph: self.graph }
     }
 
-    /// Appends a step to the rotation. Adjacent constant steps are combined into one rotation with the
-    /// minimum number of steps.
+    /// Appends a step to the rotation. Adjacent constant steps are multiplied. If the product has a zero
+    /// entry, it is stored as rotations by right angles and about coordinate axes; otherwise as one matrix.
     fn append_step(&mut self, step: RotationStep<'g>) {
         let Some(mut product) = step.matrix_if_constant() else {
             self.steps.push(step);

@@ -100,7 +100,7 @@ pub(super) fn contact_point_count(contact: &Contact, collisions: &[Collision]) -
     Some(points * contact_and_moment_count(contact))
 }
 
-/// Returns the sizes of the surfaces of one side of a contact.
+/// Returns the numbers of vertices and corners of the surfaces of one side of a contact.
 fn surface_sizes(surface: &Expr, collisions: &[Collision]) -> Vec<SurfaceSize> {
     if let Some(selected) = select_collisions(surface, collisions) {
         return selected
@@ -126,7 +126,8 @@ fn constant_vector(e: &Expr) -> Option<[f64; 3]> {
     components?.try_into().ok()
 }
 
-/// Returns the size of a surface; `vertices` are those of a hull.
+/// Returns the form of a surface with its numbers of vertices and of corners of the largest face; `vertices`
+/// are those of a hull.
 fn sized_surface(id: Option<SurfaceId>, vertices: &[[f64; 3]]) -> SurfaceSize {
     let corners = match id {
         Some(SurfaceId::Cuboid) => 4,

@@ -40,6 +40,16 @@ impl FilePose {
             axes: matrix_product(&self.axes, &inner.axes),
         }
     }
+
+    /// Returns the coordinates of a free joint in this pose: the position and the quaternion (x, y, z, w).
+    /// Empty for the identity, which is the neutral configuration.
+    pub(in crate::import) fn free_joint_coordinates(&self) -> Vec<f64> {
+        if *self == FilePose::ZERO {
+            return Vec::new();
+        }
+        let [w, x, y, z] = quaternion_of_rotation(&self.axes);
+        self.at.into_iter().chain([x, y, z, w]).collect()
+    }
 }
 
 /// Returns the sum of two numeric vectors.
@@ -86,6 +96,27 @@ pub(in crate::import) fn transpose(m: &Matrix) -> Matrix {
 /// Transforms a symmetric matrix with the rotation `m`: `m s mᵀ`.
 pub(in crate::import) fn rotated_tensor(m: &Matrix, s: &Matrix) -> Matrix {
     matrix_product(&matrix_product(m, s), &transpose(m))
+}
+
+/// Returns the unit quaternion (w, x, y, z) of a rotation matrix. The largest component is the square root of
+/// its square and positive; the others follow from it by division (S. W. Shepperd, *Quaternion from rotation
+/// matrix*, Journal of Guidance and Control 1, 1978).
+pub(in crate::import) fn quaternion_of_rotation(r: &Matrix) -> [f64; 4] {
+    let trace = r[0][0] + r[1][1] + r[2][2];
+    // Four times the products of each pair of components.
+    let squares =
+        [1.0 + trace, 1.0 + 2.0 * r[0][0] - trace, 1.0 + 2.0 * r[1][1] - trace, 1.0 + 2.0 * r[2][2] - trace];
+    let [wx, wy, wz] = [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]];
+    let [xy, xz, yz] = [r[1][0] + r[0][1], r[0][2] + r[2][0], r[2][1] + r[1][2]];
+    let products = [
+        [squares[0], wx, wy, wz],
+        [wx, squares[1], xy, xz],
+        [wy, xy, squares[2], yz],
+        [wz, xz, yz, squares[3]],
+    ];
+    let largest = (0..4).max_by(|a, b| squares[*a].total_cmp(&squares[*b])).unwrap_or(0);
+    let scale = products[largest].iter().map(|x| x * x).sum::<f64>().sqrt();
+    products[largest].map(|x| x / scale)
 }
 
 /// Returns the rotation matrix of a unit quaternion (w, x, y, z).
@@ -200,6 +231,21 @@ mod tests {
             roll_pitch_yaw(&rotation_of_quaternion([0.5, 0.5, 0.5, 0.5])),
             [FRAC_PI_2, 0.0, FRAC_PI_2]
         );
+    }
+
+    #[test]
+    fn quaternions_of_rotations_reproduce_them() {
+        let angles = [0.0, 1e-9, 0.3, FRAC_PI_2, 2.5, std::f64::consts::PI, -FRAC_PI_2, -3.0];
+        for roll in angles {
+            for pitch in angles {
+                for yaw in angles {
+                    let m = rotation_of_rpy([roll, pitch, yaw]);
+                    let quaternion = quaternion_of_rotation(&m);
+                    assert!((quaternion.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);
+                    assert!(is_close(&rotation_of_quaternion(quaternion), &m), "{roll} {pitch} {yaw}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -6,12 +6,12 @@ use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Chart, Coordinate, Gradient, InQ, InV, Model, Quantity, Space};
 use std::collections::BTreeMap;
 
-/// Returns the value of a coordinate as an expression of `q`.
+/// Returns the value of a coordinate as an expression of `q`, in the graph of the model.
 pub fn coordinate_in_terms_of_q<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
     coordinate_as_expression(model.graph, c)
 }
 
-/// Returns the value of a coordinate as an expression of `q`.
+/// Returns the value of a coordinate as an expression of `q`, in the given graph.
 pub fn coordinate_as_expression<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
     c.q.expr(g) * g.num(c.ratio) + g.num(c.offset)
 }

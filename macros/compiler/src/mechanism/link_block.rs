@@ -20,8 +20,8 @@ pub struct LinkBlock {
     pub count: usize,
     /// Block whose last link is the parent of the first link; `None` if the ground is.
     pub parent: Option<usize>,
-    /// Blocks on the path to the root, in ascending order.
+    /// Indices of the blocks on the path from this block to the root, in ascending order.
     pub ancestors: Vec<usize>,
-    /// Blocks of the descendants, in ascending order.
+    /// Indices of the blocks whose path to the root contains this block, in ascending order.
     pub descendants: Vec<usize>,
 }

@@ -51,6 +51,9 @@ pub struct Model<'g> {
     pub gradients: DerivativeCache,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
+    /// Configuration in the pose of the robot file, if it differs from the neutral one: its free bodies are
+    /// where the file places them.
+    pub initial_configuration: Option<Vec<f64>>,
     /// Name of every entry of `v`, with the place of the joint.
     pub velocities: Vec<(String, Place)>,
     /// Generalized speeds that the entries of `v` are, if the user declared any. All other expressions of the
@@ -140,27 +143,27 @@ pub struct OutputExpression<'g> {
 pub struct Diagram {
     /// Name of the body to which the free-body diagram belongs.
     pub body: String,
-    /// Name and origin of each action on the body in the diagram.
+    /// Name and kind of each action on the body in the diagram.
     pub actions: Vec<(String, Origin)>,
     /// Indices of the joints to be released: joints, then positions of bodies and particles, in the order of
     /// the declaration.
     pub released: Vec<usize>,
 }
 
-/// Origin of an action on a body in a free-body diagram.
+/// Kind of an action on a body in a free-body diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Action of uniform gravity.
+    /// The action is the weight of the body in uniform gravity.
     Gravity,
-    /// Action of a force element.
+    /// The action is the force and torque of a force element.
     Element,
-    /// Action of an input.
+    /// The action is the force and torque of an input.
     Input,
-    /// Action of a joint on the body.
+    /// The action is the force and torque of a joint on the body.
     Joint,
-    /// Action of a constraint.
+    /// The action is the force and torque of a constraint.
     Constraint,
-    /// Action of a unilateral contact.
+    /// The action is the force and torque of a unilateral contact.
     Contact,
 }
 
@@ -179,6 +182,15 @@ impl<'g> Model<'g> {
     /// Returns the configuration space of the mechanism.
     pub fn configuration_space(&self) -> Space<'_, 'g> {
         Space { graph: self.graph, charts: &self.charts, speeds: self.speeds.as_deref() }
+    }
+
+    /// Returns the configuration with zero coordinates and identity quaternions.
+    pub fn neutral_configuration(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.nq()];
+        for first in self.charts.iter().filter_map(Chart::first_quaternion_index) {
+            q[first.0 + 3] = 1.0;
+        }
+        q
     }
 
     /// Returns the number of entries of `q`.

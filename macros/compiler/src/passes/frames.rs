@@ -153,6 +153,7 @@ pub fn move_contents_to_new_frames<'g>(model: &mut Model<'g>, back: &[Pose<'g>])
         charts: _,
         gradients: _,
         configuration: _,
+        initial_configuration: _,
         velocities: _,
         inputs,
         frames,

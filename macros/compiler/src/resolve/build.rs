@@ -139,6 +139,7 @@ fn empty_model<'g>(
         charts: Vec::new(),
         gradients: DerivativeCache::default(),
         configuration: Vec::new(),
+        initial_configuration: None,
         velocities: Vec::new(),
         speeds: None,
         inputs: Vec::new(),
@@ -257,6 +258,13 @@ impl<'a, 'g> Builder<'a, 'g> {
         self.model.configuration = numbering.configuration;
         self.model.velocities = numbering.velocities;
         self.model.charts = numbering.charts;
+        if !numbering.initial.is_empty() {
+            let mut initial = self.model.neutral_configuration();
+            for (first, values) in &numbering.initial {
+                initial[first.range_of_entries(values.len())].copy_from_slice(values);
+            }
+            self.model.initial_configuration = Some(initial);
+        }
         self.scope.kinematics.coordinates = numbering.coordinates;
         self.scope.kinematics.joint_coordinates = numbering.joints;
     }

@@ -203,8 +203,8 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Returns the value of a coordinate, time, an input or a definition. The outer `None` means that the
-    /// name has another meaning, the inner one an error.
+    /// Returns the value of a local name, a coordinate, time, an input or a definition. The outer `None`
+    /// means that the name has another meaning, the inner one an error.
     pub fn value_of_time_dependent_name(
         &self,
         name: &str,

@@ -14,6 +14,8 @@ use crate::syntax::Description;
 pub struct CoordinateNumbering {
     /// Names of the entries of `q`.
     pub configuration: Vec<String>,
+    /// Entries of `q` at which the robot file places a joint, with the coordinates of the joint.
+    pub initial: Vec<(InQ, Vec<f64>)>,
     /// Names of the entries of `v`, with the declarations to which they belong.
     pub velocities: Vec<(String, Place)>,
     /// Charts of the configuration space.
@@ -41,6 +43,9 @@ impl CoordinateNumbering {
             let mut plain = Vec::new();
             if joint.mimic.is_none() && !closing[j] && !is_solved_by_loop(j) {
                 all.charts.extend(charts_of_joint(joint.kind, (q, v), joint.along.len()));
+                if !joint.initial.is_empty() {
+                    all.initial.push((q, joint.initial.clone()));
+                }
                 let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
                 for name in &names_q {
                     all.configuration.push(full_name(&joint.name.text, name));

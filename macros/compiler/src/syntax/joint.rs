@@ -51,6 +51,7 @@ pub fn read_joint(
         friction: None,
         branch,
         driven: false,
+        initial: Vec::new(),
     })
 }
 

@@ -21,7 +21,7 @@ struct FieldIdentifiers {
     has_errors: bool,
 }
 
-/// Words of the attribute and of every field, and which of them could be read.
+/// Fields of a mechanism with the identifiers in their attributes, and which fields have syntax errors.
 #[derive(Default)]
 pub struct FieldReadability {
     fields: Vec<FieldIdentifiers>,
@@ -29,7 +29,8 @@ pub struct FieldReadability {
 }
 
 impl FieldReadability {
-    /// Records a field of the mechanism with the identifiers in its attributes.
+    /// Records a field with the identifiers in its attributes: it cannot be checked if one of these names a
+    /// field with a syntax error.
     pub fn record_field_identifiers(&mut self, field: &Field) {
         let mut words = BTreeSet::new();
         for attribute in &field.attrs {

@@ -67,7 +67,8 @@ macro_rules! words {
         /// Names of the options that request functions, as written in `#[mechanism(…)]`.
         pub(super) const REQUESTS: [&str; RequestOption::ALL.len()] = [$(stringify!($word)),+];
 
-        /// Functions to generate in addition to the functions of every mechanism.
+        /// Options of `#[mechanism]`: the functions that it requests in addition to those of every mechanism,
+        /// and options of parameters, arithmetic, passes and printed equations.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct RequestedFunctions {
             $($(#[$doc])* pub $word: bool,)+
@@ -116,7 +117,8 @@ words! {
     momentum_derivatives: MomentumDerivatives,
     /// Option that requests the centroidal momentum matrix and its bias.
     centroidal: Centroidal,
-    /// Energy and canonical equations as functions of configuration and momentum.
+    /// Option that requests the energy and the canonical equations as functions of configuration and
+    /// momentum.
     hamilton: Hamilton,
     /// Option that requests Routh's equations: motion without cyclic coordinates, in terms of the momenta of
     /// those coordinates.
@@ -129,7 +131,7 @@ words! {
     sensitivities: Sensitivities,
     /// Option that requests the mass matrix without its structural zeros.
     packed: Packed,
-    /// A second struct with precomputed values that depend only on the parameters.
+    /// Option that requests a second struct with precomputed values that depend only on the parameters.
     prepare: Prepare,
     /// Option that requests functions of several states in SIMD lanes.
     batch: Batch,

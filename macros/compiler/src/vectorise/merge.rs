@@ -241,8 +241,9 @@ impl<'g> LaneMerger<'g> {
         Some(operands.into_iter().unzip())
     }
 
-    /// Returns true if two expressions have the same structure down to a depth, or `None` when no steps
-    /// remain.
+    /// Returns true if two expressions are similar down to a depth: the same operations up to the order of
+    /// operands, signs, constant factors and constant summands, and symbols of the same kind. A constant is
+    /// similar to any expression. Returns `None` when no steps remain.
     fn has_similar_structure(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
         self.spend_steps(1)?;
         let ((.., a), (.., b)) = (split_affine(a), split_affine(b));

@@ -11,11 +11,11 @@ pub(super) const MAX_POINTS: usize = 2 * MAX_VERTICES;
 /// Origin of a point of a clipped face.
 #[derive(Clone, Copy)]
 pub(super) enum PointOrigin {
-    /// Vertex of the clipped face.
+    /// The point is a vertex of the clipped face.
     Vertex(u8),
-    /// Edge of the clipped face between two vertices, cut off by a side of the clipping face.
+    /// The point is where a side of the clipping face cuts the edge of the clipped face between two vertices.
     Edge { ends: [u8; 2], side: usize },
-    /// Vertex of the clipping face.
+    /// The point is a vertex of the clipping face above or below the clipped face.
     BoxInCorner(u8),
 }
 

@@ -229,7 +229,7 @@ impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
         }
     }
 
-    /// Returns `B w`.
+    /// Returns the contact velocities `B w` of a velocity `w` in the metric of the kinetic energy.
     pub(super) fn rates_of_velocity(&self, w: &RowList<T, NR>) -> RowList<T, NR> {
         let mut rates = RowList::repeat_entry(T::zero());
         for (i, rate) in rates.iter_mut().enumerate().take(self.size) {
@@ -239,7 +239,7 @@ impl<T: Real, const NR: usize> DelassusFactor<T, NR> {
         rates
     }
 
-    /// Returns `Bᵀ Λ`.
+    /// Returns the change `Bᵀ Λ` of `w` that the impulses cause.
     pub(super) fn velocity_of_impulses(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
         let mut w = RowList::repeat_entry(T::zero());
         for (i, impulse) in impulses.iter().enumerate().take(self.size) {

@@ -1,4 +1,5 @@
-//! Groups of contacts that impulses do not couple, such as those of bodies that do not touch each other.
+//! Groups of contacts that impulses do not couple, such as those of bodies that neither contacts nor joints
+//! connect.
 
 use super::super::Rows;
 use super::super::total::TotalArray;

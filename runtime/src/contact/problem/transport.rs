@@ -17,16 +17,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Corrects the velocity without impulses, so that adding impulses `Λ` at the end of the step gives the
     /// trapezoidal rule: half of the impulses act in the configuration at the start, half in that at the end.
     ///
-    /// The impulses `Λ₀` at its start have added `given` to the velocity, and `rates` to the rates. Contact
-    /// forces rotate with the surfaces and with the slip; their impulse is
-    /// `½ M⁻¹(q₀) G(q₀)ᵀ Λ₀ + ½ M⁻¹(q₁) G(q₁)ᵀ Λ` (trapezoidal rule). It differs from `M⁻¹(q₁) G(q₁)ᵀ Λ` by
-    /// half of the part of `given` that impulses at the end cannot give, which changes no rate of a contact,
-    /// and by half of the impulse across the slip at the end. Changes of `Λ` itself are found by the contact
+    /// The impulses `Λ₀` at its start have added `given` to the generalized velocity, and `rates` to the
+    /// contact velocities. Contact forces rotate with the surfaces and with the slip; their impulse is `½
+    /// M⁻¹(q₀) G(q₀)ᵀ Λ₀ + ½ M⁻¹(q₁) G(q₁)ᵀ Λ` (trapezoidal rule). It differs from `M⁻¹(q₁) G(q₁)ᵀ Λ` by half
+    /// of the part of `given` that impulses at the end cannot give, which changes no rate of a contact, and
+    /// by half of the impulse across the slip at the end. Changes of `Λ` itself are found by the contact
     /// conditions. If `Λ₀` is not unique, it is the impulses `recorded` in the previous step, with the
     /// smallest change that gives `rates`.
     ///
-    /// Returns impulses at the end of the step that change the rates as much as `Λ₀`, and the correction. If
-    /// the search has other impulses to begin at, they may be left out.
+    /// Returns impulses at the end of the step that change the contact velocities as much as `Λ₀`, and the
+    /// correction. If the search has other impulses to begin at, they may be left out.
     pub(in super::super) fn correct_velocity_for_rotation<const NV: usize>(
         &mut self,
         given: &SVector<T, NV>,
@@ -85,8 +85,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         (impulses, correction)
     }
 
-    /// Returns half of the part of a velocity that no impulses cause, and the contact velocities of this
-    /// half.
+    /// Returns half of the component of a velocity that no contact impulses could give (outside of the range
+    /// of `M⁻¹ Gᵀ`), and the contact velocities of this half.
     ///
     /// With `w = Lᵀ v`, what two passes of a regularised least-squares problem leave of it is
     /// `(1 + Bᵀ R⁻¹ B)⁻² w`, with the small regularisation `R` of dependent rows.
@@ -109,7 +109,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         (SVector::from(factor.solve_upper(all)), self.basis.rates_of_velocity(&rest))
     }
 
-    /// Returns impulses near others that change the rates of the mechanism by `rates`.
+    /// Returns contact impulses near others that change the contact velocities by `rates` (rows of the
+    /// mechanism).
     fn impulses_for_velocity_change(
         &self,
         others: &RowList<T, NR>,
@@ -133,7 +134,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         gathered
     }
 
-    /// Impulses that change the rates of the mechanism by `changes`.
+    /// Returns contact impulses that change the contact velocities by `changes`; both have the rows of all
+    /// contacts of the mechanism.
     pub(in super::super) fn impulses_for_changes(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
         self.values_at_mechanism_rows(
             &self.impulses_for_contact_changes(changes, &mut ImpulseEquations::new()).0,

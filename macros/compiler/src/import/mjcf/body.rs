@@ -324,8 +324,7 @@ impl<'a> MjcfReader<'a> {
         let mut carrier = parent.clone();
         for (k, joint) in joints.into_iter().enumerate() {
             let child = if k + 1 == number { body.clone() } else { self.add_massless_link(body, &joint) };
-            // The coordinates of a free joint are the pose of the body in the world.
-            let outer = if k == 0 && joint.kind != JointKind::Free { *pose } else { FilePose::ZERO };
+            let outer = if k == 0 { *pose } else { FilePose::ZERO };
             if let Some(damping) = &joint.spread {
                 self.add_isotropic_damping(&joint, damping, &carrier, &child);
             }
@@ -449,7 +448,7 @@ fn weld_joint(name: Name, parent: Name, child: Name, pose: &FilePose) -> FileJoi
 }
 
 /// Returns the joint with its endpoints. In the configuration of the file, its coordinate equals its
-/// reference instead of zero.
+/// reference instead of zero. The coordinates of a free joint are the pose of the body in the world.
 fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FilePose) -> FileJoint {
     let axis = joint.axis.value;
     let mut inner = FilePose { at: joint.anchor.value, ..FilePose::ZERO };
@@ -459,6 +458,11 @@ fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FileP
         Some(true) | None => {}
     }
     let free = joint.kind == JointKind::Free;
+    let initial = match joint.kind {
+        JointKind::Free => outer.free_joint_coordinates(),
+        _ if joint.reference != 0.0 => vec![joint.reference],
+        _ => Vec::new(),
+    };
     let pose = if free {
         FilePose::ZERO
     } else {
@@ -474,6 +478,7 @@ fn joint_with_ends(joint: BodyJoint, carrier: &Name, child: &Name, outer: &FileP
         limits: joint.limits,
         damping: joint.damping,
         friction: joint.friction,
+        initial,
         ..FileJoint::from_links(joint.name, (joint.kind, joint.word), links, origin, joint.axis)
     }
 }

@@ -105,7 +105,11 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
         (ground.at, ground.rotated) = (origin.nonzero_position(), origin.nonzero_rotations());
     }
-    plain_joint(name_with_link_span(&text), kind, ground, endpoint_at_origin(link.clone()))
+    let mut joint = plain_joint(name_with_link_span(&text), kind, ground, endpoint_at_origin(link.clone()));
+    if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Free) {
+        joint.initial = origin.pose().free_joint_coordinates();
+    }
+    joint
 }
 
 /// Returns an endpoint at the origin of a body.
@@ -140,6 +144,7 @@ pub(in crate::import) fn plain_joint(
         friction: None,
         branch: None,
         driven: false,
+        initial: Vec::new(),
     }
 }
 
@@ -182,7 +187,7 @@ pub(in crate::import) fn convert_file_joint(given: FileJoint) -> Joint {
     }
     joint.normalise_axis = has_axis;
     joint.lead = given.lead;
-    (joint.damping, joint.friction) = (given.damping, given.friction);
+    (joint.damping, joint.friction, joint.initial) = (given.damping, given.friction, given.initial);
     joint
 }
 

@@ -37,6 +37,9 @@ pub(in crate::import) struct FileJoint {
     pub(in crate::import) damping: Option<Expr>,
     /// Coulomb friction force or torque of the joint; `None` for no friction.
     pub(in crate::import) friction: Option<Expr>,
+    /// Coordinates in the pose of the file, in the order of `q`; empty if they are those of the neutral
+    /// configuration.
+    pub(in crate::import) initial: Vec<f64>,
 }
 
 impl FileJoint {
@@ -64,6 +67,7 @@ impl FileJoint {
             limits: FileLimits::default(),
             damping: None,
             friction: None,
+            initial: Vec::new(),
         }
     }
 

@@ -96,6 +96,9 @@ pub struct Joint {
     pub friction: Option<Expr>,
     /// Whether the joint has an input of its own (URDF: the joint's motor).
     pub driven: bool,
+    /// Coordinates in the pose of the robot file, in the order of `q`; empty if they are those of the neutral
+    /// configuration.
+    pub initial: Vec<f64>,
 }
 
 /// End of a joint on a body: `body.at(position).rotated(rotation, …)`.
